@@ -1,0 +1,108 @@
+"""The mechanism as a URDF, for robot_state_publisher, RViz and every tool that reads one.
+
+The tree: stator → rotor → satellite → Oldham coupling for each branch, and stator → output shaft.
+Each joint has the name of the link it moves. The loops through the arms of the output shaft, which
+a URDF cannot hold, are closed by the joint positions in mechanism_joint_states.
+"""
+
+import math
+from xml.etree import ElementTree as ET
+
+from gear_kinematics.kinematics import Branch, Mechanism
+
+_STEEL = 7850.0  # kg/m³
+_FACE_WIDTH = 0.01  # m, of the gears along the axis
+_COLOURS = {
+    'stator': '0.55 0.57 0.60 0.35',
+    'rotor': '0.72 0.45 0.20 1.0',
+    'satellite': '0.20 0.45 0.70 1.0',
+    'oldham': '0.85 0.65 0.13 1.0',
+    'output': '0.35 0.37 0.40 1.0',
+}
+
+
+def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> list[str]:
+    """Name every joint of the URDF: rotor, satellites, Oldham couplings, output shaft."""
+    branches = [branch.name for branch in mechanism.branches]
+    return [
+        frame_prefix + name
+        for name in (
+            'rotor',
+            *(f'satellite_{branch}' for branch in branches),
+            *(f'oldham_{branch}' for branch in branches),
+            output_joint,
+        )
+    ]
+
+
+def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix: str) -> str:
+    """Describe the mechanism.
+
+    Args:
+        mechanism: the mechanism.
+        module: of the teeth, m; with the tooth numbers it gives the bodies their size.
+        output_joint: the output shaft's joint, without the prefix.
+        frame_prefix: put before every link and joint name.
+
+    Raises:
+        ValueError: if `output_joint` is the name of another joint.
+    """
+    names = joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)
+    if len(set(names)) < len(names):
+        raise ValueError(f'output_joint {output_joint!r} is the name of another joint')
+    e = mechanism.eccentricity
+    ring_radius = 0.5 * module * mechanism.ring_teeth
+    satellite_radius = 0.5 * module * mechanism.satellite_teeth
+    half_length = max(abs(b.axial_position) for b in mechanism.branches) + _FACE_WIDTH
+    robot = ET.Element('robot', name=f'{frame_prefix}gear_kinematics')
+
+    def link(name: str, radius: float, length: float) -> None:
+        _link(robot, frame_prefix + name, radius, length, _COLOURS[name.split('_')[0]])
+
+    def joint(kind: str, name: str, parent: str, child: str) -> ET.Element:
+        element = ET.SubElement(robot, 'joint', name=frame_prefix + name, type=kind)
+        ET.SubElement(element, 'parent', link=frame_prefix + parent)
+        ET.SubElement(element, 'child', link=frame_prefix + child)
+        ET.SubElement(element, 'axis', xyz='1 0 0' if kind == 'prismatic' else '0 0 1')
+        return element
+
+    link('stator', 1.15 * ring_radius, 2.0 * half_length)
+    link('rotor', 0.5 * ring_radius, 2.0 * half_length - 3.0 * _FACE_WIDTH)
+    joint('continuous', 'rotor', 'stator', 'rotor')
+    for branch in mechanism.branches:
+        satellite, oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
+        link(satellite, satellite_radius, _FACE_WIDTH)
+        on_cam = joint('continuous', satellite, 'rotor', satellite)
+        ET.SubElement(on_cam, 'origin', xyz=_cam_centre(branch, e), rpy='0 0 0')
+        link(oldham, 0.7 * satellite_radius, 1.2 * _FACE_WIDTH)
+        slide = joint('prismatic', oldham, satellite, oldham)
+        ET.SubElement(
+            slide, 'limit', lower=repr(-e), upper=repr(e), effort='1000.0', velocity='1000.0'
+        )
+    link('output_shaft', 0.2 * ring_radius, 2.4 * half_length)
+    joint('continuous', output_joint, 'stator', 'output_shaft')
+    ET.indent(robot)
+    return ET.tostring(robot, encoding='unicode', xml_declaration=True) + '\n'
+
+
+def _cam_centre(branch: Branch, eccentricity: float) -> str:
+    x = -eccentricity * math.sin(branch.cam_phase)
+    y = eccentricity * math.cos(branch.cam_phase)
+    return f'{x!r} {y!r} {branch.axial_position!r}'
+
+
+def _link(robot: ET.Element, name: str, radius: float, length: float, colour: str) -> None:
+    """A cylinder of steel about the link's z axis."""
+    link = ET.SubElement(robot, 'link', name=name)
+    inertial = ET.SubElement(link, 'inertial')
+    mass = _STEEL * math.pi * radius**2 * length
+    across = mass * (3.0 * radius**2 + length**2) / 12.0
+    along = mass * radius**2 / 2.0
+    ET.SubElement(inertial, 'mass', value=repr(mass))
+    moments = {'ixx': across, 'iyy': across, 'izz': along, 'ixy': 0.0, 'ixz': 0.0, 'iyz': 0.0}
+    ET.SubElement(inertial, 'inertia', {key: repr(value) for key, value in moments.items()})
+    visual = ET.SubElement(link, 'visual')
+    geometry = ET.SubElement(visual, 'geometry')
+    ET.SubElement(geometry, 'cylinder', radius=repr(radius), length=repr(length))
+    material = ET.SubElement(visual, 'material', name=f'{name}_colour')
+    ET.SubElement(material, 'color', rgba=colour)

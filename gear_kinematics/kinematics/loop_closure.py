@@ -1,0 +1,113 @@
+"""Loop closure: the residual of the vector loops, the constraint Jacobian, and the mobility.
+
+The planar multibody system behind the Jacobian: the stator is fixed; the moving bodies are the
+rotor, for each branch its satellite and its Oldham coupling, and the output shaft, each with the
+coordinates (x, y, angle). Constraints: two rotary joints on the stator (rotor, output shaft), and
+for each branch a rotary joint (satellite on cam), two sliding joints (coupling in the satellite,
+coupling in the arm) and the mesh of satellite and ring gear.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gear_kinematics.kinematics.mechanism import Mechanism
+from gear_kinematics.kinematics.motion import MotionState, solve
+from gear_kinematics.kinematics.transforms import apply, frames
+
+Array = NDArray[np.float64]
+
+
+def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -> Array:
+    """How far the loops of a state are from closing, per branch, (..., B), m.
+
+    The distance between the centre of the Oldham coupling reached through rotor and satellite,
+    eq. (11), and through the output shaft, eq. (14), at the state's slides; or between either
+    and the state's own centre, whichever is greatest.
+    """
+    chain = frames(mechanism, rotor_angle, state.satellite_slide, state.arm_slide)
+    by_satellite = chain.oldham_to_stator[..., :3, 3]
+    by_arm = apply(chain.output_to_stator[..., np.newaxis, :, :], chain.oldham_to_output[..., :3, 3])
+    gaps = (
+        (by_satellite - by_arm)[..., :2],
+        by_satellite[..., :2] - state.oldham_centre,
+        chain.satellite_to_stator[..., :2, 3] - state.satellite_centre,
+    )
+    return np.max([np.hypot(gap[..., 0], gap[..., 1]) for gap in gaps], axis=0)
+
+
+def mobility_by_counting(mechanism: Mechanism) -> int:
+    """Degrees of freedom by eq. (2), 3(n - 1) - 2(r + p) - o, for the whole mechanism.
+
+    n bodies with the stator, r rotary and p sliding joints, o general ones (gear meshes). One
+    branch counts 3(5 - 1) - 2(3 + 2) - 1 = 1; two count 0, yet they move: see
+    `mobility_by_rank`.
+    """
+    branches = len(mechanism.branches)
+    bodies = 3 + 2 * branches
+    rotary, sliding, general = 2 + branches, 2 * branches, branches
+    return 3 * (bodies - 1) - 2 * (rotary + sliding) - general
+
+
+def constraint_jacobian(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
+    """Derivative of the constraints by the coordinates, (..., 4 + 7 B, 3 (2 + 2 B)).
+
+    Columns: (x, y, angle) of the rotor, then of satellite and coupling branch by branch, then of
+    the output shaft. Lengths are in units of the eccentricity, so that the rank has no unit.
+    """
+    state = solve(mechanism, rotor_angle)
+    e = mechanism.eccentricity
+    shape, count = state.output_angle.shape, len(mechanism.branches)
+    jacobian = np.zeros((*shape, 4 + 7 * count, 3 * (2 + 2 * count)))
+    rotor, output = 0, 3 * (1 + 2 * count)
+    for row, body in ((0, rotor), (2, output)):
+        jacobian[..., row, body] = jacobian[..., row + 1, body + 1] = 1.0
+    cosine, sine = np.cos(state.output_angle), np.sin(state.output_angle)
+    along_x = np.stack([cosine, sine], axis=-1)
+    along_y = np.stack([-sine, cosine], axis=-1)
+    for k in range(count):
+        row, satellite, coupling = 4 + 7 * k, 3 + 6 * k, 6 + 6 * k
+        centre, middle = state.satellite_centre[..., k, :] / e, state.oldham_centre[..., k, :] / e
+        _rotary_joint(jacobian[..., row : row + 2, :], rotor, satellite, centre)
+        # In the satellite the coupling slides along x, so it is held along y; in the arm the
+        # other way round.
+        _sliding_joint(
+            jacobian[..., row + 2 : row + 4, :], satellite, coupling, along_y, middle - centre
+        )
+        _sliding_joint(jacobian[..., row + 4 : row + 6, :], output, coupling, along_x, middle)
+        # The satellite rolls: where it touches the ring, its material does not move along it.
+        tangent = np.stack([-centre[..., 1], centre[..., 0]], axis=-1)
+        jacobian[..., row + 6, satellite : satellite + 2] = tangent
+        jacobian[..., row + 6, satellite + 2] = mechanism.satellite_rolling_radius / e
+    return jacobian
+
+
+def mobility_by_rank(mechanism: Mechanism, rotor_angle: float = 0.0) -> int:
+    """Degrees of freedom as columns less rank of the constraint Jacobian at a rotor angle, rad."""
+    jacobian = constraint_jacobian(mechanism, rotor_angle)
+    return int(jacobian.shape[-1] - np.linalg.matrix_rank(jacobian))
+
+
+def redundant_constraints(mechanism: Mechanism, rotor_angle: float = 0.0) -> int:
+    """Constraints that others imply already: rows less rank. Here the preload lives."""
+    jacobian = constraint_jacobian(mechanism, rotor_angle)
+    return int(jacobian.shape[-2] - np.linalg.matrix_rank(jacobian))
+
+
+def _rotary_joint(rows: Array, rotor: int, satellite: int, centre: Array) -> None:
+    """The satellite's centre is a point of the rotor, at `centre` from the rotor's axis."""
+    for axis in (0, 1):
+        rows[..., axis, satellite + axis] = 1.0
+        rows[..., axis, rotor + axis] = -1.0
+    rows[..., 0, rotor + 2] = centre[..., 1]
+    rows[..., 1, rotor + 2] = -centre[..., 0]
+
+
+def _sliding_joint(rows: Array, guide: int, slider: int, normal: Array, arm: Array) -> None:
+    """The slider turns with the guide and keeps its distance along `normal`, which turns too.
+
+    `arm` is the way from the guide's centre to the slider's.
+    """
+    rows[..., 0, slider + 2], rows[..., 0, guide + 2] = 1.0, -1.0
+    rows[..., 1, slider : slider + 2] = normal
+    rows[..., 1, guide : guide + 2] = -normal
+    rows[..., 1, guide + 2] = normal[..., 0] * arm[..., 1] - normal[..., 1] * arm[..., 0]

@@ -1,0 +1,112 @@
+"""The motion by the matrix method, eqs. (4), (7), (8), (11)-(18): nothing but 4×4 transforms.
+
+The slides of the Oldham couplings come from solving the loop closure
+T_21 T_3k,2 T_4k,3k O = T_51 T_4k,5 O as the linear system of eq. (17); velocities and
+accelerations from differentiating the transforms and that system. No formula of the closed form
+(`motion`) is used, so that each proves the other.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gear_kinematics.kinematics.mechanism import Mechanism
+from gear_kinematics.kinematics.motion import MotionState, motion_state
+from gear_kinematics.kinematics.transforms import (
+    cam_translation,
+    output_turn,
+    rotation_z,
+    satellite_turn,
+)
+
+Array = NDArray[np.float64]
+
+_SPIN = np.zeros((4, 4))  # the generator of Rz: dRz/dq = _SPIN Rz
+_SPIN[0, 1], _SPIN[1, 0] = -1.0, 1.0
+_X, _Y, _ORIGIN = 0, 1, 3  # columns of a transform
+
+
+class _Jet(NamedTuple):
+    """Matrices (..., m, n) with their first and second time derivatives."""
+
+    value: Array
+    first: Array
+    second: Array
+
+    def __matmul__(self, right: '_Jet') -> '_Jet':
+        """Multiply by the product rule."""
+        return _Jet(
+            self.value @ right.value,
+            self.first @ right.value + self.value @ right.first,
+            self.second @ right.value + 2.0 * self.first @ right.first + self.value @ right.second,
+        )
+
+    def column(self, index: int) -> '_Jet':
+        """The x and y components of one column of the transforms, (..., 2, 1)."""
+        return _Jet(*(matrix[..., :2, index, np.newaxis] for matrix in self))
+
+    def row(self, index: int) -> '_Jet':
+        """One row, (..., 1, n)."""
+        return _Jet(*(matrix[..., index, np.newaxis, :] for matrix in self))
+
+    def vectors(self) -> Array:
+        """The columns (..., 2, 1) as one array (3, ..., 2): the first axis is the order."""
+        return np.stack(self)[..., 0]
+
+
+def solve(
+    mechanism: Mechanism,
+    rotor_angle: ArrayLike,
+    rotor_velocity: ArrayLike = 0.0,
+    rotor_acceleration: ArrayLike = 0.0,
+) -> MotionState:
+    """Solve the motion of all bodies; arguments and result as of `motion.solve`."""
+    inputs = (rotor_angle, rotor_velocity, rotor_acceleration)
+    rotor = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
+    output = [output_turn(mechanism, value) for value in rotor]
+    on_cam = [satellite_turn(mechanism, value) for value in rotor]
+
+    cam = cam_translation(mechanism)
+    fixed_cam = _Jet(cam, np.zeros_like(cam), np.zeros_like(cam))
+    output_to_stator = _rotation(*output)
+    satellite_to_stator = _rotation(*rotor) @ fixed_cam @ _rotation(*on_cam)
+    satellite = satellite_to_stator.column(_ORIGIN)  # eq. (7)
+    # Loop closure, eqs. (11) = (14): O3 + x (T_31 ex) = y (T_51 ey), linear in the slides x, y.
+    slides = _slides(satellite_to_stator.column(_X), output_to_stator.column(_Y), satellite)
+    oldham = output_to_stator.column(_Y) @ slides.row(1)  # eq. (14)
+    slide, arm_slide = np.moveaxis(slides.vectors()[:2], -1, 0)
+    turn = 2.0 * np.pi
+    return motion_state(
+        np.stack(output),
+        output[0] - turn * np.rint(output[0] / turn),
+        satellite.vectors(),
+        oldham.vectors(),
+        slide,
+        arm_slide,
+    )
+
+
+def _rotation(angle: Array, rate: Array, acceleration: Array) -> _Jet:
+    """Rz of an angle that changes, (..., 1, 4, 4): with an axis for the branches."""
+    value = rotation_z(angle[..., np.newaxis])
+    rate, acceleration = (v[..., np.newaxis, np.newaxis, np.newaxis] for v in (rate, acceleration))
+    turned = _SPIN @ value
+    return _Jet(value, rate * turned, rate**2 * (_SPIN @ turned) + acceleration * turned)
+
+
+def _slides(satellite_x: _Jet, arm_y: _Jet, satellite: _Jet) -> _Jet:
+    """Solve the linear system of eq. (17), and it differentiated, for (x, y): (..., 2, 1)."""
+    matrix = _Jet(
+        *(np.concatenate([x, -y], axis=-1) for x, y in _broadcast_pairs(satellite_x, arm_y))
+    )
+    value = np.linalg.solve(matrix.value, -satellite.value)
+    first = np.linalg.solve(matrix.value, -satellite.first - matrix.first @ value)
+    second = np.linalg.solve(
+        matrix.value, -satellite.second - 2.0 * matrix.first @ first - matrix.second @ value
+    )
+    return _Jet(value, first, second)
+
+
+def _broadcast_pairs(left: _Jet, right: _Jet) -> list[tuple[Array, ...]]:
+    return [tuple(np.broadcast_arrays(a, b)) for a, b in zip(left, right, strict=True)]

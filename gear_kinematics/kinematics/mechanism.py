@@ -1,0 +1,173 @@
+"""The mechanism: tooth numbers, eccentricity and branches, and what follows from them alone."""
+
+import math
+import operator
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, Self
+
+from gear_kinematics.kinematics.errors import MechanismError
+
+
+@dataclass(frozen=True, slots=True)
+class Branch:
+    """One path of transmission: a satellite on its cam and the Oldham coupling behind it."""
+
+    name: str
+    """A letter, then letters, digits or underscores: it becomes part of frame names."""
+    cam_phase: float = 0.0
+    """α_k, rad: the angle of the eccentric cam on the rotor; 0 points along the rotor's y axis."""
+    axial_position: float = 0.0
+    """m, along the motor axis; carried along unchanged by the planar motion."""
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """An anti-backlash planetary gear with any number of branches. Validated when made.
+
+    Raises:
+        MechanismError: listing every fault at once.
+    """
+
+    ring_teeth: int
+    """zk, teeth of the ring gears on the stator."""
+    satellite_teeth: int
+    """zs, teeth of the satellites; fewer than `ring_teeth`."""
+    eccentricity: float
+    """e, m: the radius of the circle on which the centres of the satellites move."""
+    branches: tuple[Branch, ...]
+
+    def __post_init__(self) -> None:
+        """Bring the fields to their plain types, or list what is wrong with them."""
+        faults: list[str] = []
+        ring = _teeth('ring_teeth', self.ring_teeth, faults)
+        satellite = _teeth('satellite_teeth', self.satellite_teeth, faults)
+        if ring is not None and satellite is not None and satellite >= ring:
+            faults.append(f'satellite_teeth ({satellite}) must be less than ring_teeth ({ring})')
+        eccentricity = _finite('eccentricity', self.eccentricity, faults)
+        if eccentricity is not None and eccentricity <= 0.0:
+            faults.append(f'eccentricity must be greater than 0, not {eccentricity!r}')
+        branches = _branches(self.branches, faults)
+        if faults:
+            raise MechanismError(faults)
+        for name, value in (
+            ('ring_teeth', ring),
+            ('satellite_teeth', satellite),
+            ('eccentricity', eccentricity),
+            ('branches', branches),
+        ):
+            object.__setattr__(self, name, value)
+
+    @classmethod
+    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
+        """Make the mechanism that the parameters of the node and of its YAML file describe.
+
+        Args:
+            parameters: `ring_teeth`, `satellite_teeth`, `eccentricity`, `branches` (names) and,
+                for each branch, `<branch>.cam_phase` and `<branch>.axial_position`, which fall
+                back to the defaults of `Branch`. Other keys are passed over.
+
+        Raises:
+            MechanismError: also for what is missing.
+        """
+        required = ('ring_teeth', 'satellite_teeth', 'eccentricity', 'branches')
+        if missing := [name for name in required if name not in parameters]:
+            raise MechanismError([f'{name} is missing' for name in missing])
+        names = parameters['branches']
+        if isinstance(names, str) or not hasattr(names, '__iter__'):
+            raise MechanismError([f'branches must be a list of names, not {names!r}'])
+        fields = ('cam_phase', 'axial_position')
+        return cls(
+            parameters['ring_teeth'],
+            parameters['satellite_teeth'],
+            parameters['eccentricity'],
+            tuple(
+                Branch(
+                    name,
+                    **{f: parameters[f'{name}.{f}'] for f in fields if f'{name}.{f}' in parameters},
+                )
+                for name in names
+            ),
+        )
+
+    @property
+    def gear_ratio(self) -> Fraction:
+        """i = ω2/ω5 = -zs/(zk - zs), signed and exact (eq. 3): the output turns backwards."""
+        return Fraction(-self.satellite_teeth, self.ring_teeth - self.satellite_teeth)
+
+    def rotor_angle(self, output_angle: float) -> float:
+        """φ2 = i φ5 (eq. 5), rad."""
+        return output_angle * self.gear_ratio.numerator / self.gear_ratio.denominator
+
+    @property
+    def ring_rolling_radius(self) -> float:
+        """Radius of the circle on the ring gear on which the satellite rolls, m."""
+        return self.eccentricity * self.ring_teeth / (self.ring_teeth - self.satellite_teeth)
+
+    @property
+    def satellite_rolling_radius(self) -> float:
+        """Radius of the circle on the satellite that rolls on the ring gear's, m."""
+        return self.eccentricity * self.satellite_teeth / (self.ring_teeth - self.satellite_teeth)
+
+    @property
+    def oldham_petals(self) -> int:
+        """Petals of the rose r = e cos(zk ψ/(zk - zs)) on which an Oldham coupling's centre moves.
+
+        With zk/(zk - zs) = p/q in lowest terms: p if p and q are both odd, else 2 p.
+        """
+        order = Fraction(self.ring_teeth, self.ring_teeth - self.satellite_teeth)
+        both_odd = order.numerator % 2 == 1 and order.denominator % 2 == 1
+        return order.numerator if both_odd else 2 * order.numerator
+
+
+def _teeth(name: str, value: object, faults: list[str]) -> int | None:
+    try:
+        if isinstance(value, bool):
+            raise TypeError
+        teeth = operator.index(value)  # type: ignore[arg-type]  # what is no integer raises
+    except TypeError:
+        faults.append(f'{name} must be an integer, not {value!r}')
+        return None
+    if teeth < 1:
+        faults.append(f'{name} must be at least 1, not {teeth}')
+        return None
+    return teeth
+
+
+def _finite(name: str, value: object, faults: list[str]) -> float | None:
+    try:
+        if isinstance(value, (bool, str)):
+            raise TypeError
+        number = float(value)  # type: ignore[arg-type]  # what is no number raises
+    except (TypeError, ValueError, OverflowError):
+        faults.append(f'{name} must be a number, not {value!r}')
+        return None
+    if not math.isfinite(number):
+        faults.append(f'{name} must be finite, not {number!r}')
+        return None
+    return number
+
+
+def _branches(branches: object, faults: list[str]) -> tuple[Branch, ...]:
+    if not isinstance(branches, (tuple, list)) or not branches:
+        faults.append('branches must name at least one branch')
+        return ()
+    checked: list[Branch] = []
+    for branch in branches:
+        if not isinstance(branch, Branch):
+            faults.append(f'branches must be of type Branch, not {branch!r}')
+            continue
+        name = branch.name
+        if not (isinstance(name, str) and name.isascii() and name.isidentifier()
+                and name[0].isalpha()):
+            faults.append(
+                f'a branch name is a letter, then letters, digits or underscores, not {name!r}'
+            )
+            continue
+        phase = _finite(f'{name}.cam_phase', branch.cam_phase, faults)
+        position = _finite(f'{name}.axial_position', branch.axial_position, faults)
+        if any(name == other.name for other in checked):
+            faults.append(f'branch name {name!r} is used more than once')
+        checked.append(Branch(name, phase or 0.0, position or 0.0))
+    return tuple(checked)

@@ -1,0 +1,153 @@
+"""The rotor's position as whole turns and an angle within the turn, which never loses precision.
+
+A float64 angle of 10^10 turns has a spacing of 7.6e-6 rad. An integer turn count beside an angle
+within [-π, π] keeps its last bits however long the motor runs, and it is all the kinematics needs:
+the positions of the bodies repeat with the turns of the rotor.
+"""
+
+import math
+from typing import NamedTuple, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+TURN = 2.0 * math.pi
+_TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: what the float64 leaves out
+
+
+class RotorPosition(NamedTuple):
+    """A rotor angle of 2π `turns` + `angle`."""
+
+    turns: int
+    angle: float
+    """rad, within the turn."""
+
+
+@overload
+def split_turns(angle: float) -> RotorPosition: ...
+@overload
+def split_turns(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def split_turns(angle):  # type: ignore[no-untyped-def]  # typed by its overloads
+    """Split an angle into the nearest whole turns and the rest in [-π, π], both exact.
+
+    Exact means: of 2π itself, not of its float64, up to 2^52 turns; the rest is rounded once.
+
+    Args:
+        angle: rad; a float, or an array of any shape.
+
+    Returns:
+        Turns (an int; for arrays whole numbers as float64) and the rest in rad.
+    """
+    if isinstance(angle, np.ndarray):
+        rest = np.fmod(angle, TURN)
+        rest -= TURN * np.rint(rest / TURN)
+        turns = np.rint((angle - rest) / TURN)
+    else:
+        rest = math.remainder(angle, TURN)
+        turns = round((angle - rest) / TURN)
+    rest -= turns * _TURN_TAIL
+    return RotorPosition(turns, rest)
+
+
+class RotorTurns:
+    """Follows the rotor's encoder and counts its whole turns.
+
+    A multi-turn encoder is taken at its word. The position of a single-turn encoder wraps once a
+    turn and is unwrapped here; `referenced` then tells whether the number of turns is known: it
+    is not at the start, nor after a gap in which the rotor could have turned half a turn or more
+    either way from where it is expected, and it is known again after `home`. Meanwhile counting
+    goes on from the nearest turn.
+    """
+
+    def __init__(
+        self, *, single_turn: bool, max_speed: float, max_acceleration: float
+    ) -> None:
+        """Start with no position.
+
+        Args:
+            single_turn: whether the encoder's position wraps once a turn.
+            max_speed: rad/s, the fastest that the rotor can turn.
+            max_acceleration: rad/s², the fastest that its speed can change.
+        """
+        self.single_turn = single_turn
+        self.max_speed = max_speed
+        self.max_acceleration = max_acceleration
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the position and the turns: the next update is the first again."""
+        self.position: RotorPosition | None = None
+        self.referenced = not self.single_turn
+        self._reading = 0.0
+        self._stamp = 0
+        self._velocity: float | None = None
+
+    def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
+        """Take the encoder's next sample.
+
+        Args:
+            position: finite, rad; of a single-turn encoder in any range.
+            stamp: ns, not earlier than the last.
+            velocity: rad/s, or None where it is not known.
+        """
+        turns, angle = split_turns(position)
+        if self.single_turn:
+            turns = 0
+            if self.position is not None:
+                expected, known = self._expected_turn((stamp - self._stamp) * 1e-9, velocity)
+                self.referenced = self.referenced and known
+                apparent = angle - self.position.angle
+                turns = self.position.turns + round((expected - apparent) / TURN)
+            position = angle
+        self.position = RotorPosition(turns, angle)
+        self._reading, self._stamp, self._velocity = position, stamp, velocity
+
+    def _expected_turn(self, elapsed: float, velocity: float | None) -> tuple[float, bool]:
+        """Where within the gap's reachable angles the rotor is expected, and whether one fits.
+
+        Within `elapsed` the rotor reaches at most ±max_speed·elapsed. Where that leaves a doubt,
+        the speeds v0 and v1 at both ends narrow it: with accelerations of at most A, the angle is
+        (v0 + v1)/2·elapsed ± (A·elapsed²/4 - (v1 - v0)²/(4 A)).
+        """
+        low, high = -self.max_speed * elapsed, self.max_speed * elapsed
+        if high >= math.pi and velocity is not None and self._velocity is not None:
+            change = velocity - self._velocity
+            middle = 0.5 * (velocity + self._velocity) * elapsed
+            spread = self.max_acceleration * elapsed**2 / 4.0
+            spread -= change**2 / (4.0 * self.max_acceleration)
+            spread = max(spread, 0.0)
+            # Speeds beyond max_speed would empty the range: the nearest angle in it remains.
+            low, high = (
+                min(max(bound, low), high) for bound in (middle - spread, middle + spread)
+            )
+        return 0.5 * (low + high), high - low < TURN
+
+    def relative_to(self, zero: float, direction: int) -> RotorPosition:
+        """Give the rotor angle φ2 = direction·(position - zero), with no loss to cancellation.
+
+        Raises:
+            RuntimeError: before the first update.
+        """
+        turns, angle = self._known_position()
+        zero_turns, zero_angle = split_turns(zero)
+        return RotorPosition(direction * (turns - zero_turns), direction * (angle - zero_angle))
+
+    def home(self, rotor_angle: float, direction: int) -> float:
+        """Declare that the rotor angle φ2 is `rotor_angle` now: the turns are known from here.
+
+        Returns:
+            The zero that `relative_to` gives `rotor_angle` with, at the present position.
+
+        Raises:
+            RuntimeError: before the first update.
+        """
+        _, angle = self._known_position()
+        if self.single_turn:
+            self.position = RotorPosition(0, angle)
+        self.referenced = True
+        return self._reading - direction * rotor_angle
+
+    def _known_position(self) -> RotorPosition:
+        if self.position is None:
+            raise RuntimeError('the rotor has no position before the first update')
+        return self.position

@@ -1,0 +1,280 @@
+"""The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
+
+import signal
+import sys
+import time
+from dataclasses import fields
+from types import FrameType
+from typing import Any
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import PoseArray
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import (
+    PublisherEventCallbacks,
+    QoSOfferedIncompatibleQoSInfo,
+    QoSRequestedIncompatibleQoSInfo,
+    SubscriptionEventCallbacks,
+)
+from rclpy.exceptions import ParameterException
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import (
+    DurabilityPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from gear_kinematics import parameters
+from gear_kinematics.description import urdf
+from gear_kinematics.diagnostics import InputMonitor
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.state_messages import StateMessages
+
+_DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
+_WARNING_PERIOD = 1.0  # s
+_REPORT_PERIOD = 1.0  # s
+_SPIN_TIMEOUT = 0.1  # s: how late a signal can be noticed
+_UNUSABLE = 2  # exit code: parameters or arguments that cannot be used
+
+
+class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
+    """Publishes the state of the mechanism for every valid message on rotor_state."""
+
+    def __init__(self, **options: Any) -> None:
+        """Declare the parameters and open the topics.
+
+        Raises:
+            ParameterException: if a parameter is refused.
+            ValueError: if the parameters describe no mechanism.
+        """
+        super().__init__('gear_state_publisher', **options)
+        self.add_on_set_parameters_callback(self._check_parameters)
+        for name, parameter in parameters.PARAMETERS.items():
+            self._declare(name, parameter, parameters.defaults()[name])
+        of_branches = parameters.branch_parameters(self._value('branches'))
+        for name, (parameter, default) in of_branches.items():
+            self._declare(name, parameter, default)
+        self._mechanism = Mechanism.from_mapping(
+            {name: self._value(name) for name in (*parameters.PARAMETERS, *of_branches)}
+        )
+        self._input = RotorInput(self._input_settings())
+        self._monitor = InputMonitor(started=time.monotonic())
+        self._next_warning = 0.0
+        self._description = String()
+
+        self._description_publisher = self._create_output(
+            String,
+            'robot_description',
+            QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
+        )
+        # In the order of StateMessages.encode.
+        self._outputs = [
+            self._create_output(message_type, topic, QoSProfile(depth=_DEPTH))
+            for message_type, topic in (
+                (JointState, 'output_state'),
+                (PoseArray, 'body_poses'),
+                (JointState, 'mechanism_joint_states'),
+            )
+        ]
+        self._diagnostics = self._create_output(
+            DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
+        )
+        self._configure()
+        self.add_post_set_parameters_callback(lambda _: self._configure())
+        self.create_service(Trigger, '~/home', self._home)
+        # Silence is silence also while a simulated clock stands still.
+        self.create_timer(
+            _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
+        # Best effort takes messages from reliable and from best-effort drivers alike.
+        subscription = self.create_subscription(
+            JointState,
+            'rotor_state',
+            self._on_rotor_state,
+            QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT),
+            raw=True,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=SubscriptionEventCallbacks(
+                incompatible_qos=lambda event: self._on_incompatible_qos('rotor_state', event)
+            ),
+        )
+        mechanism, joint = self._mechanism, self._value('rotor_joint')
+        self.get_logger().info(
+            f'gear ratio {mechanism.gear_ratio} (ring {mechanism.ring_teeth}, satellite '
+            f'{mechanism.satellite_teeth} teeth), listening for '
+            f'{f"joint {joint!r}" if joint else "the only joint"} on {subscription.topic_name}'
+        )
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters as every node does; a refusal always names the parameter."""
+        result = super().set_parameters_atomically(parameter_list)
+        names = ', '.join(parameter.name for parameter in parameter_list)
+        if not result.successful and names not in result.reason:
+            result.reason = f'{names}: {result.reason}'
+        return result
+
+    def _declare(self, name: str, parameter: parameters.Parameter, default: object) -> None:
+        descriptor = ParameterDescriptor(
+            description=parameter.description,
+            additional_constraints=', '.join(parameter.choices),
+            read_only=parameter.read_only,
+        )
+        bounds = {'from_value': parameter.minimum, 'to_value': parameter.maximum}
+        if isinstance(default, int):
+            descriptor.integer_range = [IntegerRange(**bounds, step=parameter.step)]
+        elif isinstance(default, float):
+            descriptor.floating_point_range = [FloatingPointRange(**bounds)]
+        self.declare_parameter(name, default, descriptor)
+
+    def _create_output(self, message_type: type, topic: str, qos: QoSProfile) -> Publisher:
+        return self.create_publisher(
+            message_type,
+            topic,
+            qos,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=PublisherEventCallbacks(
+                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event)
+            ),
+        )
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
+        """Refuse what types and ranges, which rclpy checks, cannot say."""
+        for parameter in changed:
+            known = parameters.PARAMETERS.get(parameter.name)
+            if known and known.choices and parameter.value not in known.choices:
+                reason = f'{parameter.name} must be one of {", ".join(known.choices)}'
+                return SetParametersResult(successful=False, reason=reason)
+        return SetParametersResult(successful=True)
+
+    def _input_settings(self) -> InputSettings:
+        return InputSettings(**{field.name: self._value(field.name) for field in fields(InputSettings)})
+
+    def _configure(self) -> None:
+        """Take the parameters over; called again after every change."""
+        self._input.settings = self._input_settings()
+        names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
+        self._messages = StateMessages(self._mechanism, **names)
+        description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
+        if description != self._description:
+            self._description = description
+            self._description_publisher.publish(description)
+
+    def _on_rotor_state(self, data: bytes) -> None:
+        self._monitor.last_input = time.monotonic()
+        try:
+            sample = self._input.accept(data, self._now)
+        except RejectedInputError as rejection:
+            self._warn(f'rotor_state rejected: {rejection}')
+            return
+        for publisher, message in zip(self._outputs, self._messages.encode(sample), strict=True):
+            publisher.publish(message)
+        self._monitor.published += 1
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
+
+    def _warn(self, text: str) -> None:
+        now = time.monotonic()
+        if now >= self._next_warning:
+            self._next_warning = now + _WARNING_PERIOD
+            self.get_logger().warning(text)
+
+    def _on_incompatible_qos(
+        self,
+        topic: str,
+        event: QoSOfferedIncompatibleQoSInfo | QoSRequestedIncompatibleQoSInfo,
+    ) -> None:
+        policy = qos_policy_name_from_kind(event.last_policy_kind)
+        self._monitor.incompatible_qos[topic] = policy
+        self._warn(f'an endpoint on {topic} is incompatible with this node: {policy}')
+
+    def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        home_angle = self._value('home_angle')
+        try:
+            zero = self._input.home(self._mechanism.rotor_angle(home_angle))
+        except RuntimeError:
+            response.message = 'there was no valid rotor_state yet'
+            return response
+        result = self.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
+        response.success = result.successful
+        response.message = (
+            result.reason or f'output shaft at {home_angle} rad: rotor_zero is {zero} rad'
+        )
+        return response
+
+    def _report(self) -> None:
+        report = self._monitor.report(
+            self._input, self._mechanism, self._value('input_timeout'), time.monotonic()
+        )
+        message = DiagnosticArray()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.status = [
+            DiagnosticStatus(
+                level=bytes([report.level]),
+                name=f'{self.get_name()}: rotor input',
+                hardware_id=self.get_fully_qualified_name(),
+                message=report.message,
+                values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
+            )
+        ]
+        self._diagnostics.publish(message)
+
+
+def make_executor() -> Executor:
+    """The executor with the least latency that this rclpy has."""
+    try:
+        from rclpy.experimental.events_executor import EventsExecutor
+    except ImportError:
+        return SingleThreadedExecutor()
+    return EventsExecutor()
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until SIGINT or SIGTERM; returns the exit code."""
+    stopping = False
+
+    def stop(_signal: int, _frame: FrameType | None) -> None:
+        nonlocal stopping
+        stopping = True
+
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, stop)
+    try:
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        node = GearStatePublisher()
+    except (ParameterException, ValueError, RuntimeError) as error:
+        print(f'gear_state_publisher: {error}', file=sys.stderr)
+        rclpy.try_shutdown()
+        return _UNUSABLE
+    executor = make_executor()
+    executor.add_node(node)
+    try:
+        # EventsExecutor.spin() does not dispatch in every release; spin_once() does.
+        while not stopping and rclpy.ok():
+            executor.spin_once(timeout_sec=_SPIN_TIMEOUT)
+    except ExternalShutdownException:
+        pass  # somebody else in this process has shut rclpy down
+    executor.shutdown()
+    node.destroy_node()
+    rclpy.try_shutdown()
+    return 0

@@ -1,0 +1,22 @@
+"""Where the files are that are installed beside the package: config, launch files, bags."""
+
+from pathlib import Path
+
+_PACKAGE = 'gear_kinematics'
+
+
+def share_directory() -> Path:
+    """Find the share directory of this very installation, or the source tree it runs from.
+
+    pip, colcon and Debian put the Python package at <prefix>/lib/python3.x/... and the files at
+    <prefix>/share; looking upwards from here finds the ones that belong together, also where no
+    ament index is set up or where it names another installation.
+
+    Raises:
+        FileNotFoundError: if the package was taken out of its installation.
+    """
+    for ancestor in Path(__file__).resolve().parents:
+        for candidate in (ancestor / 'share' / _PACKAGE, ancestor):
+            if (candidate / 'package.xml').is_file() and (candidate / 'config').is_dir():
+                return candidate
+    raise FileNotFoundError(f'the files installed with {_PACKAGE} are missing')
