@@ -7,7 +7,7 @@ size as counted from behind the encapsulation.
 
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 _ENCAPSULATION = 4
 _SECOND = 1_000_000_000  # ns
@@ -31,27 +31,43 @@ class JointState(NamedTuple):
     effort: tuple[float, ...]
 
 
+class PoseArray(NamedTuple):
+    """A decoded geometry_msgs/PoseArray."""
+
+    stamp: int
+    """ns."""
+    frame_id: bytes
+    numbers: tuple[float, ...]
+    """x y z and quaternion x y z w, pose after pose."""
+
+
 def decode_joint_state(data: bytes) -> JointState:
     """Decode a sensor_msgs/JointState of either byte order.
 
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    reader = _Reader(data)
-    try:
-        seconds, nanoseconds = reader.stamp()
+    with _Reader(data) as reader:
+        stamp = reader.stamp()
         reader.string()  # frame_id
         names = tuple([reader.string() for _ in range(reader.count(4))])
-        arrays = reader.doubles(), reader.doubles(), reader.doubles()
-    except struct.error as error:
-        raise MalformedMessageError('the message is cut off') from error
-    if len(data) - reader.offset > _MAX_PADDING:
-        raise MalformedMessageError('bytes are left over')
-    return JointState(seconds * _SECOND + nanoseconds, names, *arrays)
+        return JointState(
+            stamp, names, reader.double_array(), reader.double_array(), reader.double_array()
+        )
+
+
+def decode_pose_array(data: bytes) -> PoseArray:
+    """Decode a geometry_msgs/PoseArray of either byte order.
+
+    Raises:
+        MalformedMessageError: if the bytes are anything else.
+    """
+    with _Reader(data) as reader:
+        return PoseArray(reader.stamp(), reader.string(), reader.doubles(7 * reader.count(56)))
 
 
 class _Reader:
-    """Reads CDR primitives one after the other."""
+    """Reads CDR primitives one after the other; at the end of `with`, nothing may be left over."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
@@ -63,12 +79,21 @@ class _Reader:
         else:
             raise MalformedMessageError('no CDR encapsulation')
 
-    def stamp(self) -> tuple[int, int]:
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: object, _: object) -> None:
+        if kind is not None and issubclass(kind, struct.error):
+            raise MalformedMessageError('the message is cut off')
+        if kind is None and len(self._data) - self.offset > _MAX_PADDING:
+            raise MalformedMessageError('bytes are left over')
+
+    def stamp(self) -> int:
         seconds, nanoseconds = struct.unpack_from(self._order + 'iI', self._data, self.offset)
         self.offset += 8
         if nanoseconds >= _SECOND:
             raise MalformedMessageError('a stamp has more than a second of nanoseconds')
-        return seconds, nanoseconds
+        return int(seconds * _SECOND + nanoseconds)
 
     def count(self, item_size: int) -> int:
         self.offset += -self.offset % 4
@@ -86,8 +111,10 @@ class _Reader:
             raise MalformedMessageError('a string does not end')
         return text[:-1]
 
-    def doubles(self) -> tuple[float, ...]:
-        count = self.count(8)
+    def double_array(self) -> tuple[float, ...]:
+        return self.doubles(self.count(8))
+
+    def doubles(self, count: int) -> tuple[float, ...]:
         if count == 0:  # nothing follows, not even the padding
             return ()
         self.offset += -(self.offset - _ENCAPSULATION) % 8
@@ -138,13 +165,15 @@ class Template:
 class JointStateTemplate(Template):
     """A sensor_msgs/JointState of the given joints: encode(stamp, positions, ...)."""
 
-    def __init__(self, names: Sequence[str], *, velocity: bool, effort: bool) -> None:
+    def __init__(
+        self, names: Sequence[str], *, velocity: bool, effort: bool, position: bool = True
+    ) -> None:
         """Lay it out; an array that is not there takes no part in `encode`."""
         super().__init__(frame_id='')
         self._count(len(names))
         for name in names:
             self._string(name)
-        for present in (True, velocity, effort):
+        for present in (position, velocity, effort):
             count = len(names) if present else 0
             self._count(count)
             self._doubles(count)

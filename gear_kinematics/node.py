@@ -17,6 +17,7 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 from rclpy.clock import Clock, ClockType
+from rclpy.context import Context
 from rclpy.event_handler import (
     PublisherEventCallbacks,
     QoSOfferedIncompatibleQoSInfo,
@@ -30,11 +31,13 @@ from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import (
     DurabilityPolicy,
+    QoSPolicyKind,
     QoSProfile,
     ReliabilityPolicy,
     qos_policy_name_from_kind,
 )
 from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.subscription import Subscription
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
@@ -103,23 +106,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
-        # Best effort takes messages from reliable and from best-effort drivers alike.
-        subscription = self.create_subscription(
-            JointState,
-            'rotor_state',
-            self._on_rotor_state,
-            QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT),
-            raw=True,
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=SubscriptionEventCallbacks(
-                incompatible_qos=lambda event: self._on_incompatible_qos('rotor_state', event)
-            ),
-        )
+        self._subscription = self._listen()
         mechanism, joint = self._mechanism, self._value('rotor_joint')
         self.get_logger().info(
             f'gear ratio {mechanism.gear_ratio} (ring {mechanism.ring_teeth}, satellite '
             f'{mechanism.satellite_teeth} teeth), listening for '
-            f'{f"joint {joint!r}" if joint else "the only joint"} on {subscription.topic_name}'
+            f'{f"joint {joint!r}" if joint else "the only joint"} on {self._subscription.topic_name}'
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -152,6 +144,21 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             event_callbacks=PublisherEventCallbacks(
                 incompatible_qos=lambda event: self._on_incompatible_qos(topic, event)
             ),
+        )
+
+    def _listen(self) -> Subscription:
+        """Subscribe to the driver: reliably, unless there is a driver that only does best effort.
+
+        That is what best available means; it is decided when the subscription is made.
+        """
+        return self.create_subscription(
+            JointState,
+            'rotor_state',
+            self._on_rotor_state,
+            QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_AVAILABLE),
+            raw=True,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible_driver),
         )
 
     def _value(self, name: str) -> Any:
@@ -199,6 +206,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._next_warning = now + _WARNING_PERIOD
             self.get_logger().warning(text)
 
+    def _on_incompatible_driver(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
+        topic = self._subscription.topic_name
+        asked_for = self._value(f'qos_overrides.{topic}.subscription.reliability')
+        best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
+        if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
+            self.get_logger().info(f'a driver on {topic} is best effort: listening likewise')
+            self.destroy_subscription(self._subscription)
+            self._subscription = self._listen()
+        else:
+            self._on_incompatible_qos('rotor_state', event)
+
     def _on_incompatible_qos(
         self,
         topic: str,
@@ -240,13 +258,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._diagnostics.publish(message)
 
 
-def make_executor() -> Executor:
+def make_executor(context: Context | None = None) -> Executor:
     """The executor with the least latency that this rclpy has."""
     try:
         from rclpy.experimental.events_executor import EventsExecutor
     except ImportError:
-        return SingleThreadedExecutor()
-    return EventsExecutor()
+        return SingleThreadedExecutor(context=context)
+    return EventsExecutor(context=context)
 
 
 def main(args: list[str] | None = None) -> int:
@@ -278,3 +296,7 @@ def main(args: list[str] | None = None) -> int:
     node.destroy_node()
     rclpy.try_shutdown()
     return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

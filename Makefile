@@ -1,0 +1,53 @@
+.DEFAULT_GOAL := help
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP_INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
+LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
+	--no-emit-index-url --quiet --upgrade
+
+# A sourced ROS installation would be mixed with the wheels of the virtual environment.
+unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
+	_ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+.PHONY: help demo test lint types format lock clean
+
+help: ## Show this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
+
+demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and validate it
+	$(BIN)/gearkin demo
+
+test: lint types ## Run every check: ruff, mypy, pytest with coverage
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest
+	$(BIN)/coverage combine --quiet
+	$(BIN)/coverage report
+
+lint: $(VENV)/test.stamp ## Check style and format
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+
+types: $(VENV)/test.stamp ## Check types
+	$(BIN)/mypy
+
+format: $(VENV)/test.stamp ## Rewrite the sources in the house format
+	$(BIN)/ruff format
+	$(BIN)/ruff check --fix
+
+lock: ## Pin the newest versions (needs uv)
+	cd requirements && $(LOCK) --output-file demo.txt demo.in
+	cd requirements && $(LOCK) --constraint demo.txt --output-file test.txt test.in
+
+clean: ## Remove everything that was generated
+	rm -rf $(VENV) .coverage* .hypothesis .mypy_cache .pytest_cache .ruff_cache \
+		build dist install log *.egg-info
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
+		echo 'Python 3.11 or newer is needed: make PYTHON=python3.12' >&2; exit 1; }
+	test -x $(BIN)/pip || $(PYTHON) -m venv --clear $(VENV)
+	$(PIP_INSTALL) --require-hashes -r $<
+	$(PIP_INSTALL) --no-deps --no-build-isolation -e .
+	@touch $@

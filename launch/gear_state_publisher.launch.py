@@ -1,0 +1,56 @@
+"""Start the gear state publisher."""
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+
+def start_node(context: LaunchContext) -> list[Node]:
+    """Describe the node; a prefix that was not given leaves the configuration's own."""
+    parameters = [LaunchConfiguration('config')]
+    frame_prefix = LaunchConfiguration('frame_prefix')
+    if frame_prefix.perform(context):
+        # The type is stated, or a prefix like 1 would arrive as a number.
+        parameters.append({'frame_prefix': ParameterValue(frame_prefix, value_type=str)})
+    return [
+        Node(
+            package='gear_kinematics',
+            executable='gear_state_publisher',
+            namespace=LaunchConfiguration('namespace'),
+            parameters=parameters,
+            remappings=[('rotor_state', LaunchConfiguration('rotor_state'))],
+            output='screen',
+        )
+    ]
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Declare the arguments and start the node with them."""
+    share = FindPackageShare('gear_kinematics')
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument(
+                'namespace', default_value='', description='namespace of the node'
+            ),
+            DeclareLaunchArgument(
+                'config',
+                default_value=PathJoinSubstitution([share, 'config', 'actuator.yaml']),
+                description='parameter file of the node',
+            ),
+            DeclareLaunchArgument(
+                'frame_prefix',
+                default_value='',
+                description='put before every frame id and joint name; '
+                'if empty, the one of the parameter file holds',
+            ),
+            DeclareLaunchArgument(
+                'rotor_state',
+                default_value='rotor_state',
+                description='topic of the rotor joint states',
+            ),
+            OpaqueFunction(function=start_node),
+        ]
+    )

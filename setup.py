@@ -1,0 +1,54 @@
+"""Package metadata, and what goes into the install space."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = 'gear_kinematics'
+
+
+def shared(folder: str, pattern: str) -> list[tuple[str, list[str]]]:
+    """Send the matching files of a folder to the same folders below the package's share."""
+    files: dict[Path, list[str]] = {}
+    for path in sorted(Path(folder).rglob(pattern)):
+        if path.is_file():
+            files.setdefault(path.parent, []).append(path.as_posix())
+    return [(f'share/{PACKAGE}/{parent.as_posix()}', paths) for parent, paths in files.items()]
+
+
+setup(
+    name=PACKAGE,
+    version='0.1.0',
+    description=(
+        'Exact kinematics of an anti-backlash planetary servo actuator: rotor angle in, '
+        'output-shaft angle and satellite and Oldham coupling poses out'
+    ),
+    maintainer='gear_kinematics maintainers',
+    maintainer_email='maintainers@gear-kinematics.invalid',
+    license='Apache-2.0',
+    packages=find_packages(exclude=['test', 'test.*']),
+    package_data={PACKAGE: ['py.typed']},
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
+        (f'share/{PACKAGE}', ['package.xml']),
+        *shared('config', '*.yaml'),
+        *shared('launch', '*.launch.py'),
+        *shared('bags', '*'),
+    ],
+    python_requires='>=3.11',
+    install_requires=['numpy>=1.26', 'PyYAML', 'rosbags>=0.11', 'rich'],
+    extras_require={
+        # For machines without a ROS installation. A plain requirement would put a second ROS
+        # beside the distribution's own.
+        'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
+        # colcon test looks here to see that the package is tested with pytest.
+        'test': ['pytest'],
+    },
+    entry_points={
+        'console_scripts': [
+            f'gear_state_publisher = {PACKAGE}.node:main',
+            f'gearkin = {PACKAGE}.cli:main',
+        ],
+    },
+    zip_safe=False,
+)

@@ -1,0 +1,78 @@
+"""What every test needs: a ROS domain of its own, hypothesis profiles, mechanisms, shared data."""
+
+import os
+import socket
+
+
+def _free_domain() -> int:
+    """Find a ROS domain whose discovery port nobody on this machine has bound."""
+    # Sessions that start at the same moment begin their search at different domains.
+    candidates = [1 + (os.getpid() + k) % 101 for k in range(101)]
+    for domain in candidates:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            try:
+                probe.bind(('127.0.0.1', 7400 + 250 * domain))
+            except OSError:
+                continue
+            return domain
+    raise RuntimeError('every ROS domain from 1 to 101 is in use on this machine')
+
+
+# Before anything else is imported: middleware reads the environment once.
+os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+os.environ['ROS_DOMAIN_ID'] = str(_free_domain())
+
+import math  # noqa: E402, see above
+from collections.abc import Callable  # noqa: E402
+from pathlib import Path  # noqa: E402
+
+import hypothesis  # noqa: E402
+import pytest  # noqa: E402
+
+from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[1]
+SHARED = ROOT.parent / 'shared'
+
+hypothesis.settings.register_profile('default', deadline=None, max_examples=50)
+hypothesis.settings.register_profile(
+    'ci', parent=hypothesis.settings.get_profile('default'), derandomize=True
+)
+hypothesis.settings.load_profile('ci' if 'CI' in os.environ else 'default')
+
+
+@pytest.fixture(scope='session')
+def shared_path() -> Callable[[str], Path]:
+    """Give the path of recorded data beside the repository, or skip the test and say why."""
+
+    def find(relative: str) -> Path:
+        path = SHARED / relative
+        if not path.exists():
+            pytest.skip(f'no recorded data at {path}')
+        return path
+
+    return find
+
+
+@pytest.fixture(scope='session')
+def actuator() -> Mechanism:
+    """Return the mechanism of the default configuration."""
+    branches = (
+        Branch('a', axial_position=0.04),
+        Branch('b', cam_phase=math.pi, axial_position=-0.04),
+    )
+    return Mechanism(80, 76, 0.0011, branches)
+
+
+@pytest.fixture(
+    params=[(80, 76, 1), (80, 76, 2), (80, 78, 2), (61, 58, 3), (7, 2, 4), (2, 1, 1)],
+    ids=lambda numbers: '{}-{}-{}'.format(*numbers),
+)
+def mechanism(request) -> Mechanism:
+    """Return mechanisms with ring teeth, satellite teeth and branches, evenly spread cams."""
+    ring_teeth, satellite_teeth, count = request.param
+    branches = tuple(
+        Branch('abcd'[k], cam_phase=2.0 * math.pi * k / count, axial_position=0.04 - 0.03 * k)
+        for k in range(count)
+    )
+    return Mechanism(ring_teeth, satellite_teeth, 0.0011, branches)
