@@ -115,7 +115,7 @@ def faulty_driver(number: int, stamp: int, motion: Motion) -> list[bytes]:
     """Every fault of real drivers, each a few times."""
     position, velocity, effort = _readings(motion)
     good = _full.encode(stamp, position, velocity, effort)
-    if 400 <= number < 460 or 900 <= number < 1050:  # 0.12 s and 0.3 s of silence
+    if any(number in silence for silence in _SILENCES):
         return []
     match number % 100:
         case 10:
@@ -135,6 +135,7 @@ def faulty_driver(number: int, stamp: int, motion: Motion) -> list[bytes]:
     return [good]
 
 
+_SILENCES = range(400, 460), range(900, 1050)  # 0.12 s and 0.3 s
 _WRONG_JOINT = JointStateTemplate(['gripper'], velocity=True, effort=True)
 _NO_NUMBERS = JointStateTemplate(['rotor'], position=False, velocity=False, effort=False)
 

@@ -57,7 +57,7 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
     robot = ET.Element('robot', name=f'{frame_prefix}gear_kinematics')
 
     def link(name: str, radius: float, length: float) -> None:
-        _link(robot, frame_prefix + name, radius, length, _COLOURS[name.split('_')[0]])
+        _link(robot, frame_prefix + name, radius, length, _COLOURS[name.partition('_')[0]])
 
     def joint(kind: str, name: str, parent: str, child: str) -> ET.Element:
         element = ET.SubElement(robot, 'joint', name=frame_prefix + name, type=kind)

@@ -3,7 +3,6 @@
 import signal
 import sys
 import time
-from dataclasses import fields
 from types import FrameType
 from typing import Any
 
@@ -37,8 +36,8 @@ from rclpy.qos import (
     qos_policy_name_from_kind,
 )
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.subscription import Subscription
 from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -71,13 +70,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self.add_on_set_parameters_callback(self._check_parameters)
         for name, parameter in parameters.PARAMETERS.items():
             self._declare(name, parameter, parameters.defaults()[name])
-        of_branches = parameters.branch_parameters(self._value('branches'))
-        for name, (parameter, default) in of_branches.items():
+        branches = self._value('branches')
+        for name, (parameter, default) in parameters.branch_parameters(branches).items():
             self._declare(name, parameter, default)
-        self._mechanism = Mechanism.from_mapping(
-            {name: self._value(name) for name in (*parameters.PARAMETERS, *of_branches)}
-        )
-        self._input = RotorInput(self._input_settings())
+        self._mechanism = Mechanism.from_mapping(self._values())
+        self._input = RotorInput(InputSettings.from_mapping(self._values()))
         self._monitor = InputMonitor(started=time.monotonic())
         self._next_warning = 0.0
         self._description = String()
@@ -107,11 +104,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
         self._subscription = self._listen()
-        mechanism, joint = self._mechanism, self._value('rotor_joint')
+        joint = self._value('rotor_joint')
+        listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
-            f'gear ratio {mechanism.gear_ratio} (ring {mechanism.ring_teeth}, satellite '
-            f'{mechanism.satellite_teeth} teeth), listening for '
-            f'{f"joint {joint!r}" if joint else "the only joint"} on {self._subscription.topic_name}'
+            f'gear ratio {self._mechanism.gear_ratio} '
+            f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
+            f'teeth), listening for {listening_for} on {self._subscription.topic_name}'
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -158,11 +156,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_AVAILABLE),
             raw=True,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible_driver),
+            event_callbacks=SubscriptionEventCallbacks(
+                incompatible_qos=self._on_incompatible_driver
+            ),
         )
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
+
+    def _values(self) -> dict[str, Any]:
+        return {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse what types and ranges, which rclpy checks, cannot say."""
@@ -173,12 +176,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 return SetParametersResult(successful=False, reason=reason)
         return SetParametersResult(successful=True)
 
-    def _input_settings(self) -> InputSettings:
-        return InputSettings(**{field.name: self._value(field.name) for field in fields(InputSettings)})
-
     def _configure(self) -> None:
         """Take the parameters over; called again after every change."""
-        self._input.settings = self._input_settings()
+        self._input.settings = InputSettings.from_mapping(self._values())
         names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
         self._messages = StateMessages(self._mechanism, **names)
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
@@ -261,7 +261,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 def make_executor(context: Context | None = None) -> Executor:
     """The executor with the least latency that this rclpy has."""
     try:
-        from rclpy.experimental.events_executor import EventsExecutor
+        # Not in every release of Jazzy.
+        from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415
     except ImportError:
         return SingleThreadedExecutor(context=context)
     return EventsExecutor(context=context)

@@ -39,7 +39,11 @@ class Parameter:
             return f'{name} must be a list of strings, not {value!r}'
         if self.choices and value not in self.choices:
             return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
-        if isinstance(value, (int, float)) and self.minimum is not None and self.maximum is not None:
+        if (
+            isinstance(value, (int, float))
+            and self.minimum is not None
+            and self.maximum is not None
+        ):
             # Written so that NaN is out of range.
             inside = self.minimum <= value <= self.maximum
             if not inside or (self.step and (value - self.minimum) % self.step):

@@ -1,4 +1,4 @@
-"""The other end of the node: a driver that sends rotor states and a recorder of what comes back."""
+"""The other end of the node: a driver that sends rotor states, a recorder of the answers."""
 
 import subprocess
 import sys
@@ -19,6 +19,7 @@ from gear_kinematics.bag import BagMessage
 from gear_kinematics.node import make_executor
 
 _DEPTH = 2000  # messages
+_LISTENERS = 2  # on rotor_state: the node and our own recorder
 _MESSAGE_TYPES: Mapping[str, type] = {
     'rotor_state': JointState,
     'output_state': JointState,
@@ -87,10 +88,9 @@ class Replay:
         Raises:
             ReplayError: if they have not found each other after `timeout` s.
         """
-        # On rotor_state the node and our own recorder listen.
         self.wait_until(
             lambda: (
-                self._publisher.get_subscription_count() >= 2
+                self._publisher.get_subscription_count() >= _LISTENERS
                 and all(s.get_publisher_count() >= 1 for s in self._subscriptions)
             ),
             timeout,

@@ -2,9 +2,9 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple, Self
 
 from gear_kinematics.kinematics import RotorPosition, RotorTurns
 from gear_kinematics.messages import JointState, MalformedMessageError, decode_joint_state
@@ -27,6 +27,21 @@ class InputSettings:
     rotor_encoder: str
     max_rotor_speed: float
     max_rotor_acceleration: float
+
+    @classmethod
+    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
+        """Pick them from the parameters of the node, by name."""
+        return cls(**{field.name: parameters[field.name] for field in fields(cls)})
+
+    @property
+    def encoder(self) -> tuple[str, str]:
+        """What tells one encoder from another: its joint and its kind."""
+        return self.rotor_joint, self.rotor_encoder
+
+    @property
+    def single_turn(self) -> bool:
+        """Whether the position wraps once a turn."""
+        return self.rotor_encoder == 'single_turn'
 
 
 class RotorSample(NamedTuple):
@@ -52,26 +67,26 @@ class RotorInput:
         self.zero_stamps = 0
         self.resets = 0
         self.last: RotorSample | None = None
-        self.settings = settings
+        self._settings = settings
+        self._turns = RotorTurns(
+            single_turn=settings.single_turn,
+            max_speed=settings.max_rotor_speed,
+            max_acceleration=settings.max_rotor_acceleration,
+        )
 
     @property
     def settings(self) -> InputSettings:
-        """How the encoder is read; set it at any time. A change of encoder starts anew."""
+        """How the encoder is read; set it at any time. For another encoder it starts anew."""
         return self._settings
 
     @settings.setter
     def settings(self, settings: InputSettings) -> None:
-        single_turn = settings.rotor_encoder == 'single_turn'
-        if not hasattr(self, '_turns') or self._turns.single_turn != single_turn:
-            self._turns = RotorTurns(
-                single_turn=single_turn,
-                max_speed=settings.max_rotor_speed,
-                max_acceleration=settings.max_rotor_acceleration,
-            )
         self._turns.max_speed = settings.max_rotor_speed
         self._turns.max_acceleration = settings.max_rotor_acceleration
+        if settings.encoder != self._settings.encoder:
+            self._turns.single_turn = settings.single_turn
+            self._turns.reset()
         self._settings = settings
-        self._joint = settings.rotor_joint.encode()
 
     @property
     def referenced(self) -> bool:
@@ -133,9 +148,10 @@ class RotorInput:
         return self.last
 
     def _index(self, message: JointState) -> int:
-        if self._joint:
+        joint = self._settings.rotor_joint
+        if joint:
             try:
-                return message.names.index(self._joint)
+                return message.names.index(joint.encode())
             except ValueError:
                 raise RejectedInputError('joint missing') from None
         if len(message.names) != 1:

@@ -57,9 +57,7 @@ class Derivatives(NamedTuple):
     second: Expected
 
 
-def rotor_angle_of(
-    position: float, zero: float = 0.0, direction: int = 1, turns: int = 0
-) -> Real:
+def rotor_angle_of(position: float, zero: float = 0.0, direction: int = 1, turns: int = 0) -> Real:
     """Give the exact rotor angle of an encoder `position` beyond a count of whole turns."""
     return direction * (mp.mpf(position) + 2 * mp.pi * turns - mp.mpf(zero))
 

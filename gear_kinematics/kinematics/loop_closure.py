@@ -26,13 +26,16 @@ def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -
     """
     chain = frames(mechanism, rotor_angle, state.satellite_slide, state.arm_slide)
     by_satellite = chain.oldham_to_stator[..., :3, 3]
-    by_arm = apply(chain.output_to_stator[..., np.newaxis, :, :], chain.oldham_to_output[..., :3, 3])
+    by_arm = apply(
+        chain.output_to_stator[..., np.newaxis, :, :], chain.oldham_to_output[..., :3, 3]
+    )
     gaps = (
         (by_satellite - by_arm)[..., :2],
         by_satellite[..., :2] - state.oldham_centre,
         chain.satellite_to_stator[..., :2, 3] - state.satellite_centre,
     )
-    return np.max([np.hypot(gap[..., 0], gap[..., 1]) for gap in gaps], axis=0)
+    distances = [np.hypot(gap[..., 0], gap[..., 1]) for gap in gaps]
+    return np.asarray(np.max(distances, axis=0))
 
 
 def mobility_by_counting(mechanism: Mechanism) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.mechanism import Mechanism
-from gear_kinematics.kinematics.motion import MotionState, motion_state
+from gear_kinematics.kinematics.motion import MotionState
 from gear_kinematics.kinematics.transforms import (
     cam_translation,
     output_turn,
@@ -77,13 +77,13 @@ def solve(
     oldham = output_to_stator.column(_Y) @ slides.row(1)  # eq. (14)
     slide, arm_slide = np.moveaxis(slides.vectors()[:2], -1, 0)
     turn = 2.0 * np.pi
-    return motion_state(
-        np.stack(output),
-        output[0] - turn * np.rint(output[0] / turn),
-        satellite.vectors(),
-        oldham.vectors(),
-        slide,
-        arm_slide,
+    return MotionState.from_orders(
+        output=np.stack(output),
+        output_turn_angle=output[0] - turn * np.rint(output[0] / turn),
+        satellite=satellite.vectors(),
+        oldham=oldham.vectors(),
+        satellite_slide=slide,
+        arm_slide=arm_slide,
     )
 
 
@@ -96,17 +96,15 @@ def _rotation(angle: Array, rate: Array, acceleration: Array) -> _Jet:
 
 
 def _slides(satellite_x: _Jet, arm_y: _Jet, satellite: _Jet) -> _Jet:
-    """Solve the linear system of eq. (17), and it differentiated, for (x, y): (..., 2, 1)."""
-    matrix = _Jet(
-        *(np.concatenate([x, -y], axis=-1) for x, y in _broadcast_pairs(satellite_x, arm_y))
-    )
-    value = np.linalg.solve(matrix.value, -satellite.value)
-    first = np.linalg.solve(matrix.value, -satellite.first - matrix.first @ value)
-    second = np.linalg.solve(
-        matrix.value, -satellite.second - 2.0 * matrix.first @ first - matrix.second @ value
+    """Solve the linear system of eq. (17), and it differentiated, for (x, y): (..., 2, 1).
+
+    Its matrix is symmetric and orthogonal, so that it is its own inverse, eq. (18).
+    """
+    pairs = (np.broadcast_arrays(x, -y) for x, y in zip(satellite_x, arm_y, strict=True))
+    matrix = _Jet(*(np.concatenate(pair, axis=-1) for pair in pairs))
+    value = matrix.value @ -satellite.value
+    first = matrix.value @ (-satellite.first - matrix.first @ value)
+    second = matrix.value @ (
+        -satellite.second - 2.0 * matrix.first @ first - matrix.second @ value
     )
     return _Jet(value, first, second)
-
-
-def _broadcast_pairs(left: _Jet, right: _Jet) -> list[tuple[Array, ...]]:
-    return [tuple(np.broadcast_arrays(a, b)) for a, b in zip(left, right, strict=True)]

@@ -2,12 +2,15 @@
 
 import math
 import operator
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, Self
 
 from gear_kinematics.kinematics.errors import MechanismError
+
+_BRANCH_NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +88,9 @@ class Mechanism:
             tuple(
                 Branch(
                     name,
-                    **{f: parameters[f'{name}.{f}'] for f in fields if f'{name}.{f}' in parameters},
+                    **{
+                        f: parameters[f'{name}.{f}'] for f in fields if f'{name}.{f}' in parameters
+                    },
                 )
                 for name in names
             ),
@@ -158,9 +163,8 @@ def _branches(branches: object, faults: list[str]) -> tuple[Branch, ...]:
         if not isinstance(branch, Branch):
             faults.append(f'branches must be of type Branch, not {branch!r}')
             continue
-        name = branch.name
-        if not (isinstance(name, str) and name.isascii() and name.isidentifier()
-                and name[0].isalpha()):
+        name: object = branch.name
+        if not (isinstance(name, str) and _BRANCH_NAME.fullmatch(name)):
             faults.append(
                 f'a branch name is a letter, then letters, digits or underscores, not {name!r}'
             )

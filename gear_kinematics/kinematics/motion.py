@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -65,14 +65,34 @@ class MotionState:
             array.flags.writeable = False
             object.__setattr__(self, field.name, array)
 
-
-def motion_state(
-    output: Array, turn_angle: Array, satellite: Array, oldham: Array, slide: Array, arm_slide: Array
-) -> MotionState:
-    """Gather a state from arrays whose first axis is the order of the derivative."""
-    return MotionState(
-        *output, turn_angle, *satellite, *oldham, *slide, *arm_slide
-    )
+    @classmethod
+    def from_orders(
+        cls,
+        *,
+        output: Array,
+        output_turn_angle: Array,
+        satellite: Array,
+        oldham: Array,
+        satellite_slide: Array,
+        arm_slide: Array,
+    ) -> Self:
+        """Gather a state from arrays whose first axis is the order of the derivative."""
+        return cls(
+            output_angle=output[0],
+            output_velocity=output[1],
+            output_acceleration=output[2],
+            output_turn_angle=output_turn_angle,
+            satellite_centre=satellite[0],
+            satellite_velocity=satellite[1],
+            satellite_acceleration=satellite[2],
+            oldham_centre=oldham[0],
+            oldham_velocity=oldham[1],
+            oldham_acceleration=oldham[2],
+            satellite_slide=satellite_slide[0],
+            satellite_slide_velocity=satellite_slide[1],
+            arm_slide=arm_slide[0],
+            arm_slide_velocity=arm_slide[1],
+        )
 
 
 class BranchPosition(NamedTuple):
@@ -103,7 +123,9 @@ class ClosedForm:
         ratio = -1 / mechanism.gear_ratio
         self._p, self._q = ratio.numerator, ratio.denominator
         self._eccentricity = mechanism.eccentricity
-        self._cams = tuple((math.cos(b.cam_phase), math.sin(b.cam_phase)) for b in mechanism.branches)
+        self._cams = tuple(
+            (math.cos(b.cam_phase), math.sin(b.cam_phase)) for b in mechanism.branches
+        )
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
         self._kappa = -2.0 * float(ratio) - 1.0
 
@@ -244,11 +266,11 @@ def solve(
 
     vectors = (3, *shape, branches, 2)
     slides = (2, *shape, branches)
-    return motion_state(
-        output.reshape(3, *shape),
-        turn_angle.reshape(shape),
-        satellite.reshape(vectors),
-        oldham.reshape(vectors),
-        slide.reshape(slides),
-        arm_slide.reshape(slides),
+    return MotionState.from_orders(
+        output=output.reshape(3, *shape),
+        output_turn_angle=turn_angle.reshape(shape),
+        satellite=satellite.reshape(vectors),
+        oldham=oldham.reshape(vectors),
+        satellite_slide=slide.reshape(slides),
+        arm_slide=arm_slide.reshape(slides),
     )

@@ -6,7 +6,8 @@ the positions of the bodies repeat with the turns of the rotor.
 """
 
 import math
-from typing import NamedTuple, overload
+from types import ModuleType
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,26 +28,22 @@ class RotorPosition(NamedTuple):
 def split_turns(angle: float) -> RotorPosition: ...
 @overload
 def split_turns(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
-def split_turns(angle):  # type: ignore[no-untyped-def]  # typed by its overloads
+def split_turns(angle: Any) -> Any:
     """Split an angle into the nearest whole turns and the rest in [-π, π], both exact.
 
     Exact means: of 2π itself, not of its float64, up to 2^52 turns; the rest is rounded once.
 
     Args:
-        angle: rad; a float, or an array of any shape.
+        angle: rad; a finite float, or an array of any shape.
 
     Returns:
         Turns (an int; for arrays whole numbers as float64) and the rest in rad.
     """
-    if isinstance(angle, np.ndarray):
-        rest = np.fmod(angle, TURN)
-        rest -= TURN * np.rint(rest / TURN)
-        turns = np.rint((angle - rest) / TURN)
-    else:
-        rest = math.remainder(angle, TURN)
-        turns = round((angle - rest) / TURN)
-    rest -= turns * _TURN_TAIL
-    return RotorPosition(turns, rest)
+    xp: ModuleType = np if isinstance(angle, np.ndarray) else math
+    rest = xp.fmod(angle, TURN)  # exact, and so is taking off one turn more
+    rest = rest - TURN * xp.floor(rest / TURN + 0.5)
+    turns = xp.floor((angle - rest) / TURN + 0.5)
+    return RotorPosition(turns, rest - turns * _TURN_TAIL)
 
 
 class RotorTurns:
@@ -59,9 +56,7 @@ class RotorTurns:
     goes on from the nearest turn.
     """
 
-    def __init__(
-        self, *, single_turn: bool, max_speed: float, max_acceleration: float
-    ) -> None:
+    def __init__(self, *, single_turn: bool, max_speed: float, max_acceleration: float) -> None:
         """Start with no position.
 
         Args:
@@ -91,14 +86,11 @@ class RotorTurns:
             velocity: rad/s, or None where it is not known.
         """
         turns, angle = split_turns(position)
-        if self.single_turn:
-            turns = 0
-            if self.position is not None:
-                expected, known = self._expected_turn((stamp - self._stamp) * 1e-9, velocity)
-                self.referenced = self.referenced and known
-                apparent = angle - self.position.angle
-                turns = self.position.turns + round((expected - apparent) / TURN)
-            position = angle
+        if self.single_turn and self.position is not None:
+            expected, known = self._expected_turn((stamp - self._stamp) * 1e-9, velocity)
+            self.referenced = self.referenced and known
+            apparent = angle - self.position.angle
+            turns = self.position.turns + round((expected - apparent) / TURN)
         self.position = RotorPosition(turns, angle)
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
@@ -141,9 +133,9 @@ class RotorTurns:
         Raises:
             RuntimeError: before the first update.
         """
-        _, angle = self._known_position()
-        if self.single_turn:
-            self.position = RotorPosition(0, angle)
+        self._known_position()
+        # The turns that a single-turn encoder has made so far do not matter any more.
+        self.position = split_turns(self._reading)
         self.referenced = True
         return self._reading - direction * rotor_angle
 

@@ -38,7 +38,8 @@ def apply(transform: Array, point: ArrayLike) -> Array:
     """Coordinates of `point` (..., 3) after the transform (..., 4, 4), eq. (4)."""
     point = np.asarray(point, dtype=np.float64)
     extended = np.concatenate([point, np.ones((*point.shape[:-1], 1))], axis=-1)
-    return np.einsum('...ij,...j->...i', transform, extended)[..., :3]
+    moved: Array = np.einsum('...ij,...j->...i', transform, extended)
+    return moved[..., :3]
 
 
 def cam_translation(mechanism: Mechanism) -> Array:
@@ -51,13 +52,15 @@ def cam_translation(mechanism: Mechanism) -> Array:
 
 def satellite_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
     """φ3_2 = φ5 - φ2: the turn of the satellites on their cams (eqs. 5 and 6), (...), rad."""
+    rotor_angle = np.asarray(rotor_angle, dtype=np.float64)
     return output_turn(mechanism, rotor_angle) - rotor_angle
 
 
 def output_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
     """φ5 = φ2/i (eq. 5), (...), rad."""
     ratio = mechanism.gear_ratio
-    return np.asarray(rotor_angle, dtype=np.float64) * ratio.denominator / ratio.numerator
+    angle: Array = np.asarray(rotor_angle, dtype=np.float64)
+    return angle * ratio.denominator / ratio.numerator
 
 
 @dataclass(frozen=True, eq=False, slots=True)

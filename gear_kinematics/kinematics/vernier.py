@@ -68,7 +68,7 @@ def _setting(ring_teeth: int, position: int) -> PinSetting:
     """Solve tooth/zk + ring_hole/(zk+1) + chassis_hole/(zk+2) ≡ position/lcm (mod 1).
 
     Modulo zk + 1 only the ring hole remains. What is left over is a multiple of zk + 1 and splits
-    between tooth and chassis hole, because zk/2 and zk/2 + 1 (or zk and zk + 2) differ by 1 (by 2).
+    between tooth and chassis hole: zk/2 and zk/2 + 1 differ by 1, zk and zk + 2 by 2.
     """
     holes_ring, holes_chassis = ring_teeth + 1, ring_teeth + 2
     lcm = distinct_positions(ring_teeth)

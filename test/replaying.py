@@ -1,0 +1,132 @@
+"""What a recorded rotor topic calls for, worked out from the contract alone, at 50 digits.
+
+Nothing of `gear_kinematics` is imported here: messages are decoded by rosbags, expected values
+come from the oracle's matrix products.
+"""
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import oracle
+from rosbags.typesys import Stores, get_typestore
+
+TYPESTORE = get_typestore(Stores.ROS2_JAZZY)
+ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
+RATIO = -19
+BOUND = 1e-12
+"""rad, and of positions in units of the eccentricity."""
+SECOND = 1_000_000_000
+
+
+class Sample(NamedTuple):
+    """A rotor message that calls for an output."""
+
+    stamp: int
+    position: float
+    turns: int
+    """Counted by a single-turn encoder."""
+    velocity: float | None
+    effort: float | None
+
+
+def decode(data: bytes, kind: str):
+    return TYPESTORE.deserialize_cdr(data, kind)
+
+
+def stamp_of(message) -> int:
+    return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
+
+
+def valid_samples(
+    messages: list[bytes], *, joint: str = 'rotor', single_turn: bool = False
+) -> tuple[list[Sample], Counter[str]]:
+    """Apply the contract's table of bad input; also count what it rejects."""
+    samples: list[Sample] = []
+    rejected: Counter[str] = Counter()
+    turns = 0
+    for data in messages:
+        message = decode(data, 'sensor_msgs/msg/JointState')
+        if joint not in message.name:
+            rejected['joint missing'] += 1
+            continue
+        index = message.name.index(joint)
+        if index >= len(message.position):
+            rejected['position missing'] += 1
+            continue
+        position = float(message.position[index])
+        if not math.isfinite(position):
+            rejected['position not finite'] += 1
+            continue
+        stamp = stamp_of(message)
+        if samples and 0 < samples[-1].stamp - stamp <= SECOND:
+            rejected['out of order'] += 1
+            continue
+        if single_turn and samples:
+            turns -= round((position - samples[-1].position) / math.tau)
+        fields = (
+            float(values[index]) if index < len(values) and math.isfinite(values[index]) else None
+            for values in (message.velocity, message.effort)
+        )
+        samples.append(Sample(stamp, position, turns, *fields))
+    return samples, rejected
+
+
+@cache
+def expected_motion(position: float, turns: int) -> oracle.Expected:
+    return oracle.expected_motion(ACTUATOR, oracle.rotor_angle_of(position, turns=turns))
+
+
+@dataclass
+class Worst:
+    """The greatest errors found; NaN counts as the greatest."""
+
+    angle: float = 0.0
+    position: float = 0.0
+
+    def add_angle(self, error: float) -> None:
+        self.angle = max(self.angle, math.inf if math.isnan(error) else error)
+
+    def add_position(self, error: float) -> None:
+        self.position = max(self.position, math.inf if math.isnan(error) else error)
+
+
+def compare_messages(samples: list[Sample], states: list[bytes], poses: list[bytes]) -> Worst:
+    """Compare every output message with its sample, in order and by stamp; nothing may miss."""
+    worst = Worst()
+    assert len(states) == len(samples)
+    assert len(poses) == len(samples)
+    for sample, state_data, poses_data in zip(samples, states, poses, strict=True):
+        expected = expected_motion(sample.position, sample.turns)
+        state = decode(state_data, 'sensor_msgs/msg/JointState')
+        assert stamp_of(state) == sample.stamp
+        assert state.name == ['output_shaft']
+        assert len(state.position) == 1
+        worst.add_angle(oracle.angle_error(state.position[0], expected.output_angle))
+        for values, given, factor in (
+            (state.velocity, sample.velocity, 1.0 / RATIO),
+            (state.effort, sample.effort, RATIO),
+        ):
+            wanted = [] if given is None else [given * factor]
+            assert len(values) == len(wanted)
+            for value, want in zip(values, wanted, strict=True):
+                assert math.isclose(value, want, rel_tol=1e-15, abs_tol=0.0)
+
+        array = decode(poses_data, 'geometry_msgs/msg/PoseArray')
+        assert stamp_of(array) == sample.stamp
+        assert array.header.frame_id == 'stator'
+        centres = [b.satellite_centre for b in expected.branches]
+        centres += [b.oldham_centre for b in expected.branches]
+        assert len(array.poses) == len(centres)
+        for pose, centre in zip(array.poses, centres, strict=True):
+            point, q = pose.position, pose.orientation
+            worst.add_position(
+                oracle.point_error((point.x, point.y, point.z), centre, ACTUATOR.eccentricity)
+            )
+            assert (q.x, q.y) == (0.0, 0.0)
+            assert math.isclose(math.hypot(q.z, q.w), 1.0, rel_tol=1e-15)
+            angle = oracle.mp.atan2(oracle.mp.mpf(q.z), oracle.mp.mpf(q.w)) * 2
+            worst.add_angle(oracle.turn_angle_error(angle, expected.output_angle))
+    return worst
