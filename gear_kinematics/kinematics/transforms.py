@@ -60,7 +60,8 @@ def output_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
     """φ5 = φ2/i (eq. 5), (...), rad."""
     ratio = mechanism.gear_ratio
     angle: Array = np.asarray(rotor_angle, dtype=np.float64)
-    return angle * ratio.denominator / ratio.numerator
+    turn: Array = angle * ratio.denominator / ratio.numerator
+    return turn
 
 
 @dataclass(frozen=True, eq=False, slots=True)
