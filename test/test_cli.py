@@ -1,0 +1,105 @@
+"""The program gearkin as a user runs it: output, exit codes, one clear line on bad input."""
+
+import json
+import subprocess
+import sys
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from gear_kinematics.cli import main
+
+GEARKIN = 'import sys; from gear_kinematics.cli import main; sys.exit(main())'
+
+
+def run(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, '-c', code, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_demo_plays_the_shipped_bag_through_the_live_node_and_agrees():
+    done = run(GEARKIN, 'demo')
+    assert done.returncode == 0, done.stderr
+    assert 'All agree' in done.stdout
+    assert '3000 rotor states in, 0 rejected' in done.stdout
+    for topic in ('/output_state', '/body_poses'):
+        (row,) = (line for line in done.stdout.splitlines() if topic in line)
+        cells = [cell.strip() for cell in row.strip('│').split('│')]
+        assert cells[1:3] == ['3000', '0']
+    assert 'Traceback' not in done.stderr
+
+
+def test_describe_tells_the_numbers_of_the_specification(capsys):
+    assert main(['describe', '--json']) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts == {
+        'ring_teeth': 80,
+        'satellite_teeth': 76,
+        'eccentricity': 0.0011,
+        'branches': ['a', 'b'],
+        'gear_ratio': '-19',
+        'mobility_by_counting': 0,
+        'mobility_by_rank': 1,
+        'redundant_constraints': 1,
+        'ring_rolling_radius': pytest.approx(0.022),
+        'satellite_rolling_radius': pytest.approx(0.0209),
+        'oldham_petals': 40,
+        'vernier_combinations': 531_360,
+        'vernier_distinct_positions': 265_680,
+        'vernier_step': pytest.approx(2.36494e-5, rel=1e-5),
+    }
+
+
+def test_describe_takes_another_tooth_pair(capsys):
+    arguments = ['--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.002']
+    assert main(['describe', *arguments]) == 0
+    lines = {line.strip().split('  ')[0]: line for line in capsys.readouterr().out.splitlines()}
+    assert '-58/3' in lines['gear ratio']
+    assert '61' in lines['oldham petals']
+    assert '0.002' in lines['eccentricity']
+
+
+def test_urdf_is_written_for_a_given_configuration(capsys, tmp_path):
+    config = tmp_path / 'my.yaml'
+    config.write_text("/**:\n  ros__parameters:\n    frame_prefix: 'left_'\n")
+    assert main(['urdf', '--config', str(config)]) == 0
+    robot = ET.fromstring(capsys.readouterr().out)  # noqa: S314, our own
+    assert 'left_output_shaft' in {link.get('name') for link in robot.iter('link')}
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        (['describe', '--satellite-teeth', '80'], 'satellite_teeth (80) must be less than'),
+        (['describe', '--eccentricity', 'nan'], 'eccentricity must be finite'),
+        (['describe', '--config', 'missing.yaml'], 'missing.yaml'),
+        (['urdf', '--config', 'missing.yaml'], 'missing.yaml'),
+    ],
+)
+def test_unusable_input_gets_one_clear_line_and_code_2(arguments, cause, capsys):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.count('\n') == 1
+    assert cause in captured.err
+
+
+@pytest.mark.parametrize('arguments', [[], ['unknown'], ['describe', '--ring-teeth', 'many']])
+def test_unusable_arguments_get_code_2(arguments, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+    assert exit_.value.code == 2
+    assert 'gearkin' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('command', ['', 'demo', 'describe', 'urdf'])
+def test_help_is_everywhere(command, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main([*command.split(), '--help'])
+    assert exit_.value.code == 0
+    assert 'usage: gearkin' in capsys.readouterr().out
+
+
+def test_only_the_demo_needs_ros():
+    done = run(f'import sys; sys.modules["rclpy"] = None; {GEARKIN}', 'describe')
+    assert done.returncode == 0, done.stderr
