@@ -55,6 +55,7 @@ class _Jet(NamedTuple):
         return np.stack(self)[..., 0]
 
 
+@np.errstate(invalid='ignore')  # what is not finite gives NaN
 def solve(
     mechanism: Mechanism,
     rotor_angle: ArrayLike,

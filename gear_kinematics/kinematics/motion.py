@@ -134,11 +134,13 @@ class ClosedForm:
 
         Of the whole turns only their remainder by q counts within the turn, so nothing cancels.
         """
-        step = turns % self._q * self._p % self._q
-        step = step - self._q * (2 * step > self._q)
-        rest = -(TURN * step + self._p * angle) / self._q
+        p, q = self._p, self._q
+        cycles, part = turns // q, turns % q
+        step = part * p % q
+        step = step - q * (2 * step > q)
+        rest = -(TURN * step + p * angle) / q
         wraps = xp.floor(rest / TURN + 0.5)
-        return wraps - (turns * self._p - step) // self._q, rest - TURN * wraps
+        return wraps - (cycles * p + (part * p - step) // q), rest - TURN * wraps
 
     def output_rate(self, rotor_rate: Any) -> Any:
         """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
@@ -213,6 +215,7 @@ def closed_form(mechanism: Mechanism) -> ClosedForm:
 _CHUNK = 8192  # samples: what a chunk needs stays in the processor's cache
 
 
+@np.errstate(invalid='ignore')  # what is not finite gives NaN
 def solve(
     mechanism: Mechanism,
     rotor_angle: ArrayLike,
@@ -242,27 +245,26 @@ def solve(
     output, turn_angle = np.zeros((3, angle.size)), np.zeros(angle.size)
     satellite, oldham = np.zeros((2, 3, angle.size, branches, 2))
     slide, arm_slide = np.zeros((2, 2, angle.size, branches))
-    with np.errstate(invalid='ignore'):
-        for start in range(0, angle.size, _CHUNK):
-            part = slice(start, start + _CHUNK)
-            w, a = velocity[part], acceleration[part]
-            own_turns, rest = split_turns(angle[part])
-            output_turns, output_rest = form.output_angle(turns[part] + own_turns, rest, np)
-            turn_angle[part] = output_rest
-            output[0, part] = TURN * output_turns + output_rest
+    for start in range(0, angle.size, _CHUNK):
+        part = slice(start, start + _CHUNK)
+        w, a = velocity[part], acceleration[part]
+        own_turns, rest = split_turns(angle[part])
+        output_turns, output_rest = form.output_angle(turns[part] + own_turns, rest, np)
+        turn_angle[part] = output_rest
+        output[0, part] = TURN * output_turns + output_rest
+        if moving:
+            output[1, part], output[2, part] = form.output_rate(w), form.output_rate(a)
+        for k, position in enumerate(form.branches(rest, output_rest, np)):
+            centres = [position[:4]]
+            slide[0, part, k], arm_slide[0, part, k] = position[4:]
             if moving:
-                output[1, part], output[2, part] = form.output_rate(w), form.output_rate(a)
-            for k, position in enumerate(form.branches(rest, output_rest, np)):
-                centres = [position[:4]]
-                slide[0, part, k], arm_slide[0, part, k] = position[4:]
-                if moving:
-                    centres += [form.velocity(position, w), form.acceleration(position, w, a)]
-                    slide[1, part, k], arm_slide[1, part, k] = form.slide_velocities(position, w)
-                for order, (satellite_x, satellite_y, oldham_x, oldham_y) in enumerate(centres):
-                    satellite[order, part, k, 0] = satellite_x
-                    satellite[order, part, k, 1] = satellite_y
-                    oldham[order, part, k, 0] = oldham_x
-                    oldham[order, part, k, 1] = oldham_y
+                centres += [form.velocity(position, w), form.acceleration(position, w, a)]
+                slide[1, part, k], arm_slide[1, part, k] = form.slide_velocities(position, w)
+            for order, (satellite_x, satellite_y, oldham_x, oldham_y) in enumerate(centres):
+                satellite[order, part, k, 0] = satellite_x
+                satellite[order, part, k, 1] = satellite_y
+                oldham[order, part, k, 0] = oldham_x
+                oldham[order, part, k, 1] = oldham_y
 
     vectors = (3, *shape, branches, 2)
     slides = (2, *shape, branches)

@@ -101,17 +101,15 @@ class RotorTurns:
         the speeds v0 and v1 at both ends narrow it: with accelerations of at most A, the angle is
         (v0 + v1)/2·elapsed ± (A·elapsed²/4 - (v1 - v0)²/(4 A)).
         """
-        low, high = -self.max_speed * elapsed, self.max_speed * elapsed
-        if high >= math.pi and velocity is not None and self._velocity is not None:
+        reach = self.max_speed * elapsed
+        low, high = -reach, reach
+        if reach >= math.pi and velocity is not None and self._velocity is not None:
             change = velocity - self._velocity
             middle = 0.5 * (velocity + self._velocity) * elapsed
             spread = self.max_acceleration * elapsed**2 / 4.0
             spread -= change**2 / (4.0 * self.max_acceleration)
-            spread = max(spread, 0.0)
-            # Speeds beyond max_speed would empty the range: the nearest angle in it remains.
-            low, high = (
-                min(max(bound, low), high) for bound in (middle - spread, middle + spread)
-            )
+            if spread >= 0.0 and abs(middle) <= reach:  # else the limits or the speeds are wrong
+                low, high = max(low, middle - spread), min(high, middle + spread)
         return 0.5 * (low + high), high - low < TURN
 
     def relative_to(self, zero: float, direction: int) -> RotorPosition:
