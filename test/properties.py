@@ -64,10 +64,15 @@ def largest(errors) -> float:
 
 
 def assert_close(actual, expected, tolerance) -> None:
-    """Compare arrays of the same shape within an absolute tolerance; what is NaN is not close."""
+    """Compare arrays of the same shape within an absolute tolerance; what is NaN is not close.
+
+    Numbers below 1e-300 are all the same here: products of such have lost their bits.
+    """
     assert np.shape(actual) == np.shape(expected)
     error = np.abs(np.subtract(actual, expected))
-    assert np.all(error <= tolerance), f'{largest(error)} is more than {np.max(tolerance)}'
+    assert np.all(error <= np.maximum(tolerance, 1e-300)), (
+        f'{largest(error)} is more than {np.max(tolerance)}'
+    )
 
 
 def assert_same(actual, expected) -> None:

@@ -52,8 +52,8 @@ def cam_translation(mechanism: Mechanism) -> Array:
 
 def satellite_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
     """φ3_2 = φ5 - φ2: the turn of the satellites on their cams (eqs. 5 and 6), (...), rad."""
-    rotor_angle = np.asarray(rotor_angle, dtype=np.float64)
-    return output_turn(mechanism, rotor_angle) - rotor_angle
+    angle: Array = np.asarray(rotor_angle, dtype=np.float64)
+    return output_turn(mechanism, angle) - angle
 
 
 def output_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
