@@ -1,0 +1,161 @@
+"""What a validation found out about a bag: plain data, without ROS, bags or numpy.
+
+Stamps are ns, times in s, angles in rad, lengths in m.
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+
+class Verdict(StrEnum):
+    """The outcome for a bag, from best to worst."""
+
+    PASS = 'pass'  # noqa: S105, no password
+    FAIL = 'fail'
+    UNUSABLE = 'unusable'
+
+
+@dataclass(frozen=True, slots=True)
+class FieldReport:
+    """One field of an output topic, sample by sample against the recomputed one."""
+
+    name: str
+    """Such as `position` of output_state, or `orientation` of body_poses."""
+    unit: str
+    tolerance: float
+    """Greatest error that passes, in `unit`."""
+    compared: int = 0
+    """Samples with a recorded and a recomputed value."""
+    non_finite: int = 0
+    """Samples whose recorded value is NaN or infinite; they are failures."""
+    absent: int = 0
+    """Samples that lack the field though the input has it, or the other way round."""
+    max_error: float = 0.0
+    rms_error: float = 0.0
+    worst_stamp: int | None = None
+    """Of the sample with `max_error`."""
+    worst_rotor_angle: float | None = None
+
+    @property
+    def budget_used(self) -> float:
+        """Share of the tolerance that the greatest error takes."""
+        return self.max_error / self.tolerance
+
+    @property
+    def passed(self) -> bool:
+        """Whether every sample is within the tolerance."""
+        return self.max_error <= self.tolerance and not self.non_finite and not self.absent
+
+
+@dataclass(frozen=True, slots=True)
+class TopicReport:
+    """One output topic, matched with the input by header stamp."""
+
+    topic: str
+    messages: int
+    compared: int
+    """Messages matched with an input."""
+    missing: int
+    """Inputs that call for a message that is not there."""
+    extra: int
+    """Messages that no input calls for."""
+    duplicates: int
+    """Messages with the stamp of the one before; no failure where the input has them too."""
+    out_of_order: int
+    """Messages with a stamp before that of the one before, unless the input starts anew there."""
+    fields: tuple[FieldReport, ...]
+    first_missing: int | None = None
+    """Stamp of the first input without a message."""
+    first_extra: int | None = None
+    """Stamp of the first message without an input."""
+    faults: tuple[str, ...] = ()
+    """What else is wrong, each with how often and where first: frame ids, names, layouts."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing is missing, too many, out of order or beyond its tolerance."""
+        complete = not (self.missing or self.extra or self.out_of_order or self.faults)
+        return self.compared > 0 and complete and all(field.passed for field in self.fields)
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """A silence of the rotor topic, or a jump of its position."""
+
+    stamp: int
+    """Of the sample after it."""
+    seconds: float
+    turned: float
+    """rad, between the samples before and after it."""
+
+
+@dataclass(frozen=True, slots=True)
+class InputReport:
+    """The rotor topic: what was in it, and how healthy it is."""
+
+    topic: str
+    joint: str
+    messages: int = 0
+    valid: int = 0
+    rejected: dict[str, int] = field(default_factory=dict)
+    """By cause."""
+    duplicates: int = 0
+    zero_stamps: int = 0
+    resets: int = 0
+    rate: float = 0.0
+    """Hz, from the median period."""
+    duration: float = 0.0
+    """s, from the first to the last stamp."""
+    gaps: int = 0
+    """Silences longer than 5 median periods."""
+    jumps: int = 0
+    """Gaps in which the rotor could have turned half a turn or more unseen."""
+    overspeed: int = 0
+    """Steps faster than `max_rotor_speed`."""
+    max_speed: float = 0.0
+    """rad/s, from position steps."""
+    longest_gaps: tuple[Gap, ...] = ()
+    """At most ten, the longest first."""
+    referenced: bool = True
+    """Whether the turns of the encoder were known throughout."""
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A thinned-out record over time for plots; all lists are of the same length."""
+
+    time: list[float]
+    """s, since the first sample."""
+    rotor_angle: list[float]
+    output_angle: list[float]
+    """As recorded."""
+    angle_error: list[float]
+    """Recorded less recomputed output angle; of each interval the worst."""
+    position_error: list[float]
+    """m, the worst of all bodies and of each interval."""
+
+
+@dataclass(frozen=True, slots=True)
+class BagReport:
+    """The whole finding about one bag."""
+
+    bag: str
+    verdict: Verdict
+    config: str = ''
+    """The parameter file that was used."""
+    gear_ratio: str = ''
+    """Such as `-19` or `-58/3`."""
+    error: str | None = None
+    """Why the bag is unusable, or the damage that cut it short: the rest is of what came before."""
+    messages: int = 0
+    """On the three topics."""
+    rotor: InputReport | None = None
+    topics: tuple[TopicReport, ...] = ()
+    findings: tuple[str, ...] = ()
+    """Sentences: a constant offset, another mechanism, what the input's health means."""
+    series: Series | None = None
+
+    @property
+    def passed(self) -> bool:
+        """Whether the recorded outputs are what they should be."""
+        return self.verdict == Verdict.PASS
