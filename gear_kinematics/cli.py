@@ -108,5 +108,6 @@ def _facts(mechanism: Mechanism) -> list[tuple[str, Any, str]]:
         ('oldham_petals', mechanism.oldham_petals, ''),
         ('vernier_combinations', vernier.combinations(zk), ''),
         ('vernier_distinct_positions', vernier.distinct_positions(zk), ''),
+        ('vernier_ring_body_positions', vernier.ring_body_positions(zk), ''),
         ('vernier_step', vernier.step(zk), 'rad'),
     ]

@@ -7,13 +7,13 @@ size as counted from behind the encapsulation.
 
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
-_ENCAPSULATION = 4
-_SECOND = 1_000_000_000  # ns
+SECOND = 1_000_000_000  # ns
+STAMP_OFFSET = 4  # behind the encapsulation
 _LITTLE_ENDIAN, _BIG_ENDIAN = b'\x00\x01', b'\x00\x00'
 _STAMP = struct.Struct('<iI')
-_MAX_PADDING = 3  # DDS fills a payload up to a multiple of four bytes
+_MAX_LEFT_OVER = 15  # bytes: DDS fills up to four, rclpy's serialize_message by up to twelve
 
 
 class MalformedMessageError(ValueError):
@@ -41,19 +41,46 @@ class PoseArray(NamedTuple):
     """x y z and quaternion x y z w, pose after pose."""
 
 
+class Layout(NamedTuple):
+    """Where things are in a message; what is in no array is the same in all that share it."""
+
+    order: str
+    """Byte order as in `struct`: '<' or '>'."""
+    size: int
+    """Bytes of the whole message."""
+    texts: tuple[bytes, ...]
+    """The strings: frame_id, then the names of a JointState."""
+    arrays: tuple[tuple[int, int], ...]
+    """Offset and count of the float64 of each array."""
+    fixed: tuple[tuple[int, int], ...]
+    """Spans (start, end) of the bytes that make the layout: encapsulation, lengths, strings."""
+
+    def stamp(self, data: bytes) -> int:
+        """Give the header's stamp, ns.
+
+        Raises:
+            MalformedMessageError: if it is none.
+        """
+        seconds, nanoseconds = struct.unpack_from(self.order + 'iI', data, STAMP_OFFSET)
+        if nanoseconds >= SECOND:
+            raise MalformedMessageError('a stamp has more than a second of nanoseconds')
+        return int(seconds * SECOND + nanoseconds)
+
+    def numbers(self, data: bytes, array: int) -> tuple[float, ...]:
+        """Give the numbers of one array."""
+        offset, count = self.arrays[array]
+        return struct.unpack_from(f'{self.order}{count}d', data, offset)
+
+
 def decode_joint_state(data: bytes) -> JointState:
     """Decode a sensor_msgs/JointState of either byte order.
 
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    with _Reader(data) as reader:
-        stamp = reader.stamp()
-        reader.string()  # frame_id
-        names = tuple([reader.string() for _ in range(reader.count(4))])
-        return JointState(
-            stamp, names, reader.double_array(), reader.double_array(), reader.double_array()
-        )
+    layout = joint_state_layout(data)
+    arrays = (layout.numbers(data, array) for array in range(3))
+    return JointState(layout.stamp(data), layout.texts[1:], *arrays)
 
 
 def decode_pose_array(data: bytes) -> PoseArray:
@@ -62,16 +89,46 @@ def decode_pose_array(data: bytes) -> PoseArray:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    with _Reader(data) as reader:
-        return PoseArray(reader.stamp(), reader.string(), reader.doubles(7 * reader.count(56)))
+    layout = pose_array_layout(data)
+    return PoseArray(layout.stamp(data), layout.texts[0], layout.numbers(data, 0))
+
+
+def joint_state_layout(data: bytes) -> Layout:
+    """Find the layout of a sensor_msgs/JointState.
+
+    Raises:
+        MalformedMessageError: if the bytes are anything else.
+    """
+    reader = _Reader(data)
+    reader.string()  # frame_id
+    for _ in range(reader.count(4)):
+        reader.string()
+    for _ in ('position', 'velocity', 'effort'):
+        reader.doubles(reader.count(8))
+    return reader.layout()
+
+
+def pose_array_layout(data: bytes) -> Layout:
+    """Find the layout of a geometry_msgs/PoseArray.
+
+    Raises:
+        MalformedMessageError: if the bytes are anything else.
+    """
+    reader = _Reader(data)
+    reader.string()  # frame_id
+    reader.doubles(7 * reader.count(56))
+    return reader.layout()
 
 
 class _Reader:
-    """Reads CDR primitives one after the other; at the end of `with`, nothing may be left over."""
+    """Goes through the primitives behind a header's stamp and keeps where they are."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
-        self.offset = _ENCAPSULATION
+        self._offset = STAMP_OFFSET + _STAMP.size
+        self._texts: list[bytes] = []
+        self._arrays: list[tuple[int, int]] = []
+        self._fixed = [(0, 2)]
         if data[:2] == _LITTLE_ENDIAN:
             self._order = '<'
         elif data[:2] == _BIG_ENDIAN:
@@ -79,48 +136,43 @@ class _Reader:
         else:
             raise MalformedMessageError('no CDR encapsulation')
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type[BaseException] | None, error: object, _: object) -> None:
-        if kind is not None and issubclass(kind, struct.error):
-            raise MalformedMessageError('the message is cut off')
-        if kind is None and len(self._data) - self.offset > _MAX_PADDING:
-            raise MalformedMessageError('bytes are left over')
-
-    def stamp(self) -> int:
-        seconds, nanoseconds = struct.unpack_from(self._order + 'iI', self._data, self.offset)
-        self.offset += 8
-        if nanoseconds >= _SECOND:
-            raise MalformedMessageError('a stamp has more than a second of nanoseconds')
-        return int(seconds * _SECOND + nanoseconds)
-
     def count(self, item_size: int) -> int:
-        self.offset += -self.offset % 4
-        (count,) = struct.unpack_from(self._order + 'I', self._data, self.offset)
-        self.offset += 4
-        if count * item_size > len(self._data) - self.offset:
+        start = self._offset + -self._offset % 4
+        end = start + 4
+        if end > len(self._data):
+            raise MalformedMessageError('the message is cut off')
+        (count,) = struct.unpack_from(self._order + 'I', self._data, start)
+        if count * item_size > len(self._data) - end:
             raise MalformedMessageError('a sequence is longer than the message')
+        self._fixed.append((start, end))
+        self._offset = end
         return int(count)
 
-    def string(self) -> bytes:
+    def string(self) -> None:
         size = self.count(1)
-        text = self._data[self.offset : self.offset + size]
-        self.offset += size
+        start, end = self._offset, self._offset + size
+        text = self._data[start:end]
         if not text.endswith(b'\0'):
             raise MalformedMessageError('a string does not end')
-        return text[:-1]
+        self._texts.append(text[:-1])
+        self._fixed[-1] = (self._fixed[-1][0], end)  # together with its length
+        self._offset = end
 
-    def double_array(self) -> tuple[float, ...]:
-        return self.doubles(self.count(8))
+    def doubles(self, count: int) -> None:
+        if count:  # an empty array has not even the padding
+            self._offset += -(self._offset - STAMP_OFFSET) % 8
+        self._arrays.append((self._offset, count))
+        self._offset += 8 * count
+        if self._offset > len(self._data):
+            raise MalformedMessageError('the message is cut off')
 
-    def doubles(self, count: int) -> tuple[float, ...]:
-        if count == 0:  # nothing follows, not even the padding
-            return ()
-        self.offset += -(self.offset - _ENCAPSULATION) % 8
-        values = struct.unpack_from(f'{self._order}{count}d', self._data, self.offset)
-        self.offset += 8 * count
-        return values
+    def layout(self) -> Layout:
+        size = len(self._data)
+        if size - self._offset > _MAX_LEFT_OVER:
+            raise MalformedMessageError('bytes are left over')
+        return Layout(
+            self._order, size, tuple(self._texts), tuple(self._arrays), tuple(self._fixed)
+        )
 
 
 class Template:
@@ -138,7 +190,7 @@ class Template:
             stamp: ns.
             arrays: the numbers of each array, as many as were laid out.
         """
-        _STAMP.pack_into(self._buffer, _ENCAPSULATION, *divmod(stamp, _SECOND))
+        _STAMP.pack_into(self._buffer, STAMP_OFFSET, *divmod(stamp, SECOND))
         for (offset, layout), values in zip(self._arrays, arrays, strict=True):
             layout.pack_into(self._buffer, offset, *values)
         return bytes(self._buffer)
@@ -159,7 +211,7 @@ class Template:
             self._buffer += bytes(8 * count)
 
     def _pad(self, size: int) -> None:
-        self._buffer += bytes(-(len(self._buffer) - _ENCAPSULATION) % size)
+        self._buffer += bytes(-(len(self._buffer) - STAMP_OFFSET) % size)
 
 
 class JointStateTemplate(Template):

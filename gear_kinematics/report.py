@@ -146,7 +146,7 @@ class BagReport:
     gear_ratio: str = ''
     """Such as `-19` or `-58/3`."""
     error: str | None = None
-    """Why the bag is unusable, or the damage that cut it short: the rest is of what came before."""
+    """Why the bag is unusable, or what damage cut it short; the rest is of what came before."""
     messages: int = 0
     """On the three topics."""
     rotor: InputReport | None = None

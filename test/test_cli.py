@@ -46,6 +46,7 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
         'oldham_petals': 40,
         'vernier_combinations': 531_360,
         'vernier_distinct_positions': 265_680,
+        'vernier_ring_body_positions': 6642,
         'vernier_step': pytest.approx(2.36494e-5, rel=1e-5),
     }
 

@@ -22,7 +22,8 @@ def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -
 
     The distance between the centre of the Oldham coupling reached through rotor and satellite,
     eq. (11), and through the output shaft, eq. (14), at the state's slides; or between either
-    and the state's own centre, whichever is greatest.
+    and the state's own centre, whichever is greatest. It grows with the float64 spacing of
+    `rotor_angle`: give an angle of few turns.
     """
     chain = frames(mechanism, rotor_angle, state.satellite_slide, state.arm_slide)
     by_satellite = chain.oldham_to_stator[..., :3, 3]
@@ -64,7 +65,7 @@ def constraint_jacobian(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
     rotor, output = 0, 3 * (1 + 2 * count)
     for row, body in ((0, rotor), (2, output)):
         jacobian[..., row, body] = jacobian[..., row + 1, body + 1] = 1.0
-    cosine, sine = np.cos(state.output_angle), np.sin(state.output_angle)
+    cosine, sine = np.cos(state.output_turn_angle), np.sin(state.output_turn_angle)
     along_x = np.stack([cosine, sine], axis=-1)
     along_y = np.stack([-sine, cosine], axis=-1)
     for k in range(count):

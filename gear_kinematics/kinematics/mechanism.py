@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from numbers import Real
 from typing import Any, Self
 
 from gear_kinematics.kinematics.errors import MechanismError
@@ -142,10 +143,10 @@ def _teeth(name: str, value: object, faults: list[str]) -> int | None:
 
 def _finite(name: str, value: object, faults: list[str]) -> float | None:
     try:
-        if isinstance(value, (bool, str)):
+        if not isinstance(value, Real) or isinstance(value, bool):
             raise TypeError
-        number = float(value)  # type: ignore[arg-type]  # what is no number raises
-    except (TypeError, ValueError, OverflowError):
+        number = float(value)
+    except (TypeError, OverflowError):
         faults.append(f'{name} must be a number, not {value!r}')
         return None
     if not math.isfinite(number):

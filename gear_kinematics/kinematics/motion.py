@@ -1,7 +1,7 @@
 """The closed form of the motion: eqs. (5)-(22) of the paper and their time derivatives.
 
 Every formula stands here once, in functions that take numpy arrays and plain floats alike:
-`solve` applies them to arrays of any shape, `ScalarMotion` to one sample in pure Python.
+`solve` applies them to arrays of any shape, the node to one sample of plain floats.
 
 Symbols: φ2 rotor angle, φ5 output angle, α_k cam phase, θ_k = φ2 + α_k, e eccentricity,
 u(q) = (-sin q, cos q), i gear ratio, p/q = (zk - zs)/zs = -1/i in lowest terms.

@@ -31,7 +31,8 @@ def split_turns(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArra
 def split_turns(angle: Any) -> Any:
     """Split an angle into the nearest whole turns and the rest in [-π, π], both exact.
 
-    Exact means: of 2π itself, not of its float64, up to 2^52 turns; the rest is rounded once.
+    Exact means: of 2π itself, not of its float64, up to 2^51 turns; the rest is rounded once.
+    Near half a turn it can exceed π by what the float64 of so many turns leaves out.
 
     Args:
         angle: rad; a finite float, or an array of any shape.
@@ -106,8 +107,9 @@ class RotorTurns:
         if reach >= math.pi and velocity is not None and self._velocity is not None:
             change = velocity - self._velocity
             middle = 0.5 * (velocity + self._velocity) * elapsed
-            spread = self.max_acceleration * elapsed**2 / 4.0
-            spread -= change**2 / (4.0 * self.max_acceleration)
+            # Products, since a power that overflows raises.
+            spread = self.max_acceleration * elapsed * elapsed / 4.0
+            spread -= change * change / (4.0 * self.max_acceleration)
             if spread >= 0.0 and abs(middle) <= reach:  # else the limits or the speeds are wrong
                 low, high = max(low, middle - spread), min(high, middle + spread)
         return 0.5 * (low + high), high - low < TURN

@@ -39,6 +39,11 @@ def distinct_positions(ring_teeth: int) -> int:
     return math.lcm(ring_teeth, ring_teeth + 1, ring_teeth + 2)
 
 
+def ring_body_positions(ring_teeth: int) -> int:
+    """(zk + 1)(zk + 2): positions of the ring's body, each tooth apart; they all differ."""
+    return (ring_teeth + 1) * (ring_teeth + 2)
+
+
 def step(ring_teeth: int) -> float:
     """2π / lcm(zk, zk + 1, zk + 2), rad: from one position to the next."""
     return 2.0 * math.pi / distinct_positions(ring_teeth)

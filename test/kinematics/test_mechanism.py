@@ -1,0 +1,254 @@
+"""Mechanism and Branch: what is accepted, what is refused, and what follows from the teeth."""
+
+import math
+from dataclasses import FrozenInstanceError
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from properties import assert_close, mechanisms
+
+from gear_kinematics.kinematics import Branch, Mechanism, MechanismError, solve
+
+A = Branch('a')
+NAMES = 'a branch name is a letter, then letters, digits or underscores, not '
+
+INVALID = {
+    'ring_teeth_zero': ((0, 76, 1e-3, (A,)), ['ring_teeth must be at least 1, not 0']),
+    'ring_teeth_negative': ((-80, 76, 1e-3, (A,)), ['ring_teeth must be at least 1, not -80']),
+    'ring_teeth_float': ((80.0, 76, 1e-3, (A,)), ['ring_teeth must be an integer, not 80.0']),
+    'ring_teeth_bool': ((True, 1, 1e-3, (A,)), ['ring_teeth must be an integer, not True']),
+    'satellite_teeth_bool': (
+        (80, True, 1e-3, (A,)),
+        ['satellite_teeth must be an integer, not True'],
+    ),
+    'satellite_teeth_zero': ((80, 0, 1e-3, (A,)), ['satellite_teeth must be at least 1, not 0']),
+    'satellite_teeth_text': (
+        (80, '76', 1e-3, (A,)),
+        ["satellite_teeth must be an integer, not '76'"],
+    ),
+    'equal_teeth': (
+        (80, 80, 1e-3, (A,)),
+        ['satellite_teeth (80) must be less than ring_teeth (80)'],
+    ),
+    'larger_satellite': (
+        (76, 80, 1e-3, (A,)),
+        ['satellite_teeth (80) must be less than ring_teeth (76)'],
+    ),
+    'eccentricity_zero': (
+        (80, 76, 0.0, (A,)),
+        ['eccentricity must be greater than 0, not 0.0'],
+    ),
+    'eccentricity_negative': (
+        (80, 76, -1e-3, (A,)),
+        ['eccentricity must be greater than 0, not -0.001'],
+    ),
+    'eccentricity_nan': ((80, 76, math.nan, (A,)), ['eccentricity must be finite, not nan']),
+    'eccentricity_inf': ((80, 76, math.inf, (A,)), ['eccentricity must be finite, not inf']),
+    'eccentricity_none': ((80, 76, None, (A,)), ['eccentricity must be a number, not None']),
+    'eccentricity_text': ((80, 76, '1e-3', (A,)), ["eccentricity must be a number, not '1e-3'"]),
+    'eccentricity_bool': ((80, 76, True, (A,)), ['eccentricity must be a number, not True']),
+    'no_branches': ((80, 76, 1e-3, ()), ['branches must name at least one branch']),
+    'branches_missing': ((80, 76, 1e-3, None), ['branches must name at least one branch']),
+    'branches_of_names': (
+        (80, 76, 1e-3, ('a', A)),
+        ["branches must be of type Branch, not 'a'"],
+    ),
+    'branch_twice': (
+        (80, 76, 1e-3, (A, Branch('b'), Branch('a', 1.0))),
+        ["branch name 'a' is used more than once"],
+    ),
+    'branch_phase_nan': (
+        (80, 76, 1e-3, (Branch('a', math.nan),)),
+        ['a.cam_phase must be finite, not nan'],
+    ),
+    'branch_position_inf': (
+        (80, 76, 1e-3, (Branch('a', 0.0, -math.inf),)),
+        ['a.axial_position must be finite, not -inf'],
+    ),
+    'branch_phase_text': (
+        (80, 76, 1e-3, (Branch('a', 'π'),)),
+        ["a.cam_phase must be a number, not 'π'"],
+    ),
+    'two_faults': (
+        (80, 80, -1.0, (A,)),
+        [
+            'satellite_teeth (80) must be less than ring_teeth (80)',
+            'eccentricity must be greater than 0, not -1.0',
+        ],
+    ),
+    'faults_everywhere': (
+        (0, 7.5, math.inf, (Branch('1'), Branch('a', math.nan, math.nan), Branch('a'), 3)),
+        [
+            'ring_teeth must be at least 1, not 0',
+            'satellite_teeth must be an integer, not 7.5',
+            'eccentricity must be finite, not inf',
+            NAMES + "'1'",
+            'a.cam_phase must be finite, not nan',
+            'a.axial_position must be finite, not nan',
+            "branch name 'a' is used more than once",
+            'branches must be of type Branch, not 3',
+        ],
+    ),
+}
+
+
+@pytest.mark.parametrize(('arguments', 'faults'), INVALID.values(), ids=INVALID)
+def test_every_fault_is_listed_at_once(arguments, faults):
+    with pytest.raises(MechanismError) as caught:
+        Mechanism(*arguments)
+    assert list(caught.value.faults) == faults
+    assert str(caught.value) == '; '.join(faults)
+    assert isinstance(caught.value, ValueError)
+
+
+@pytest.mark.parametrize('name', ['', '_a', '1', 'a b', 'a-b', 'a.b', 'ä', 'a/b', 'a\n', 3, None])
+def test_branch_names_that_make_no_frame_names_are_refused(name):
+    with pytest.raises(MechanismError) as caught:
+        Mechanism(80, 76, 1e-3, (Branch(name),))
+    assert list(caught.value.faults) == [NAMES + repr(name)]
+
+
+@pytest.mark.parametrize('name', ['a', 'B', 'left_2', 'a_', 'b1'])
+def test_branch_names_that_make_frame_names_are_accepted(name):
+    assert Mechanism(80, 76, 1e-3, (Branch(name),)).branches[0].name == name
+
+
+def test_numpy_numbers_and_lists_become_plain():
+    plain = Mechanism(80, 76, 0.5, (Branch('a', 1.0, 2.0),))
+    mechanism = Mechanism(
+        np.int64(80), np.uint8(76), np.float32(0.5), [Branch('a', np.float64(1.0), 2)]
+    )
+    assert mechanism == plain
+    assert hash(mechanism) == hash(plain)
+    branch = mechanism.branches[0]
+    kinds = [type(mechanism.ring_teeth), type(mechanism.satellite_teeth)]
+    assert kinds == [int, int]
+    values = (mechanism.eccentricity, branch.cam_phase, branch.axial_position)
+    assert [type(value) for value in values] == [float, float, float]
+    assert isinstance(mechanism.branches, tuple)
+
+
+def test_mechanism_cannot_be_changed(actuator):
+    with pytest.raises(FrozenInstanceError):
+        actuator.ring_teeth = 81
+    with pytest.raises(FrozenInstanceError):
+        actuator.branches[0].cam_phase = 1.0
+
+
+def test_mapping_makes_the_same_mechanism(actuator):
+    parameters = {
+        'ring_teeth': 80,
+        'satellite_teeth': 76,
+        'eccentricity': 0.0011,
+        'branches': ['a', 'b'],
+        'a.axial_position': 0.04,
+        'b.cam_phase': math.pi,
+        'b.axial_position': -0.04,
+        'rotor_joint': 'passed over',
+        'c.cam_phase': 'of no branch',
+    }
+    assert Mechanism.from_mapping(parameters) == actuator
+
+
+def test_mapping_lists_everything_that_is_missing():
+    with pytest.raises(MechanismError) as caught:
+        Mechanism.from_mapping({'satellite_teeth': 76})
+    missing = ('ring_teeth is missing', 'eccentricity is missing', 'branches is missing')
+    assert caught.value.faults == missing
+
+
+@pytest.mark.parametrize('names', ['ab', 2, None])
+def test_mapping_refuses_branches_that_are_no_list(names):
+    parameters = {'ring_teeth': 80, 'satellite_teeth': 76, 'eccentricity': 1e-3}
+    with pytest.raises(MechanismError) as caught:
+        Mechanism.from_mapping({**parameters, 'branches': names})
+    assert caught.value.faults == (f'branches must be a list of names, not {names!r}',)
+
+
+def test_mapping_passes_every_fault_on():
+    with pytest.raises(MechanismError) as caught:
+        Mechanism.from_mapping(
+            {
+                'ring_teeth': 80,
+                'satellite_teeth': 81,
+                'eccentricity': 'e',
+                'branches': [1, 'a'],
+                'a.cam_phase': math.inf,
+            }
+        )
+    assert caught.value.faults == (
+        'satellite_teeth (81) must be less than ring_teeth (80)',
+        "eccentricity must be a number, not 'e'",
+        NAMES + '1',
+        'a.cam_phase must be finite, not inf',
+    )
+
+
+@pytest.mark.parametrize(
+    ('ring_teeth', 'satellite_teeth', 'ratio', 'petals'),
+    [
+        (80, 76, Fraction(-19), 40),
+        (80, 78, Fraction(-39), 80),
+        (61, 58, Fraction(-58, 3), 61),
+        (80, 79, Fraction(-79), 160),
+        (2, 1, Fraction(-1), 4),
+    ],
+)
+def test_numbers_of_the_specification(ring_teeth, satellite_teeth, ratio, petals):
+    mechanism = Mechanism(ring_teeth, satellite_teeth, 1e-3, (A,))
+    assert mechanism.gear_ratio == ratio
+    assert mechanism.oldham_petals == petals
+
+
+@given(mechanisms())
+def test_gear_ratio_is_exact_and_negative(mechanism):
+    ratio = mechanism.gear_ratio
+    assert isinstance(ratio, Fraction)
+    assert ratio < 0
+    teeth = mechanism.ring_teeth - mechanism.satellite_teeth
+    assert ratio.numerator * teeth == -mechanism.satellite_teeth * ratio.denominator
+
+
+@given(mechanisms(), st.floats(-1e3, 1e3))
+def test_rotor_angle_turns_the_shaft_to_the_output_angle(mechanism, output_angle):
+    rotor_angle = mechanism.rotor_angle(output_angle)
+    teeth = mechanism.ring_teeth - mechanism.satellite_teeth
+    expected = -output_angle * mechanism.satellite_teeth / teeth
+    assert_close(rotor_angle, expected, 4e-16 * abs(expected))
+    assert_close(solve(mechanism, rotor_angle).output_angle, output_angle, 1e-12)
+
+
+def test_petals_are_the_tips_that_the_coupling_reaches():
+    """Count the places at distance e on the whole path, for every pair of small tooth numbers."""
+    for ring_teeth in range(2, 19):
+        for satellite_teeth in range(1, ring_teeth):
+            mechanism = Mechanism(ring_teeth, satellite_teeth, 1.0, (A,))
+            # The slide of the coupling on the arm is ±e when the rotor has turned by n π zs/zk
+            # (the Oldham coupling turns zk/zs as fast against the cam).
+            n = np.arange(4 * ring_teeth * satellite_teeth)
+            tips = solve(mechanism, n * math.pi * satellite_teeth / ring_teeth).oldham_centre
+            assert_close(np.hypot(*tips[:, 0].T), np.ones(n.size), 1e-9)
+            places = {tuple(place) for place in np.rint(tips[:, 0] * 1e6).astype(int)}
+            assert mechanism.oldham_petals == len(places)
+
+
+@given(mechanisms(max_branches=1), st.floats(-10.0, 10.0), st.floats(-100.0, 100.0))
+def test_satellite_rolls_on_the_ring_gear_without_slip(mechanism, angle, velocity):
+    """Where the rolling circles touch, the satellite's material stands still."""
+    state = solve(mechanism, angle, velocity)
+    e = mechanism.eccentricity
+    centre = state.satellite_centre[0]
+    contact = centre / e * mechanism.ring_rolling_radius
+    arm = contact - centre
+    radius = mechanism.satellite_rolling_radius
+    assert_close(np.hypot(*arm), radius, 1e-12 * mechanism.ring_rolling_radius)
+    turning = state.output_velocity * np.array([-arm[1], arm[0]])
+    assert_close(state.satellite_velocity[0] + turning, np.zeros(2), 1e-12 * e * abs(velocity))
+
+
+def test_rolling_radii_of_the_default_actuator(actuator):
+    assert actuator.ring_rolling_radius == pytest.approx(0.022, rel=1e-15)
+    assert actuator.satellite_rolling_radius == pytest.approx(0.0209, rel=1e-15)

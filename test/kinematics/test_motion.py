@@ -1,0 +1,400 @@
+"""The closed form against 50-digit matrix products, and the properties of the motion."""
+
+import math
+from dataclasses import fields
+
+import numpy as np
+import oracle
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from properties import (
+    LENGTHS,
+    SHAPES,
+    assert_close,
+    assert_same,
+    assert_within,
+    field_names,
+    mechanisms,
+    motions,
+    numbers_of,
+    position_errors,
+    samples,
+    speed_up,
+)
+
+from gear_kinematics.kinematics import Branch, Mechanism, MotionState, solve, split_turns
+from gear_kinematics.kinematics.motion import closed_form
+
+EPS = float(np.finfo(np.float64).eps)
+MOST_TURNS = 2**51  # up to here float64 angles are split exactly
+
+
+def test_hand_computed_motion():
+    """Teeth 4 and 3, rotor at 90°: θ = 90°, φ5 = -30°, β = 120°; speeds by eqs. of the page."""
+    half, root = 0.5, math.sqrt(0.75)
+    state = solve(Mechanism(4, 3, 2.0, (Branch('a'),)), math.pi / 2.0, 3.0, 6.0)
+    tolerance = 1e-14
+    assert_close(state.output_angle, -math.pi / 6.0, tolerance)
+    assert_close(state.output_velocity, -1.0, tolerance)
+    assert_close(state.output_acceleration, -2.0, tolerance)
+    assert_close(state.satellite_centre, [[-2.0, 0.0]], tolerance)
+    assert_close(state.satellite_velocity, [[0.0, -6.0]], tolerance)
+    assert_close(state.satellite_acceleration, [[18.0, -12.0]], tolerance)
+    assert_close(state.satellite_slide, [2.0 * root], tolerance)
+    assert_close(state.arm_slide, [-2.0 * half], tolerance)
+    assert_close(state.satellite_slide_velocity, [-4.0], tolerance)
+    assert_close(state.arm_slide_velocity, [-8.0 * root], tolerance)
+    assert_close(state.oldham_centre, [[-half, -root]], tolerance)
+
+
+@given(mechanisms(), samples(100.0))
+def test_positions_agree_with_the_oracle(mechanism, angles):
+    state = solve(mechanism, angles)
+    exact = [oracle.rotor_angle_of(angle) for angle in angles.flat]
+    assert_within(position_errors(state, mechanism, exact))
+
+
+@given(mechanisms(), samples(1.0))
+@example(Mechanism(80, 76, 1e-3, (Branch('a'),)), np.array([1.0, -1.0]))
+def test_positions_lose_nothing_at_any_float_angle(mechanism, shares):
+    """Up to 2^51 turns of whatever turns fastest."""
+    angles = shares * 2.0 * math.pi * MOST_TURNS / speed_up(mechanism)
+    state = solve(mechanism, angles)
+    exact = [oracle.rotor_angle_of(angle) for angle in angles.flat]
+    assert_within(position_errors(state, mechanism, exact))
+
+
+@given(mechanisms(), samples(10.0, shapes=((), (4,))), st.floats(-1.0, 1.0))
+@example(Mechanism(80, 76, 1e-3, (Branch('a'),)), np.array(1.0), 1.0)
+@example(Mechanism(400, 1, 1e-3, (Branch('a'),)), np.array(1.0), -1.0)
+def test_positions_lose_nothing_at_any_count_of_turns(mechanism, angles, share):
+    turns = int(share * MOST_TURNS / speed_up(mechanism))
+    state = solve(mechanism, angles, rotor_turns=turns)
+    exact = [oracle.rotor_angle_of(angle, turns=turns) for angle in angles.flat]
+    assert_within(position_errors(state, mechanism, exact))
+
+
+@pytest.mark.parametrize(
+    ('ring_teeth', 'satellite_teeth', 'turns'),
+    [(302, 259, 2821787408222552), (187, 69, 1127845120280877), (29, 18, -4035087684763779)],
+)
+def test_turns_are_counted_where_their_product_with_the_teeth_is_not_exact(
+    ring_teeth, satellite_teeth, turns
+):
+    """The output shaft's turns fit into 53 bits, turns times tooth difference do not."""
+    mechanism = Mechanism(ring_teeth, satellite_teeth, 1e-3, (Branch('a'),))
+    state = solve(mechanism, 1.0, rotor_turns=turns)
+    exact = [oracle.rotor_angle_of(1.0, turns=turns)]
+    assert_within(position_errors(state, mechanism, exact))
+
+
+def test_thousands_of_samples_agree_with_the_oracle(actuator):
+    """More samples than one chunk of `solve`, with a turn count for each, in both directions."""
+    generator = np.random.default_rng(1)
+    angles = generator.uniform(-4.0, 4.0, 10_000)
+    turns = generator.integers(-(10**10), 10**10, angles.size)
+    state = solve(actuator, angles, rotor_turns=turns)
+    chosen = range(0, angles.size, 5)
+    part = MotionState(*(getattr(state, name)[chosen] for name in field_names(state)))
+    exact = [oracle.rotor_angle_of(angles[n], turns=int(turns[n])) for n in chosen]
+    assert_within(position_errors(part, actuator, exact), 1e-14)
+
+
+@settings(max_examples=60)
+@given(mechanisms(), st.floats(-20.0, 20.0), st.floats(-1000.0, 1000.0), st.floats(-1e6, 1e6))
+def test_rates_agree_with_the_oracle(mechanism, angle, velocity, acceleration):
+    """Against numerical derivatives at 50 digits; rates in units of the fastest in the gear."""
+    state = solve(mechanism, angle, velocity, acceleration)
+    exact = oracle.rotor_angle_of(angle)
+    expected = oracle.expected_derivatives(numbers_of(mechanism), exact, velocity, acceleration)
+    fastest = speed_up(mechanism) * max(abs(velocity), math.sqrt(abs(acceleration)), 1e-3)
+    e = mechanism.eccentricity
+    output = (state.output_velocity, state.output_acceleration)
+    for order, motion in enumerate((expected.first, expected.second), start=1):
+        tolerance = 1e-12 * fastest**order
+        assert oracle.angle_error(output[order - 1], motion.output_angle) <= tolerance
+        name = ('velocity', 'acceleration')[order - 1]
+        for k, branch in enumerate(motion.branches):
+            for body in ('satellite', 'oldham'):
+                actual = getattr(state, f'{body}_{name}')[k]
+                point = getattr(branch, f'{body}_centre')
+                assert oracle.point_error(actual, point, e) <= tolerance
+    for name in ('satellite_slide', 'arm_slide'):
+        for k, branch in enumerate(expected.first.branches):
+            actual = getattr(state, f'{name}_velocity')[k]
+            assert oracle.length_error(actual, getattr(branch, name), e) <= 1e-12 * fastest
+
+
+@given(mechanisms(), motions())
+def test_rates_are_the_derivatives_of_what_they_claim(mechanism, motion):
+    """Central differences along a uniformly accelerated motion, at steps of 1e-4 rad at most."""
+    angle, velocity, acceleration = motion
+    ratio = speed_up(mechanism)
+    # The fastest rate over all samples sets the one step and the scale of what is compared.
+    scale = np.sqrt(np.max(np.abs(acceleration), initial=0.0))
+    fastest = ratio * max(np.max(np.abs(velocity), initial=0.0), scale, 1e-3)
+    h = 1e-4 / fastest
+
+    def at(time):
+        return solve(
+            mechanism,
+            angle + velocity * time + acceleration * time**2 / 2.0,
+            velocity + acceleration * time,
+            acceleration,
+        )
+
+    before, now, after = at(-h), at(0.0), at(h)
+    pairs = [
+        (value, rate, order, mechanism.eccentricity)
+        for order in (0, 1)
+        for value, rate in zip(LENGTHS[order], LENGTHS[order + 1], strict=False)
+    ]
+    pairs += [
+        ('output_angle', 'output_velocity', 0, 1.0),
+        ('output_velocity', 'output_acceleration', 1, 1.0),
+    ]
+    for value, rate, order, unit in pairs:
+        difference = (getattr(after, value) - getattr(before, value)) / (2.0 * h)
+        # Left out: h²/6 times the third derivative; rounding: of angles up to 20 rad, over h.
+        tolerance = unit * fastest ** (order + 1) * (1e-8 + 60.0 * EPS * ratio / 1e-4)
+        assert_close(getattr(now, rate), difference, tolerance)
+
+
+@given(mechanisms(), samples(1e6))
+def test_satellites_circle_at_the_eccentricity(mechanism, angles):
+    centre = solve(mechanism, angles).satellite_centre
+    radius = np.hypot(centre[..., 0], centre[..., 1])
+    e = mechanism.eccentricity
+    assert_close(radius, np.full(radius.shape, e), 4.0 * EPS * e)
+
+
+@given(mechanisms(), samples(1e6))
+def test_couplings_see_the_eccentricity_under_a_right_angle(mechanism, angles):
+    """O4 is on the circle whose diameter is O1-O3: O4·(O4 - O3) = 0."""
+    state = solve(mechanism, angles)
+    to_stator = state.oldham_centre
+    product = np.sum(to_stator * (to_stator - state.satellite_centre), axis=-1)
+    assert_close(product, np.zeros(product.shape), 8.0 * EPS * mechanism.eccentricity**2)
+
+
+@given(mechanisms(), samples(1e6))
+def test_slides_are_the_sides_of_the_right_angle(mechanism, angles):
+    state = solve(mechanism, angles)
+    e = mechanism.eccentricity
+    by_arm = np.hypot(state.oldham_centre[..., 0], state.oldham_centre[..., 1])
+    apart = state.oldham_centre - state.satellite_centre
+    on_satellite = np.hypot(apart[..., 0], apart[..., 1])
+    assert_close(by_arm, np.abs(state.arm_slide), 4.0 * EPS * e)
+    assert_close(on_satellite, np.abs(state.satellite_slide), 4.0 * EPS * e)
+
+
+@given(mechanisms(), motions(), st.floats(-10.0, 10.0))
+def test_power_is_the_same_on_both_sides(mechanism, motion, rotor_torque):
+    """Lossless: the load torque is i times the rotor's, sign included."""
+    state = solve(mechanism, *motion)
+    load_torque = (
+        -rotor_torque
+        * mechanism.satellite_teeth
+        / (mechanism.ring_teeth - mechanism.satellite_teeth)
+    )
+    assert_close(
+        float(mechanism.gear_ratio) * rotor_torque, load_torque, 4.0 * EPS * abs(load_torque)
+    )
+    power = rotor_torque * motion[1]
+    assert_close(load_torque * state.output_velocity, power, 4.0 * EPS * np.abs(power))
+
+
+@given(
+    mechanisms(),
+    motions(),
+    st.integers(-(10**6), 10**6),
+    st.integers(-(10**6), 10**6).filter(bool),
+)
+def test_motion_repeats_after_as_many_turns_as_satellite_teeth(mechanism, motion, turns, times):
+    state = solve(mechanism, *motion, rotor_turns=turns)
+    period = times * mechanism.satellite_teeth
+    later = solve(mechanism, *motion, rotor_turns=turns + period)
+    for name in field_names(state):
+        if name != 'output_angle':
+            np.testing.assert_array_equal(getattr(later, name), getattr(state, name), name)
+    turned = -2.0 * math.pi * times * (mechanism.ring_teeth - mechanism.satellite_teeth)
+    spacing = 2.0 * np.spacing(np.abs(state.output_angle) + np.abs(later.output_angle))
+    assert_close(
+        later.output_angle - state.output_angle, np.full(motion[0].shape, turned), spacing
+    )
+
+
+@given(mechanisms())
+def test_motion_does_not_repeat_before(mechanism):
+    """A turn of the rotor leaves the shaft at a place of its own, q of them in all."""
+    q = mechanism.satellite_teeth // math.gcd(mechanism.ring_teeth, mechanism.satellite_teeth)
+    angles = solve(mechanism, 0.0, rotor_turns=np.arange(q)).output_turn_angle
+    places = np.sort(np.mod(np.rint(angles * q / (2.0 * math.pi)), q))
+    np.testing.assert_array_equal(places, np.arange(q))
+
+
+@given(mechanisms(), samples(1e8))
+def test_turn_angle_is_the_angle_less_whole_turns(mechanism, angles):
+    state = solve(mechanism, angles)
+    assert np.all(np.abs(state.output_turn_angle) <= math.pi)
+    turns = (state.output_angle - state.output_turn_angle) / (2.0 * math.pi)
+    spacing = np.spacing(np.abs(state.output_angle) + 1.0)
+    assert_close(turns, np.rint(turns), spacing)
+
+
+@given(mechanisms(), motions(angle=1e6))
+def test_batches_are_what_samples_are_one_by_one(mechanism, motion):
+    state = solve(mechanism, *motion)
+    for index in np.ndindex(motion[0].shape):
+        single = solve(mechanism, *(values[index] for values in motion))
+        at_index = MotionState(*(getattr(state, name)[index] for name in field_names(state)))
+        assert_same(single, at_index)
+
+
+def test_batches_longer_than_a_chunk_are_what_their_parts_are(actuator):
+    generator = np.random.default_rng(2)
+    motion = generator.uniform(-1e3, 1e3, (3, 20_001))
+    state = solve(actuator, *motion)
+    for part in (slice(0, 1), slice(8191, 8193), slice(16_383, 16_385), slice(19_990, None)):
+        alone = solve(actuator, *motion[:, part])
+        assert_same(
+            alone, MotionState(*(getattr(state, name)[part] for name in field_names(state)))
+        )
+
+
+def test_inputs_broadcast(mechanism):
+    angle, velocity, turns = (
+        np.arange(3.0)[:, np.newaxis],
+        np.arange(2.0),
+        np.array([[[7]], [[8]]]),
+    )
+    state = solve(mechanism, angle, velocity, 5.0, rotor_turns=turns)
+    whole = np.broadcast_arrays(angle, velocity, 5.0, turns)
+    assert_same(state, solve(mechanism, *whole[:3], rotor_turns=whole[3]))
+    assert state.output_angle.shape == (2, 3, 2)
+
+
+@pytest.mark.parametrize('shape', SHAPES, ids=str)
+def test_shapes_and_types_are_those_of_the_contract(mechanism, shape):
+    state = solve(mechanism, np.zeros(shape), 1.0)
+    count = len(mechanism.branches)
+    for field in fields(state):
+        array = getattr(state, field.name)
+        ending = ()
+        if not field.name.startswith('output'):
+            ending = (count,) if 'slide' in field.name else (count, 2)
+        assert array.shape == (*shape, *ending), field.name
+        assert array.dtype == np.float64
+
+
+def test_python_numbers_lists_and_integers_are_accepted(actuator):
+    assert_same(solve(actuator, [1, 2], 3), solve(actuator, np.array([1.0, 2.0]), 3.0))
+    assert solve(actuator, 1).output_angle.shape == ()
+
+
+def test_shapes_that_do_not_broadcast_are_refused(actuator):
+    with pytest.raises(ValueError, match='shape mismatch'):
+        solve(actuator, np.zeros(2), np.zeros(3))
+
+
+def test_results_are_read_only(mechanism):
+    state = solve(mechanism, np.zeros(3), 1.0)
+    for field in fields(state):
+        with pytest.raises(ValueError, match='read-only'):
+            getattr(state, field.name)[...] = 1.0
+
+
+def test_inputs_stay_as_they_are(actuator):
+    angle = np.array([1e9, -2.0])
+    kept = angle.copy()
+    solve(actuator, angle, angle, angle)
+    np.testing.assert_array_equal(angle, kept)
+    angle[:] = 0.0  # still writeable
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+def test_angles_that_are_not_finite_give_nan(mechanism, bad):
+    state = solve(mechanism, [0.5, bad], 1.0, 1.0)
+    good = solve(mechanism, [0.5], 1.0, 1.0)
+    for field in fields(state):
+        array = getattr(state, field.name)
+        np.testing.assert_array_equal(array[:1], getattr(good, field.name))
+        if field.name not in ('output_velocity', 'output_acceleration'):
+            assert np.all(np.isnan(array[1])), field.name
+
+
+@pytest.mark.parametrize('bad', [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('order', [1, 2])
+def test_rates_that_are_not_finite_leave_the_positions(mechanism, bad, order):
+    rates = [1.0, 1.0]
+    rates[order - 1] = bad
+    state = solve(mechanism, 0.5, *rates)
+    still = solve(mechanism, 0.5)
+    for name in LENGTHS[0] + ('output_angle', 'output_turn_angle'):
+        np.testing.assert_array_equal(getattr(state, name), getattr(still, name))
+    assert not np.any(np.isfinite(state.oldham_acceleration))
+    assert not np.isfinite((state.output_velocity, state.output_acceleration)[order - 1])
+    if order == 1:
+        assert not np.any(np.isfinite(state.oldham_velocity))
+        assert not np.any(np.isfinite(state.satellite_slide_velocity))
+
+
+def test_rotor_at_rest_has_no_rates(mechanism):
+    state = solve(mechanism, np.linspace(-9.0, 9.0, 50))
+    for name in (*LENGTHS[1], *LENGTHS[2], 'output_velocity', 'output_acceleration'):
+        np.testing.assert_array_equal(getattr(state, name), np.zeros_like(getattr(state, name)))
+
+
+@given(
+    mechanisms(),
+    st.floats(-math.pi, math.pi),
+    st.integers(-(10**11), 10**11),
+    st.floats(-1000.0, 1000.0),
+    st.floats(-1e6, 1e6),
+)
+def test_plain_floats_follow_the_same_formulas(mechanism, angle, turns, velocity, acceleration):
+    """`ClosedForm` with `math` beside `solve` with numpy: sines may differ in their last bit."""
+    form = closed_form(mechanism)
+    own_turns, rest = split_turns(angle)
+    output_turns, output_angle = form.output_angle(turns + own_turns, rest, math)
+    state = solve(mechanism, angle, velocity, acceleration, rotor_turns=turns)
+    assert isinstance(output_turns, int)
+    spacing = math.ulp(math.pi)
+    assert_close(state.output_turn_angle, output_angle, spacing)
+    total = 2.0 * math.pi * output_turns + output_angle
+    assert_close(state.output_angle, total, spacing + math.ulp(total))
+    assert_close(state.output_velocity, form.output_rate(velocity), 0.0)
+    fastest = speed_up(mechanism) * max(abs(velocity), math.sqrt(abs(acceleration)))
+    e = mechanism.eccentricity
+    for k, position in enumerate(form.branches(rest, output_angle, math)):
+        rates = form.velocity(position, velocity)
+        second = form.acceleration(position, velocity, acceleration)
+        slides = form.slide_velocities(position, velocity)
+        for order, values in enumerate((position[:4], rates, second)):
+            satellite, oldham = (getattr(state, name)[k] for name in LENGTHS[order][:2])
+            tolerance = 8.0 * EPS * e * fastest**order
+            assert_close(np.concatenate([satellite, oldham]), values, tolerance)
+        in_slots = (state.satellite_slide[k], state.arm_slide[k])
+        assert_close(in_slots, position[4:], 8.0 * EPS * e)
+        in_slots = (state.satellite_slide_velocity[k], state.arm_slide_velocity[k])
+        assert_close(in_slots, slides, 8.0 * EPS * e * fastest)
+        assert all(type(value) is float for value in (*position, *rates, *second, *slides))
+
+
+def test_closed_form_is_made_once_for_a_mechanism(actuator):
+    same = Mechanism(80, 76, 0.0011, actuator.branches)
+    assert closed_form(same) is closed_form(actuator)
+
+
+def test_comparisons_refuse_nan(actuator):
+    """The helpers of these tests: what is NaN is neither close nor within a tolerance."""
+    with pytest.raises(AssertionError):
+        assert_close([math.nan, 0.0], [0.0, 0.0], 1.0)
+    with pytest.raises(AssertionError):
+        assert_close([math.nan], [math.nan], math.inf)
+    with pytest.raises(AssertionError):
+        assert_within({'turn': math.nan})
+    lost = solve(actuator, math.nan)
+    errors = position_errors(lost, actuator, [oracle.rotor_angle_of(0.0)])
+    assert all(math.isnan(error) for error in errors.values()), errors

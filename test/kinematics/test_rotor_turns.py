@@ -1,0 +1,409 @@
+"""Turns of the rotor: exact splitting, unwrapping, what is known after gaps, and homing."""
+
+import math
+
+import numpy as np
+import oracle
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from properties import assert_close, assert_within, position_errors, samples
+
+from gear_kinematics.kinematics import RotorPosition, RotorTurns, solve, split_turns
+
+TAU = 2 * oracle.mp.pi
+MANY = 10**10
+LARGEST = 2.0 * math.pi * 2**51  # rad: up to here float64 angles are split exactly
+RANGES = (0.0, -math.pi, -2.0 * math.pi, 1.0, 100.0, -1e6)
+SIDES = pytest.mark.parametrize('side', [1, -1], ids=['forward', 'backward'])
+
+
+def encoder(*, single_turn=True, max_speed=650.0, max_acceleration=1e5) -> RotorTurns:
+    return RotorTurns(
+        single_turn=single_turn, max_speed=max_speed, max_acceleration=max_acceleration
+    )
+
+
+def reading(angle, low: float = 0.0) -> float:
+    """What a single-turn encoder with the range [low, low + 2π) shows at an exact angle."""
+    difference = oracle.mp.mpf(angle) - low
+    return float(low + difference - TAU * oracle.mp.floor(difference / TAU))
+
+
+def exact(position: RotorPosition):
+    return oracle.rotor_angle_of(position.angle, turns=position.turns)
+
+
+def assert_at(position: RotorPosition, expected, tolerance: float = 1e-12) -> None:
+    assert abs(float(exact(position) - expected)) <= tolerance
+
+
+def assert_split(angle: float, turns, rest: float) -> None:
+    """The parts make up the angle, but for rounding them and the small product within once."""
+    assert turns == int(turns)
+    error = abs(float(oracle.rotor_angle_of(rest, turns=int(turns)) - oracle.mp.mpf(angle)))
+    assert error <= 2.0**-52 * (abs(rest) + abs(turns) * 3e-16)
+
+
+def homed(angle, low: float = 0.0, **limits) -> RotorTurns:
+    tracker = encoder(**limits)
+    tracker.update(reading(angle, low), 0)
+    tracker.home(0.0, 1)
+    return tracker
+
+
+# -- split_turns ---------------------------------------------------------------------------------
+
+SPECIAL = [
+    sign * value
+    for value in (
+        *(0.0, 5e-324, 1e-300, 1e-16, 1.0, 3.0, 1e5, 6.283e10, 1e12, LARGEST),
+        *(float(TAU * n / 4) for n in (1, 2, 3, 4, 5, 6, 7, 8, 4 * 10**5, 4 * MANY, 4 * MANY + 1)),
+        *(math.nextafter(n * math.pi, math.inf) for n in (1, 2, 3, 4)),
+        *(math.nextafter(n * math.pi, 0.0) for n in (1, 2, 3, 4)),
+    )
+    for sign in (1.0, -1.0)
+]
+
+
+@pytest.mark.parametrize('angle', SPECIAL)
+def test_split_is_exact_at_special_angles(angle):
+    turns, rest = split_turns(angle)
+    assert isinstance(turns, int)
+    assert_split(angle, turns, rest)
+    assert_split(angle, *(float(part[0]) for part in split_turns(np.array([angle]))))
+
+
+@given(st.floats(-LARGEST, LARGEST) | st.floats(-100.0, 100.0))
+def test_split_of_floats_is_exact(angle):
+    assert_split(angle, *split_turns(angle))
+
+
+@given(samples(LARGEST) | samples(100.0))
+def test_split_of_arrays_is_exact(angles):
+    turns, rest = split_turns(angles)
+    assert turns.shape == rest.shape == angles.shape
+    for index in np.ndindex(angles.shape):
+        assert_split(angles[index], turns[index], float(rest[index]))
+
+
+@pytest.mark.parametrize('angle', [5e-324, 1e-300, -1e-17, 3.0, -3.0])
+def test_split_leaves_angles_within_the_turn_alone(angle):
+    assert split_turns(angle) == (0, angle)
+
+
+@pytest.mark.parametrize('turns', [0, 1, 2, 10**5, MANY, 2**45])
+@SIDES
+def test_split_gives_the_nearest_turn(turns, side):
+    """Beside half a turn, nearest by the float64 of 2π, which is short of it by 2.45e-16."""
+    for n in range(turns, turns + 20):
+        angle = float(side * TAU * (n + 0.5))
+        for _ in range(3):
+            angle = math.nextafter(angle, 0.0)
+        for _ in range(7):
+            for kind in (float, lambda value: np.array([value])):
+                _, rest = split_turns(kind(angle))
+                assert abs(float(np.squeeze(rest))) <= math.pi + (n + 4) * 2.45e-16
+            angle = math.nextafter(angle, side * math.inf)
+
+
+def test_split_of_what_is_not_finite_is_nan_in_arrays():
+    with np.errstate(invalid='ignore'):
+        turns, rest = split_turns(np.array([math.nan, math.inf, -math.inf]))
+    assert np.all(np.isnan(turns))
+    assert np.all(np.isnan(rest))
+
+
+# -- unwrapping ----------------------------------------------------------------------------------
+
+
+@given(
+    st.sampled_from(RANGES), st.floats(-10.0, 10.0), st.lists(st.floats(-3.1, 3.1), max_size=30)
+)
+def test_unwrapping_follows_every_motion(low, start, steps):
+    """Whatever the range of the encoder, with steps of just less than half a turn either way."""
+    tracker = homed(start, low, max_speed=3.14)
+    truth = oracle.mp.mpf(start)
+    origin = exact(tracker.position) - truth
+    for n, step in enumerate(steps, start=1):
+        truth += step
+        tracker.update(reading(truth, low), n * 10**9)
+        # A reading is rounded within its own range.
+        assert_at(tracker.position, origin + truth, 1e-14 + math.ulp(low))
+    assert tracker.referenced
+
+
+@pytest.mark.parametrize('low', RANGES)
+@SIDES
+def test_unwrapping_through_whole_turns(low, side):
+    """Seven turns at 2.5 rad a step, which is where an unwrapping by half turns gives way."""
+    tracker = homed(0.1, low)
+    start = exact(tracker.position)
+    for n in range(1, 18):
+        tracker.update(reading(0.1 + side * 2.5 * n, low), n * 4_000_000)
+    assert tracker.referenced
+    assert_at(tracker.position, start + side * 2.5 * 17, 1e-14 + math.ulp(low))
+
+
+@pytest.mark.parametrize('low', RANGES)
+def test_dithering_around_the_wrap_counts_nothing(low):
+    for wrap in (low, low + math.pi):
+        tracker = homed(wrap + 1e-3, low)
+        turns = {tracker.position.turns}
+        start = exact(tracker.position)
+        for n in range(1, 200):
+            offset = (-1) ** n * 1e-3 * (n % 5) / 4.0
+            tracker.update(reading(oracle.mp.mpf(wrap) + offset, low), n * 1_000_000)
+            turns.add(tracker.position.turns)
+            assert_at(tracker.position, start - 1e-3 + offset, 1e-14 + 4 * math.ulp(low))
+        assert max(turns) - min(turns) <= 1
+
+
+@SIDES
+def test_position_is_exact_after_ten_thousand_million_turns(actuator, side):
+    """By an encoder that wraps: 1e-12 rad and 1e-12 e against the oracle, in either direction."""
+    tracker = homed(0.3)
+    tracker.position = RotorPosition(side * MANY, tracker.position.angle)
+    start = side * MANY * TAU + oracle.mp.mpf(0.3)
+    truth, positions = [], []
+    for n in range(1, 300):
+        truth.append(start + side * oracle.mp.mpf('2.3') * n)
+        tracker.update(reading(truth[-1]), n * 4_000_000)
+        positions.append(tracker.relative_to(0.0, 1))
+    assert tracker.referenced
+    turns, angles = np.transpose(positions)
+    state = solve(actuator, angles, rotor_turns=turns)
+    assert_within(position_errors(state, actuator, truth), 1e-14)
+
+
+@SIDES
+@given(st.floats(0.0, 2.0 * math.pi * MANY))
+@example(2.0 * math.pi * MANY)
+def test_multi_turn_encoder_is_taken_at_its_word(actuator, side, position):
+    """What is lost is what the encoder's own float64 has lost, whatever happened before."""
+    tracker = encoder(single_turn=False)
+    for stamp, value in enumerate((0.0, -1e5, side * position)):
+        tracker.update(value, stamp)
+        assert tracker.referenced
+    angle = tracker.relative_to(0.0, 1)
+    assert_at(angle, oracle.mp.mpf(side * position), 1e-15)
+    state = solve(actuator, angle.angle, rotor_turns=angle.turns)
+    truth = [oracle.rotor_angle_of(side * position)]
+    assert_within(position_errors(state, actuator, truth), 1e-12)
+
+
+# -- gaps ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ('max_speed', 'elapsed', 'known'),
+    [
+        (10.0, 0.314, True),
+        (math.nextafter(math.pi, 0.0), 1.0, True),
+        (math.pi, 1.0, False),
+        (10.0, 0.315, False),
+        (650.0, 0.0048, True),
+        (650.0, 0.0049, False),
+        (10.0, 0.0, True),
+    ],
+)
+@pytest.mark.parametrize('velocities', [(None, None), (None, 1.0), (1.0, None)], ids=str)
+def test_gaps_of_half_a_turn_leave_the_turns_unknown(max_speed, elapsed, known, velocities):
+    """Without a velocity at both ends nothing narrows what the rotor could have turned."""
+    tracker = encoder(max_speed=max_speed, max_acceleration=1e-3)
+    tracker.update(0.1, 10**12, velocities[0])
+    tracker.home(0.0, 1)
+    tracker.update(0.2, 10**12 + round(elapsed * 1e9), velocities[1])
+    assert tracker.referenced is known
+
+
+def test_turns_are_unknown_until_homed_and_after_every_gap():
+    tracker = encoder()
+    assert not tracker.referenced
+    tracker.update(0.1, 0)
+    tracker.update(0.2, 1_000_000)
+    assert not tracker.referenced
+    tracker.home(0.0, 1)
+    assert tracker.referenced
+    tracker.update(0.3, 2_000_000)
+    assert tracker.referenced
+    tracker.update(0.4, 1_000_000_000)
+    assert not tracker.referenced
+    tracker.update(0.5, 1_001_000_000)
+    assert not tracker.referenced
+    tracker.home(0.0, 1)
+    assert tracker.referenced
+
+
+@SIDES
+def test_counting_goes_on_from_the_nearest_turn_after_a_gap(side):
+    tracker = homed(0.0)
+    tracker.position = RotorPosition(side * 5, 0.0)
+    tracker.update(reading(side * 3.0), 10**9)
+    assert not tracker.referenced
+    assert_at(tracker.position, side * (5 * TAU + 3.0))
+    tracker.update(reading(side * 3.5), 10**9 + 1_000_000)
+    assert_at(tracker.position, side * (5 * TAU + 3.5))
+
+
+def test_multi_turn_encoders_know_their_turns_after_any_gap():
+    tracker = encoder(single_turn=False)
+    tracker.update(1.0, 0)
+    tracker.update(1e6, 10**15)
+    assert tracker.referenced
+    assert_at(tracker.position, oracle.mp.mpf(1e6))
+
+
+def reachable(v0: float, v1: float, acceleration: float, elapsed: float, side: int) -> float:
+    """Simulate the farthest way from speed v0 to v1: full acceleration while a return is left."""
+    steps = 2000
+    dt, speed, way = elapsed / steps, v0, 0.0
+    for n in range(steps):
+        left = elapsed - (n + 1) * dt
+        faster = speed + side * acceleration * dt
+        if side * (faster - v1) > acceleration * left:
+            faster = v1 + side * acceleration * left
+        way += 0.5 * (speed + faster) * dt
+        speed = faster
+    assert speed == pytest.approx(v1, abs=1e-9 * (1.0 + acceleration))
+    return way
+
+
+@pytest.mark.parametrize(
+    'speeds', [(0.0, 0.0), (50.0, 50.0), (-30.0, 45.0), (80.0, -10.0)], ids=str
+)
+@pytest.mark.parametrize('elapsed', [0.2, 0.7])
+def test_velocities_narrow_a_gap_to_what_is_reachable(speeds, elapsed):
+    """The acceleration at which simulated extremes are a turn apart divides known from unknown."""
+    low, high = abs(speeds[1] - speeds[0]) / elapsed, 1e4
+    for _ in range(30):
+        middle = 0.5 * (low + high)
+        ways = [reachable(*speeds, middle, elapsed, side) for side in (-1, 1)]
+        low, high = (middle, high) if ways[1] - ways[0] < 2.0 * math.pi else (low, middle)
+
+    def after_gap(acceleration: float, way: float) -> RotorTurns:
+        tracker = encoder(max_speed=1e4, max_acceleration=acceleration)
+        tracker.update(0.0, 0, speeds[0])
+        tracker.home(0.0, 1)
+        tracker.update(reading(way), round(elapsed * 1e9), speeds[1])
+        return tracker
+
+    assert not after_gap(1.01 * high, ways[0]).referenced
+    for way in (0.99 * ways[0] + 0.01 * ways[1], 0.01 * ways[0] + 0.99 * ways[1]):
+        tracker = after_gap(0.99 * low, way)
+        assert tracker.referenced
+        assert_at(tracker.position, oracle.mp.mpf(way))
+
+
+@pytest.mark.parametrize('seed', range(6))
+def test_turns_are_right_as_long_as_they_are_called_known(seed):
+    """Random motions within the limits of speed and acceleration, sampled at random gaps."""
+    generator = np.random.default_rng(seed)
+    max_speed, max_acceleration, dt = 100.0, 1500.0, 1_000_000
+    narrowed = lost = 0
+    for _ in range(40):
+        way, speed, stamp = oracle.mp.mpf(0), generator.uniform(-max_speed, max_speed), 0
+        tracker = encoder(max_speed=max_speed, max_acceleration=max_acceleration)
+        tracker.update(0.0, 0, speed)
+        tracker.home(0.0, 1)
+        for _ in range(20):
+            gap = int(generator.integers(1, 130))
+            acceleration = 0.0
+            for n in range(gap):
+                if n % 20 == 0:
+                    acceleration = generator.choice([-1.0, 1.0]) * max_acceleration
+                faster = float(np.clip(speed + acceleration * dt * 1e-9, -max_speed, max_speed))
+                way += 0.5 * (speed + faster) * dt * 1e-9
+                speed = faster
+            stamp += gap * dt
+            tracker.update(reading(way), stamp, speed)
+            if not tracker.referenced:
+                lost += 1
+                break
+            assert_at(tracker.position, way, 1e-9)
+            narrowed += max_speed * gap * dt * 1e-9 >= math.pi
+    assert narrowed > 20
+    assert lost > 5
+
+
+@pytest.mark.parametrize(
+    ('speeds', 'elapsed'),
+    [((150.0, 150.0), 0.1), ((-150.0, -150.0), 0.1), ((0.0, 100.0), 0.1), ((90.0, -90.0), 0.1)],
+)
+def test_velocities_beyond_the_limits_narrow_nothing(speeds, elapsed):
+    """A rotor that is faster, or changes faster, than it can: no way of it is known."""
+    tracker = encoder(max_speed=100.0, max_acceleration=500.0)
+    tracker.update(0.0, 0, speeds[0])
+    tracker.home(0.0, 1)
+    tracker.update(0.0, round(elapsed * 1e9), speeds[1])
+    assert not tracker.referenced
+
+
+# -- zero, direction, home -----------------------------------------------------------------------
+
+
+@given(
+    st.floats(-2.0 * math.pi * MANY, 2.0 * math.pi * MANY),
+    st.floats(-2.0 * math.pi * MANY, 2.0 * math.pi * MANY) | st.floats(-10.0, 10.0),
+    st.sampled_from([1, -1]),
+)
+def test_zero_and_direction_lose_nothing(position, zero, direction):
+    tracker = encoder(single_turn=False)
+    tracker.update(position, 0)
+    angle = tracker.relative_to(zero, direction)
+    assert_at(angle, oracle.rotor_angle_of(position, zero, direction), 4e-15)
+
+
+@pytest.mark.parametrize('direction', [1, -1])
+@pytest.mark.parametrize('single_turn', [True, False], ids=['single', 'multi'])
+@pytest.mark.parametrize('turns', [0, 3, -3, MANY, -MANY])
+@pytest.mark.parametrize('rotor_angle', [0.0, 0.7, -19.0, 1000.0])
+def test_home_makes_the_rotor_angle_what_it_is_told(direction, single_turn, turns, rotor_angle):
+    """And motion goes on from there; a multi-turn encoder keeps its own float64's last bit."""
+    tracker = encoder(single_turn=single_turn)
+    start = 2.0 if single_turn else float(2.0 + TAU * turns)
+    tracker.update(start, 0)
+    if single_turn:
+        tracker.position = RotorPosition(turns, tracker.position.angle)
+    zero = tracker.home(rotor_angle, direction)
+    assert tracker.referenced
+    rounding = 4e-15 + math.ulp(rotor_angle) + math.ulp(start)
+    assert_at(tracker.relative_to(zero, direction), oracle.mp.mpf(rotor_angle), rounding)
+    now = tracker.relative_to(zero, direction)
+    stop = reading(start + 2.5) if single_turn else start + 2.5
+    tracker.update(stop, 1_000_000)
+    moved = float(exact(tracker.relative_to(zero, direction)) - exact(now))
+    travelled = 2.5 if single_turn else stop - start
+    assert_close(moved, direction * travelled, 4e-15)
+
+
+def test_home_counts_from_the_present_turn_of_a_single_turn_encoder():
+    """Its zero is a position of the encoder, within a turn of the reading for small angles."""
+    tracker = homed(0.0)
+    tracker.position = RotorPosition(12, 0.0)
+    tracker.update(2.0, 1_000_000)
+    zero = tracker.home(0.5, -1)
+    assert zero == 2.5
+    assert tracker.position == RotorPosition(0, 2.0)
+
+
+@pytest.mark.parametrize('single_turn', [True, False])
+def test_reset_forgets_position_and_turns(single_turn):
+    tracker = encoder(single_turn=single_turn)
+    tracker.update(1.0, 10**9, 5.0)
+    tracker.home(0.0, 1)
+    tracker.reset()
+    assert tracker.position is None
+    assert tracker.referenced is not single_turn
+    tracker.update(-2.0, 0)  # earlier than before
+    assert_at(tracker.position, oracle.mp.mpf(-2.0))
+
+
+@pytest.mark.parametrize('single_turn', [True, False])
+def test_no_position_before_the_first_update(single_turn):
+    tracker = encoder(single_turn=single_turn)
+    assert tracker.position is None
+    with pytest.raises(RuntimeError, match='before the first update'):
+        tracker.relative_to(0.0, 1)
+    with pytest.raises(RuntimeError, match='before the first update'):
+        tracker.home(0.0, 1)
