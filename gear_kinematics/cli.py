@@ -65,7 +65,7 @@ def _demo(_options: argparse.Namespace) -> int:
     # Needs ROS, which the other commands do without.
     from gear_kinematics import demo  # noqa: PLC0415
 
-    return _DONE if demo.run(Console()).agrees(demo.TOLERANCE) else _FAILED
+    return _DONE if demo.run(Console()).passed else _FAILED
 
 
 def _urdf(options: argparse.Namespace) -> int:

@@ -2,15 +2,28 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any, NamedTuple, Self
 
-from gear_kinematics.kinematics import RotorPosition, RotorTurns
-from gear_kinematics.messages import JointState, MalformedMessageError, decode_joint_state
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
+from gear_kinematics.message_batches import decode_joint_states, joint_index
+from gear_kinematics.messages import MalformedMessageError, decode_joint_state
+
+Array = NDArray[Any]
+
+_MALFORMED = 'not a JointState'
+_JOINT_MISSING = 'joint missing'
+_POSITION_MISSING = 'position missing'
+_POSITION_NOT_FINITE = 'position not finite'
+_OUT_OF_ORDER = 'out of order'
 
 _CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
-_MAX_POSITION = 1e300  # rad
+_MAX_POSITION = 1e300  # rad: beyond it, the output angle might not be finite any more
 
 
 class RejectedInputError(ValueError):
@@ -56,6 +69,20 @@ class RotorSample(NamedTuple):
     """N·m; None where the message has none."""
 
 
+class RotorSamples(NamedTuple):
+    """Valid rotor states as arrays (n,)."""
+
+    stamp: Array
+    """ns."""
+    turns: Array
+    angle: Array
+    """rad: the rotor angle φ2 is 2π turns + angle."""
+    velocity: Array
+    """rad/s; NaN where the message has none."""
+    effort: Array
+    """N·m; NaN where the message has none."""
+
+
 class RotorInput:
     """Takes rotor_state messages one by one and keeps account of them."""
 
@@ -93,6 +120,11 @@ class RotorInput:
         """Whether the number of the rotor's turns is known."""
         return self._turns.referenced
 
+    @property
+    def unknown_turns(self) -> int:
+        """Gaps in which the rotor could have turned half a turn or more unseen."""
+        return self._turns.unknown_gaps
+
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         """Take the next message.
 
@@ -118,25 +150,107 @@ class RotorInput:
         """
         return self._turns.home(rotor_angle, self._settings.rotor_direction)
 
+    def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
+        """Take many messages at once, with the same outcome as one by one.
+
+        Args:
+            messages: serialised sensor_msgs/JointState.
+            received: the clock at each, ns, for messages that have no stamp.
+        """
+        self.received += len(messages)
+        states = decode_joint_states(messages, self._settings.rotor_joint)
+        usable = np.ones(len(messages), bool)
+        # In the order in which `accept` comes upon them.
+        for faulty, cause in (
+            (states.malformed, _MALFORMED),
+            (~states.joint_found, _JOINT_MISSING),
+            (~states.present[:, 0], _POSITION_MISSING),
+            (~(np.abs(states.values[:, 0]) <= _MAX_POSITION), _POSITION_NOT_FINITE),
+        ):
+            if count := int(np.count_nonzero(faulty & usable)):
+                self.rejected[cause] += count
+            usable &= ~faulty
+        stamps, values = states.stamp[usable], states.values[usable]
+        values[~np.isfinite(values)] = np.nan
+        if self._settings.single_turn or not self._in_order(stamps):
+            return self._one_by_one(stamps, values, np.asarray(received, np.int64)[usable])
+        return self._all_at_once(stamps, values)
+
+    def _in_order(self, stamps: Array) -> bool:
+        in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
+        follows = self.last is None or not len(stamps) or stamps[0] >= self.last.stamp
+        return bool(in_order and follows)
+
+    def _all_at_once(self, stamps: Array, values: Array) -> RotorSamples:
+        turns, angle = split_turns(values[:, 0])
+        zero_turns, zero_angle = split_turns(self._settings.rotor_zero)
+        direction = self._settings.rotor_direction
+        samples = RotorSamples(
+            stamps,
+            direction * (turns - zero_turns),
+            direction * (angle - zero_angle),
+            direction * values[:, 1],
+            direction * values[:, 2],
+        )
+        if len(stamps):
+            before = stamps[0] - 1 if self.last is None else self.last.stamp
+            self.duplicates += int(np.count_nonzero(np.diff(stamps, prepend=before) == 0))
+            # The last goes the ordinary way as well, for what comes after it.
+            self.last = None
+            self._take_row(int(stamps[-1]), values[-1].tolist())
+        return samples
+
+    def _one_by_one(self, stamps: Array, values: Array, received: Array) -> RotorSamples:
+        samples = []
+        for stamp, row, now in zip(
+            stamps.tolist(), values.tolist(), received.tolist(), strict=True
+        ):
+            try:
+                samples.append(self._take_row(self._stamp(stamp, partial(int, now)), row))
+            except RejectedInputError as rejection:
+                self.rejected[str(rejection)] += 1
+        # None becomes NaN.
+        rows = [(*sample.position, sample.velocity, sample.effort) for sample in samples]
+        columns = np.array(rows, np.float64).reshape(len(rows), 4).T
+        return RotorSamples(np.array([sample.stamp for sample in samples], np.int64), *columns)
+
+    def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
+        position, velocity, effort = row
+        return self._take(stamp, position, _finite_or_none(velocity), _finite_or_none(effort))
+
     def _accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         try:
             message = decode_joint_state(data)
         except MalformedMessageError as error:
-            raise RejectedInputError('not a JointState') from error
-        index = self._index(message)
+            raise RejectedInputError(_MALFORMED) from error
+        index = joint_index(message.names, self._settings.rotor_joint.encode())
+        if index is None:
+            raise RejectedInputError(_JOINT_MISSING)
         if index >= len(message.position):
-            raise RejectedInputError('position missing')
+            raise RejectedInputError(_POSITION_MISSING)
         position = message.position[index]
-        # NaN compares false; beyond the bound the output angle might not be finite any more.
-        if not abs(position) <= _MAX_POSITION:
-            raise RejectedInputError('position not finite')
-        stamp = message.stamp
-        if stamp == 0:
-            stamp = now()
-            self.zero_stamps += 1
+        if not abs(position) <= _MAX_POSITION:  # NaN compares false
+            raise RejectedInputError(_POSITION_NOT_FINITE)
+        return self._take(
+            self._stamp(message.stamp, now),
+            position,
+            *(
+                _finite_or_none(values[index]) if index < len(values) else None
+                for values in (message.velocity, message.effort)
+            ),
+        )
+
+    def _stamp(self, stamp: int, now: Callable[[], int]) -> int:
+        """The stamp, or the clock where there is none."""
+        if stamp:
+            return stamp
+        self.zero_stamps += 1
+        return now()
+
+    def _take(
+        self, stamp: int, position: float, velocity: float | None, effort: float | None
+    ) -> RotorSample:
         self._check_order(stamp)
-        velocity = _finite_or_none(message.velocity, index)
-        effort = _finite_or_none(message.effort, index)
         self._turns.update(position, stamp, velocity)
         direction = self._settings.rotor_direction
         self.last = RotorSample(
@@ -147,30 +261,17 @@ class RotorInput:
         )
         return self.last
 
-    def _index(self, message: JointState) -> int:
-        joint = self._settings.rotor_joint
-        if joint:
-            try:
-                return message.names.index(joint.encode())
-            except ValueError:
-                raise RejectedInputError('joint missing') from None
-        if len(message.names) != 1:
-            raise RejectedInputError('joint missing')
-        return 0
-
     def _check_order(self, stamp: int) -> None:
         if self.last is None or stamp > self.last.stamp:
             return
         if stamp == self.last.stamp:
             self.duplicates += 1
         elif self.last.stamp - stamp <= _CLOCK_RESET:
-            raise RejectedInputError('out of order')
+            raise RejectedInputError(_OUT_OF_ORDER)
         else:
             self.resets += 1
             self._turns.reset()
 
 
-def _finite_or_none(values: tuple[float, ...], index: int) -> float | None:
-    if index < len(values) and math.isfinite(values[index]):
-        return values[index]
-    return None
+def _finite_or_none(value: float) -> float | None:
+    return value if math.isfinite(value) else None

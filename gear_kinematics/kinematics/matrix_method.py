@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import MotionState
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.kinematics.transforms import (
     cam_translation,
     output_turn,
@@ -61,9 +62,15 @@ def solve(
     rotor_angle: ArrayLike,
     rotor_velocity: ArrayLike = 0.0,
     rotor_acceleration: ArrayLike = 0.0,
+    *,
+    rotor_turns: ArrayLike = 0,
 ) -> MotionState:
-    """Solve the motion of all bodies; arguments and result as of `motion.solve`."""
-    inputs = (rotor_angle, rotor_velocity, rotor_acceleration)
+    """Solve the motion of all bodies; arguments and result as of `motion.solve`.
+
+    The turns are added to the angle as they are, so that many of them cost its last digits.
+    """
+    angle = TURN * np.asarray(rotor_turns, dtype=np.float64) + rotor_angle
+    inputs = (angle, rotor_velocity, rotor_acceleration)
     rotor = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
     output = [output_turn(mechanism, value) for value in rotor]
     on_cam = [satellite_turn(mechanism, value) for value in rotor]
@@ -77,10 +84,9 @@ def solve(
     slides = _slides(satellite_to_stator.column(_X), output_to_stator.column(_Y), satellite)
     oldham = output_to_stator.column(_Y) @ slides.row(1)  # eq. (14)
     slide, arm_slide = np.moveaxis(slides.vectors()[:2], -1, 0)
-    turn = 2.0 * np.pi
     return MotionState.from_orders(
         output=np.stack(output),
-        output_turn_angle=output[0] - turn * np.rint(output[0] / turn),
+        output_turn_angle=output[0] - TURN * np.rint(output[0] / TURN),
         satellite=satellite.vectors(),
         oldham=oldham.vectors(),
         satellite_slide=slide,

@@ -68,6 +68,7 @@ class RotorTurns:
         self.single_turn = single_turn
         self.max_speed = max_speed
         self.max_acceleration = max_acceleration
+        self.unknown_gaps = 0
         self.reset()
 
     def reset(self) -> None:
@@ -90,6 +91,7 @@ class RotorTurns:
         if self.single_turn and self.position is not None:
             expected, known = self._expected_turn((stamp - self._stamp) * 1e-9, velocity)
             self.referenced = self.referenced and known
+            self.unknown_gaps += not known
             apparent = angle - self.position.angle
             turns = self.position.turns + round((expected - apparent) / TURN)
         self.position = RotorPosition(turns, angle)

@@ -1,0 +1,135 @@
+"""Why recorded outputs differ: a constant offset, another mechanism, another order of poses."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import permutations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import Mechanism
+
+Array = NDArray[np.float64]
+
+_MOST_TEETH = 1000
+_ENOUGH_TURNING = 0.1  # rad of the rotor, to tell a ratio
+_MOST_BODIES = 6  # whose orders are tried
+
+
+@dataclass(slots=True)
+class AngleFit:
+    """A straight line through recorded output angles over rotor angles, by running sums."""
+
+    count: int = 0
+    lowest_error: float = math.inf
+    highest_error: float = -math.inf
+    _origin: tuple[float, float] = (0.0, 0.0)
+    _x: float = 0.0
+    _y: float = 0.0
+    _xx: float = 0.0
+    _xy: float = 0.0
+    _yy: float = 0.0
+
+    def update(self, rotor_angle: Array, recorded: Array, error: Array) -> None:
+        """Take the next samples (n,), rad; `error` is recorded less recomputed."""
+        if not len(recorded):
+            return
+        if not self.count:
+            self._origin = (float(rotor_angle[0]), float(recorded[0]))
+        x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
+        self.count += len(x)
+        self._x += float(x.sum())
+        self._y += float(y.sum())
+        self._xx += float(x @ x)
+        self._xy += float(x @ y)
+        self._yy += float(y @ y)
+        self.lowest_error = min(self.lowest_error, float(error.min()))
+        self.highest_error = max(self.highest_error, float(error.max()))
+
+    def offset(self, tolerance: float) -> float | None:
+        """Give the constant offset of all errors, rad, or None where they are not constant."""
+        if not self.count or self.highest_error - self.lowest_error > 2.0 * tolerance:
+            return None
+        offset = 0.5 * (self.lowest_error + self.highest_error)
+        return offset if abs(offset) > tolerance else None
+
+    def slope(self) -> tuple[float, float] | None:
+        """Give output per rotor angle and its uncertainty, or None: not turned, or no line."""
+        if self.count < 3:  # noqa: PLR2004, two points always lie on a line
+            return None
+        n = self.count
+        xx = self._xx - self._x**2 / n
+        xy = self._xy - self._x * self._y / n
+        yy = self._yy - self._y**2 / n
+        if xx < n * _ENOUGH_TURNING**2:
+            return None
+        slope = xy / xx
+        scatter = max(yy - slope * xy, 0.0) / n
+        if scatter > 1e-6 * yy / n:
+            return None
+        # What the sums themselves lose, and what the scatter leaves open.
+        return slope, abs(slope) * 1e-9 + 5.0 * math.sqrt(scatter / xx)
+
+
+def diagnose(mechanism: Mechanism, fit: AngleFit, tolerance: float) -> str | None:
+    """Name what the recorded output angles have in common, or None.
+
+    Args:
+        mechanism: that was assumed.
+        fit: of the recorded output angles.
+        tolerance: of the angles, rad.
+    """
+    offset = fit.offset(tolerance)
+    if offset is not None:
+        return (
+            f'the recorded output angle is off by a constant {offset:.12g} rad, as after homing; '
+            '--allow-offset accepts it'
+        )
+    line = fit.slope()
+    if line is None:
+        return None
+    slope, uncertainty = line
+    assumed = float(1 / mechanism.gear_ratio)
+    if abs(slope - assumed) <= uncertainty:
+        return None
+    if abs(slope + assumed) <= uncertainty:
+        return 'the sign is flipped: the recorded output turns the other way (rotor_direction?)'
+    pair = _tooth_pair(mechanism, abs(slope), uncertainty)
+    if pair is None:
+        return f'the recorded ratio is {1.0 / slope:.9g}, not {mechanism.gear_ratio}'
+    ring, satellite = pair
+    flipped = ' with the sign flipped' if slope > 0.0 else ''
+    return (
+        f'the recorded ratio is that of ring_teeth {ring}, satellite_teeth {satellite} '
+        f'({Fraction(-satellite, ring - satellite)}){flipped}, not of {mechanism.ring_teeth}, '
+        f'{mechanism.satellite_teeth} ({mechanism.gear_ratio})'
+    )
+
+
+def _tooth_pair(mechanism: Mechanism, ratio: float, uncertainty: float) -> tuple[int, int] | None:
+    """The teeth whose (zk - zs)/zs is the ratio, as near to the assumed ones as there are."""
+    zk, zs = mechanism.ring_teeth, mechanism.satellite_teeth
+    candidates = [(round(zs * (1.0 + ratio)), zs), (zk, round(zk / (1.0 + ratio)))]
+    fraction = Fraction(ratio).limit_denominator(_MOST_TEETH)
+    if fraction:
+        scale = max(1, round(zs / fraction.denominator))
+        satellite = scale * fraction.denominator
+        candidates.append((satellite + scale * fraction.numerator, satellite))
+    for ring, satellite in candidates:
+        if ring > satellite > 0 and abs((ring - satellite) / satellite - ratio) <= uncertainty:
+            return ring, satellite
+    return None
+
+
+def pose_order(
+    bodies: list[str], recorded: Array, expected: Array, tolerance: float
+) -> str | None:
+    """Name the order in which recorded positions (bodies, 3) are the expected ones, or None."""
+    if len(bodies) > _MOST_BODIES:
+        return None
+    for order in permutations(range(len(bodies))):
+        if np.abs(recorded - expected[list(order)]).max() <= tolerance:
+            names = ', '.join(bodies[k] for k in order)
+            return f'the poses are in another order: {names}'
+    return None

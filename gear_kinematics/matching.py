@@ -1,0 +1,127 @@
+"""Matching published messages with the samples that call for them, by header stamp, in a stream.
+
+A node answers its inputs in order, so that nearly all messages match in long runs; only where a
+run breaks is a single message looked up. Memory is bounded by a window of samples.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+WINDOW = 16_384
+"""Samples that are kept for messages that come late; what comes later still is extra."""
+_NEW_BEGINNING = 1_000_000_000  # ns: a stamp older by more is no disorder
+
+
+class Window:
+    """The samples that messages can still be matched with; columns by name, (n, ...)."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self.columns: dict[str, Array] = {}
+
+    def __len__(self) -> int:
+        return len(self.columns['stamp']) if self.columns else 0
+
+    def append(self, **columns: Array) -> None:
+        """Add samples; `stamp` is one of the columns."""
+        old = self.columns
+        self.columns = {
+            name: np.concatenate([old[name], column]) if old else column
+            for name, column in columns.items()
+        }
+
+    def drop(self, count: int) -> None:
+        """Forget the oldest."""
+        self.columns = {name: column[count:] for name, column in self.columns.items()}
+
+
+class Matcher:
+    """Matches the messages of one topic, and counts what does not."""
+
+    def __init__(self) -> None:
+        """Start with nothing seen."""
+        self.messages = 0
+        self.compared = 0
+        self.missing = 0
+        self.extra = 0
+        self.duplicates = 0
+        self.out_of_order = 0
+        self.first_missing: int | None = None
+        self.first_extra: int | None = None
+        self.matched = np.zeros(0, bool)
+        """Which samples of the window have their message."""
+        self._next = 0
+        self._last_stamp: int | None = None
+
+    def extend(self, count: int) -> None:
+        """Take note of new samples in the window."""
+        self.matched = np.concatenate([self.matched, np.zeros(count, bool)])
+
+    def see(self, stamps: Array) -> None:
+        """Count new messages, ns, and what is wrong with their order."""
+        self.messages += len(stamps)
+        if not len(stamps):
+            return
+        before = stamps[0] - 1 if self._last_stamp is None else self._last_stamp
+        steps = np.diff(stamps, prepend=before)
+        self.duplicates += int(np.count_nonzero(steps == 0))
+        self.out_of_order += int(np.count_nonzero((steps < 0) & (steps >= -_NEW_BEGINNING)))
+        self._last_stamp = int(stamps[-1])
+
+    def match(self, stamps: Array, window: Array) -> Array:
+        """Find the sample of each message: its index in the window, or -1. Marks it as matched.
+
+        Args:
+            stamps: of messages, (n,), ns.
+            window: stamps of the samples, ns.
+        """
+        index = np.full(len(stamps), -1, np.intp)
+        k = 0
+        while k < len(stamps):
+            length = self._run(stamps[k:], window)
+            index[k : k + length] = np.arange(self._next, self._next + length)
+            self.matched[self._next : self._next + length] = True
+            self._next += length
+            k += length
+            if k < len(stamps):
+                index[k] = self._look_up(stamps[k], window)
+                k += 1
+        self.compared += int(np.count_nonzero(index >= 0))
+        return index
+
+    def give_up(self, stamps: Array) -> None:
+        """Count messages, by their stamps, as extra."""
+        self.extra += len(stamps)
+        if len(stamps) and self.first_extra is None:
+            self.first_extra = int(stamps[0])
+
+    def drop(self, count: int, window: Array) -> None:
+        """Count the oldest samples of the window that have no message, before they go."""
+        unmatched = np.flatnonzero(~self.matched[:count])
+        self.missing += len(unmatched)
+        if len(unmatched) and self.first_missing is None:
+            self.first_missing = int(window[unmatched[0]])
+        self.matched = self.matched[count:]
+        self._next = max(self._next - count, 0)
+
+    def _run(self, stamps: Array, window: Array) -> int:
+        """How many messages match the next samples one after the other."""
+        longest = min(len(stamps), len(window) - self._next)
+        part = slice(self._next, self._next + longest)
+        alike = (stamps[:longest] == window[part]) & ~self.matched[part]
+        return longest if alike.all() else int(np.argmin(alike))
+
+    def _look_up(self, stamp: int, window: Array) -> int:
+        found = np.flatnonzero((window == stamp) & ~self.matched)
+        if not len(found):
+            return -1
+        # Of a stamp that occurs again after a new beginning, the one that is nearest to come.
+        ahead = found[found >= self._next]
+        index = int(ahead[0] if len(ahead) else found[-1])
+        self.matched[index] = True
+        self._next = max(self._next, index + 1)
+        return index
