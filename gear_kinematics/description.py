@@ -22,17 +22,17 @@ _COLOURS = {
 
 
 def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> list[str]:
-    """Name every joint of the URDF: rotor, satellites, Oldham couplings, output shaft."""
+    """Name every joint of the URDF: rotor, satellites, Oldham couplings, output shaft.
+
+    Raises:
+        ValueError: if `output_joint` is empty or the name of another joint.
+    """
     branches = [branch.name for branch in mechanism.branches]
-    return [
-        frame_prefix + name
-        for name in (
-            'rotor',
-            *(f'satellite_{branch}' for branch in branches),
-            *(f'oldham_{branch}' for branch in branches),
-            output_joint,
-        )
-    ]
+    names = ['rotor']
+    names += [f'{kind}_{branch}' for kind in ('satellite', 'oldham') for branch in branches]
+    if not output_joint or output_joint in names:
+        raise ValueError(f'output_joint {output_joint!r} is empty or the name of another joint')
+    return [frame_prefix + name for name in (*names, output_joint)]
 
 
 def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix: str) -> str:
@@ -45,11 +45,9 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
         frame_prefix: put before every link and joint name.
 
     Raises:
-        ValueError: if `output_joint` is the name of another joint.
+        ValueError: if `output_joint` is empty or the name of another joint.
     """
-    names = joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)
-    if len(set(names)) < len(names):
-        raise ValueError(f'output_joint {output_joint!r} is the name of another joint')
+    joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)  # may refuse
     e = mechanism.eccentricity
     ring_radius = 0.5 * module * mechanism.ring_teeth
     satellite_radius = 0.5 * module * mechanism.satellite_teeth

@@ -25,6 +25,7 @@ from rclpy.event_handler import (
 )
 from rclpy.exceptions import ParameterException
 from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
@@ -43,7 +44,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from gear_kinematics import parameters
-from gear_kinematics.description import urdf
+from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import InputMonitor
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
@@ -174,6 +175,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if known and known.choices and parameter.value not in known.choices:
                 reason = f'{parameter.name} must be one of {", ".join(known.choices)}'
                 return SetParametersResult(successful=False, reason=reason)
+            # The first declaration comes before the mechanism, which then checks it itself.
+            if parameter.name == 'output_joint' and hasattr(self, '_mechanism'):
+                try:
+                    joint_names(self._mechanism, output_joint=parameter.value, frame_prefix='')
+                except ValueError as error:
+                    return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
     def _configure(self) -> None:
@@ -282,7 +289,12 @@ def main(args: list[str] | None = None) -> int:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         node = GearStatePublisher()
     except (ParameterException, ValueError, RuntimeError) as error:
-        print(f'gear_state_publisher: {error}', file=sys.stderr)
+        unknown = (
+            'unknown arguments '
+            if isinstance(error, rclpy_implementation.UnknownROSArgsError)
+            else ''
+        )
+        print(f'gear_state_publisher: {unknown}{error}', file=sys.stderr)
         rclpy.try_shutdown()
         return _UNUSABLE
     executor = make_executor()

@@ -4,6 +4,7 @@ The default values stand in config/actuator.yaml and nowhere else.
 """
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -14,6 +15,10 @@ import yaml
 
 from gear_kinematics.kinematics import Branch
 from gear_kinematics.share import share_directory
+
+_NODE_NAMES = ('gear_state_publisher', '*', '**')
+_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+"""Parameters that every node has, which mean nothing here."""
 
 
 class ConfigError(ValueError):
@@ -138,28 +143,51 @@ def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]
 
 
 def _read(path: Path) -> dict[str, Any]:
-    """The ros__parameters of all nodes that the file names, flattened to dotted names."""
+    """The ros__parameters that the file has for the node, flattened to dotted names."""
     try:
-        document = yaml.safe_load(path.read_text(encoding='utf-8'))
+        document = yaml.load(path.read_text(encoding='utf-8'), _RosLoader)  # noqa: S506, it is safe
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f'{path}: {error}') from error
     except yaml.YAMLError as error:
         raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error
-    found: dict[str, Any] = {}
-    for section in document.values() if isinstance(document, dict) else ():
-        if isinstance(section, dict) and isinstance(section.get('ros__parameters'), dict):
-            found |= _flatten(section['ros__parameters'])
+    found = _parameters_of_node(document)
     if not found:
-        raise ConfigError(f'{path}: no ros__parameters in it')
+        raise ConfigError(f'{path}: no ros__parameters of gear_state_publisher in it')
+    return {
+        name: value
+        for name, value in found.items()
+        if name not in _EVERY_NODE and not name.startswith('qos_overrides.')
+    }
+
+
+class _RosLoader(yaml.SafeLoader):
+    """Reads numbers as ROS does: 15e-4 is one."""
+
+
+_RosLoader.add_implicit_resolver(
+    'tag:yaml.org,2002:float',
+    re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
+    list('-+.0123456789'),
+)
+
+
+def _parameters_of_node(tree: Any, name: str = '') -> dict[str, Any]:
+    """Those below the node's name or a wildcard, in whatever namespace."""
+    found: dict[str, Any] = {}
+    for key, value in tree.items() if isinstance(tree, dict) else ():
+        if key == 'ros__parameters':
+            if isinstance(value, dict) and name.rpartition('/')[2] in _NODE_NAMES:
+                found |= _flatten(value)
+        else:
+            found |= _parameters_of_node(value, str(key))
     return found
 
 
 def _flatten(tree: Mapping[Any, Any], prefix: str = '') -> dict[str, Any]:
     flat: dict[str, Any] = {}
     for key, value in tree.items():
-        flat |= (
-            _flatten(value, f'{prefix}{key}.')
-            if isinstance(value, dict)
-            else {f'{prefix}{key}': value}
-        )
+        if isinstance(value, dict):
+            flat |= _flatten(value, f'{prefix}{key}.')
+        else:
+            flat[f'{prefix}{key}'] = value
     return flat

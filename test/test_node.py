@@ -1,0 +1,177 @@
+"""The node within the test's own process: what needs no middleware between two processes."""
+
+import math
+import sys
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.exceptions import ParameterException
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+
+from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.node import GearStatePublisher, make_executor
+
+READ_ONLY = (
+    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
+    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position',
+)  # fmt: skip
+INTEGER_BOUNDS = {
+    'ring_teeth': (2, 100_000, 0),
+    'satellite_teeth': (1, 99_999, 0),
+    'rotor_direction': (-1, 1, 2),
+}
+BOUNDS = {
+    'eccentricity': (1e-6, 1.0),
+    'module': (1e-6, 0.1),
+    'rotor_zero': (-1e15, 1e15),
+    'home_angle': (-1e9, 1e9),
+    'max_rotor_speed': (1e-3, 1e6),
+    'max_rotor_acceleration': (1e-3, 1e9),
+    'input_timeout': (1e-3, 1e6),
+    'a.cam_phase': (-2.0 * math.pi, 2.0 * math.pi),
+    'b.axial_position': (-10.0, 10.0),
+}
+
+
+@pytest.fixture(scope='module')
+def context():
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    yield context
+    rclpy.shutdown(context=context)
+
+
+@pytest.fixture(scope='module')
+def node(context):
+    """Return a node for tests that leave it as it was."""
+    node = GearStatePublisher(context=context, namespace='in_process')
+    yield node
+    node.destroy_node()
+
+
+def refusal(context, **values) -> str:
+    """Give the reason why there is no node with these parameters."""
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    with pytest.raises((ParameterException, ValueError)) as caught:
+        GearStatePublisher(context=context, parameter_overrides=overrides)
+    return str(caught.value)
+
+
+def test_every_parameter_has_a_type_and_a_description(node):
+    own = [
+        name
+        for name in node.get_parameters_by_prefix('')
+        if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
+    ]
+    assert len(own) == 19
+    for name in own:
+        descriptor = node.describe_parameter(name)
+        assert descriptor.description
+        assert not descriptor.dynamic_typing
+
+
+def test_what_makes_the_mechanism_is_read_only_and_nothing_else(node):
+    found = {
+        name
+        for name in node.get_parameters_by_prefix('')
+        if not name.startswith(('qos_overrides', 'start_type_description'))
+        and node.describe_parameter(name).read_only
+    }
+    assert found == set(READ_ONLY)
+
+
+@pytest.mark.parametrize('name', INTEGER_BOUNDS)
+def test_bounds_of_integers_are_published(node, name):
+    [bounds] = node.describe_parameter(name).integer_range
+    assert (bounds.from_value, bounds.to_value, bounds.step) == INTEGER_BOUNDS[name]
+
+
+@pytest.mark.parametrize('name', BOUNDS)
+def test_bounds_of_numbers_are_published(node, name):
+    [bounds] = node.describe_parameter(name).floating_point_range
+    assert (bounds.from_value, bounds.to_value) == BOUNDS[name]
+
+
+def test_choices_are_published(node):
+    constraints = node.describe_parameter('rotor_encoder').additional_constraints
+    assert 'multi_turn' in constraints
+    assert 'single_turn' in constraints
+
+
+def test_default_joint_of_the_contract(node):
+    assert node.get_parameter('rotor_joint').value == 'rotor'
+
+
+@pytest.mark.parametrize(
+    ('values', 'words'),
+    [
+        ({'ring_teeth': 100_001}, ['ring_teeth', '100000']),
+        ({'satellite_teeth': 0}, ['satellite_teeth', '1']),
+        ({'satellite_teeth': 81}, ['satellite_teeth (81)', 'ring_teeth (80)']),
+        ({'satellite_teeth': 76.0}, ['satellite_teeth', 'INTEGER']),
+        ({'eccentricity': math.inf}, ['eccentricity', '1.0']),
+        ({'branches': ['a', '']}, ['branch name', "''"]),
+        ({'branches': ['a', 'b', 'a']}, ["'a'"]),
+        ({'branches': ['left', 'stator!']}, ["'stator!'"]),
+        ({'rotor_joint': 1}, ['rotor_joint', 'STRING']),
+        ({'rotor_encoder': ''}, ['rotor_encoder', 'multi_turn', 'single_turn']),
+        ({'rotor_zero': math.nan}, ['rotor_zero']),
+        ({'home_angle': -1.1e9}, ['home_angle', '1000000000']),
+        ({'input_timeout': 0.0}, ['input_timeout', '0.001']),
+        ({'output_joint': 'oldham_b'}, ['output_joint', 'oldham_b']),
+    ],
+)
+def test_unusable_parameter_makes_no_node(context, values, words):
+    reason = refusal(context, **values)
+    assert all(word in reason for word in words), reason
+
+
+def test_every_fault_of_the_mechanism_is_told(context):
+    overrides = [
+        Parameter('satellite_teeth', value=80),
+        Parameter('branches', value=['a', 'a']),
+    ]
+    with pytest.raises(MechanismError) as caught:
+        GearStatePublisher(context=context, parameter_overrides=overrides)
+    assert 'satellite_teeth' in str(caught.value)
+    assert 'more than once' in str(caught.value)
+
+
+def test_parameters_set_together_are_set_together_or_not_at_all(node):
+    values = {'rotor_zero': 1.0, 'rotor_direction': 3, 'home_angle': 0.5}
+    result = node.set_parameters_atomically(
+        [Parameter(name, value=value) for name, value in values.items()]
+    )
+    assert not result.successful
+    assert 'rotor_direction' in result.reason
+    assert [node.get_parameter(name).value for name in values] == [0.0, 1, 0.0]
+
+
+@pytest.mark.parametrize(
+    ('name', 'value'),
+    [('rotor_direction', 3), ('rotor_direction', 1.0), ('rotor_zero', math.nan), ('ring_teeth', 9),
+     ('rotor_encoder', 'x'), ('max_rotor_speed', 'fast')],
+)  # fmt: skip
+def test_refusal_names_the_parameter_only_once(node, name, value):
+    result = node.set_parameters_atomically([Parameter(name, value=value)])
+    assert not result.successful
+    assert result.reason.count(name) == 1
+
+
+def test_nodes_may_live_together(context):
+    nodes = [
+        GearStatePublisher(context=context, namespace=namespace) for namespace in ('n1', 'n2')
+    ]
+    assert len({node.get_fully_qualified_name() for node in nodes}) == 2
+    for node in nodes:
+        node.destroy_node()
+
+
+def test_executor_is_found_in_every_release(context, monkeypatch):
+    # Releases without the experimental one; None in sys.modules makes the import fail.
+    monkeypatch.setitem(sys.modules, 'rclpy.experimental.events_executor', None)
+    executor = make_executor(context)
+    assert type(executor).__name__ == 'SingleThreadedExecutor'
+    executor.shutdown()
