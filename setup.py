@@ -27,20 +27,31 @@ setup(
     maintainer_email='maintainers@gear-kinematics.invalid',
     license='Apache-2.0',
     packages=find_packages(exclude=['test', 'test.*']),
-    package_data={PACKAGE: ['py.typed']},
+    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.rendering': ['page.css', 'page.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
         *shared('config', '*.yaml'),
         *shared('launch', '*.launch.py'),
         *shared('bags', '*'),
+        *shared('docs', 'report.*'),
     ],
     python_requires='>=3.11',
-    install_requires=['numpy>=1.26', 'PyYAML', 'rosbags>=0.11', 'rich'],
+    install_requires=[
+        'backports.zstd; python_version < "3.14"',
+        'lz4',
+        'numpy>=1.26',
+        'PyYAML',
+        'rosbags>=0.11',
+        'rich',
+    ],
     extras_require={
         # For machines without a ROS installation. A plain requirement would put a second ROS
         # beside the distribution's own.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
+        # `gearkin validate --html`; rosdep has no key for it.
+        'html': ['plotly>=5.24'],
+        'dask': ['dask[distributed]'],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from gear_kinematics.bag import write_bag
 from gear_kinematics.messages import JointStateTemplate
@@ -46,7 +46,7 @@ class Scenario:
     """Hz."""
     duration: float
     """s."""
-    storage: str = 'mcap'
+    storage: Literal['mcap', 'sqlite3'] = 'mcap'
     arguments: tuple[str, ...] = ()
     """Of the node."""
 
@@ -159,6 +159,7 @@ SCENARIOS = {
 
 def record(path: Path, scenario: Scenario) -> None:
     """Record one scenario to a new bag."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     with running_node(scenario.arguments), Replay() as replay:
         replay.wait_for_node()
         sent = 0

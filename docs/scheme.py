@@ -7,6 +7,7 @@ seen; on the right the whole path of an Oldham coupling's centre in the default 
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from gear_kinematics.kinematics import Branch, Mechanism, solve
 
 _INK, _RING, _SATELLITE, _COUPLING, _SHAFT = '#24292f', '#6e7781', '#0969da', '#bf8700', '#1a7f37'
 _SIZE = 340  # px, of each half
+Point = Sequence[float]
+
 _ANGLE = math.radians(40.0)  # of the rotor, in the scheme
 
 
@@ -72,7 +75,7 @@ def _rose(mechanism: Mechanism) -> str:
     )
 
 
-def _along(start: tuple[float, float], degrees: float, length: float) -> tuple[float, float]:
+def _along(start: Point, degrees: float, length: float) -> Point:
     angle = math.radians(degrees)
     return start[0] + length * math.cos(angle), start[1] + length * math.sin(angle)
 
@@ -86,21 +89,23 @@ def _caption(x: float, text: str) -> str:
     return f'<text x="{middle}" y="{_SIZE + 44}" text-anchor="middle" fill="{_INK}">{text}</text>'
 
 
-def _circle(centre, radius: float, colour: str, width: float = 2, fill: str = 'none') -> str:
+def _circle(
+    centre: Point, radius: float, colour: str, width: float = 2, fill: str = 'none'
+) -> str:
     return (
         f'<circle cx="{centre[0]:.2f}" cy="{-centre[1]:.2f}" r="{radius:.2f}" stroke="{colour}" '
         f'stroke-width="{width}" fill="{fill}"/>'
     )
 
 
-def _line(start, end, colour: str, width: float = 2) -> str:
+def _line(start: Point, end: Point, colour: str, width: float = 2) -> str:
     return (
         f'<line x1="{start[0]:.2f}" y1="{-start[1]:.2f}" x2="{end[0]:.2f}" y2="{-end[1]:.2f}" '
         f'stroke="{colour}" stroke-width="{width}"/>'
     )
 
 
-def _label(point, text: str, colour: str, dx: float, dy: float) -> str:
+def _label(point: Point, text: str, colour: str, dx: float, dy: float) -> str:
     return f'<text x="{point[0] + dx:.1f}" y="{-point[1] + dy:.1f}" fill="{colour}">{text}</text>'
 
 

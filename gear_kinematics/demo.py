@@ -1,8 +1,8 @@
 """`gearkin demo`: the shipped bag through the live node, shown live, then validated."""
 
 import math
-import os
-import time
+from collections.abc import Mapping
+from typing import Any
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -10,10 +10,10 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from gear_kinematics import parameters
-from gear_kinematics.bag import BagMessage, read_bag
+from gear_kinematics.bag import Bag, BagMessage
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.messages import decode_joint_state, decode_pose_array
-from gear_kinematics.replay import Replay, running_node
+from gear_kinematics.replay import live_messages
 from gear_kinematics.report import BagReport
 from gear_kinematics.share import share_directory
 from gear_kinematics.validation import Tolerances, Validator
@@ -21,40 +21,31 @@ from gear_kinematics.validation import Tolerances, Validator
 TOLERANCE = 1e-12
 """Greatest deviation that passes: of angles in rad, of positions in units of the eccentricity."""
 _BAG = 'servo_point_to_point'
-_REFRESH = 0.1  # s
 
 
 def run(console: Console) -> BagReport:
     """Play the shipped bag's rotor states into a node process and validate what comes back."""
-    # The demo talks to its own node and to nobody else's.
-    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
     config = parameters.load(parameters.default_config())
-    path = share_directory() / 'bags' / _BAG
-    recorded = list(read_bag(path, ['/rotor_state']))
-    console.print(
-        f'Playing [bold]{_BAG}[/bold], {len(recorded)} recorded rotor states, '
-        'into gear_state_publisher over DDS.'
-    )
-    namespace = f'/gear_kinematics_demo_{os.getpid()}'
-    with (
-        running_node(['--ros-args', '-r', f'__ns:={namespace}']),
-        Replay(namespace) as replay,
-    ):
-        replay.wait_for_node()
-        _play(console, replay, recorded)
+    with Bag(share_directory() / 'bags' / _BAG) as bag:
+        count = sum(1 for _ in bag.messages(['/rotor_state']))
+        console.print(
+            f'Playing [bold]{_BAG}[/bold], {count} recorded rotor states, '
+            'into gear_state_publisher over DDS.'
+        )
+        published = _play(console, bag, config, count)
     eccentricity = config['eccentricity']
     validator = Validator(
         config,
         tolerances=Tolerances(TOLERANCE, TOLERANCE * eccentricity),
         solver=matrix_method.solve,  # not the node's own formulas
     )
-    validator.feed(replay.received)
+    validator.feed(published)
     report = validator.report(_BAG)
     console.print(_verdict(report))
     return report
 
 
-def _play(console: Console, replay: Replay, recorded: list[BagMessage]) -> None:
+def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> list[BagMessage]:
     progress = Progress(
         TextColumn('rotor states'),
         BarColumn(),
@@ -62,18 +53,17 @@ def _play(console: Console, replay: Replay, recorded: list[BagMessage]) -> None:
         TimeRemainingColumn(),
         console=console,
     )
-    task = progress.add_task('', total=len(recorded))
-    start, next_refresh = time.monotonic(), 0.0
+    task = progress.add_task('', total=count)
+    received: list[BagMessage] = []
     with Live(progress, console=console, auto_refresh=False, transient=True) as live:
-        for number, message in enumerate(recorded, start=1):
-            moment = start + 1e-9 * (message.received - recorded[0].received)
-            replay.receive_until(moment)
-            replay.send(message.data)
-            if moment >= next_refresh:
-                next_refresh = moment + _REFRESH
-                progress.update(task, completed=number)
-                live.update(Group(progress, _current(replay.received)), refresh=True)
-        replay.wait_until(lambda: len(replay.received) == 3 * len(recorded), timeout=5.0)
+
+        def show(sent: int) -> None:
+            progress.update(task, completed=sent)
+            live.update(Group(progress, _current(received)), refresh=True)
+
+        for message in live_messages(bag, config, progress=show):
+            received.append(message)  # noqa: PERF402  # for `show` to see it
+    return received
 
 
 def _current(received: list[BagMessage]) -> Table:

@@ -24,7 +24,7 @@ class InputHealth:
             max_speed: rad/s, the fastest that the rotor can turn.
         """
         self._max_speed = max_speed
-        self._first: int | None = None
+        self._first_stamp: int | None = None
         self._last_stamp: int | None = None
         self._last_angle = 0.0
         self._duration = 0.0
@@ -41,6 +41,7 @@ class InputHealth:
         if not len(stamp):
             return
         if self._last_stamp is None:
+            self._first_stamp = int(stamp[0])
             self._last_stamp, self._last_angle = int(stamp[0]), float(rotor_angle[0])
         period = np.diff(stamp, prepend=self._last_stamp) / _SECOND
         turned = np.diff(rotor_angle, prepend=self._last_angle)
@@ -70,6 +71,7 @@ class InputHealth:
             duplicates=rotor_input.duplicates,
             zero_stamps=rotor_input.zero_stamps,
             resets=rotor_input.resets,
+            first_stamp=self._first_stamp,
             rate=1.0 / self._median if self._median else 0.0,
             duration=self._duration,
             gaps=self._gaps,

@@ -1,34 +1,68 @@
-"""The other end of the node: a driver that sends rotor states, a recorder of the answers."""
+"""Recorded rotor states into DDS in their own time, and the other end of the node.
 
+`play` is a driver for whoever listens; `Replay` a driver and a recorder in one; `live_messages`
+plays a bag into a node of its own and gives what it answers.
+"""
+
+import importlib
+import math
+import os
+import signal
+import struct
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from functools import partial
+from itertools import chain
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Self
 
 import rclpy
+import yaml
 from geometry_msgs.msg import PoseArray
 from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.exceptions import NameValidationException
 from rclpy.node import Node
+from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.bag import BagMessage
+from gear_kinematics.bag import Bag, BagError, BagMessage, DamagedBagError, RawMessage
+from gear_kinematics.messages import JointStateTemplate
 from gear_kinematics.node import make_executor
+from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
 
 _DEPTH = 2000  # messages
+_JOINT_STATE = 'sensor_msgs/msg/JointState'
+_OUTPUTS = ('/output_state', '/body_poses')
+_SECOND = 1_000_000_000  # ns
+_STAMP = slice(4, 12)  # of a serialised message with a header
 _LISTENERS = 2  # on rotor_state: the node and our own recorder
 _MESSAGE_TYPES: Mapping[str, type] = {
     'rotor_state': JointState,
     'output_state': JointState,
     'body_poses': PoseArray,
 }
+_POLL = 0.1  # s: how late a signal can be noticed
+_PROGRESS_PERIOD = 0.1  # s
+_GRACE = 5.0  # s: subscribers acknowledge what they got every 3 s
+_PROBE_PERIOD = 0.05  # s
+_AFTERWARDS = 0.1  # s: for messages that nobody expects
+_WINDOW = 500  # messages that the node may be behind: no queue of _DEPTH runs over
+_QUIET = 1.0  # s of silence after which nothing more is to come
+_PROBE_SECOND = 2**31 - 1  # the last one that a stamp can name
+_PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
 
 
 class ReplayError(RuntimeError):
-    """The node did not answer in time."""
+    """A replay that cannot be done; the text says why."""
 
 
 @contextmanager
@@ -48,6 +82,173 @@ def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subp
         process.wait()
 
 
+@contextmanager
+def stopped_by_signals() -> Iterator[Callable[[], bool]]:
+    """Give a function that tells whether SIGINT or SIGTERM came, in place of their effect."""
+    received: list[int] = []
+    previous = {
+        number: signal.signal(number, lambda number, _frame: received.append(number))
+        for number in (signal.SIGINT, signal.SIGTERM)
+    }
+    try:
+        yield lambda: bool(received)
+    finally:
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+
+
+@dataclass(slots=True)
+class Played:
+    """What `play` did."""
+
+    messages: int = 0
+    worst_delay: float = 0.0
+    """s, by which a message came later than it was due."""
+
+
+def play(
+    source: Bag,
+    topics: Mapping[str, str],
+    *,
+    rate: float = 1.0,
+    loop: bool = False,
+    start_offset: float = 0.0,
+    duration: float = math.inf,
+    clock: float = 0.0,
+    wait: float = math.inf,
+    stopped: Callable[[], bool] = lambda: False,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Played:
+    """Publish a bag's messages, unchanged, in their own time, as `ros2 bag play` does.
+
+    What is late does not delay what follows. Everything is sent reliably, which listeners of
+    every kind can receive.
+
+    Args:
+        source: an open bag.
+        topics: the names to publish under, by the names in the bag.
+        rate: bag time per real time.
+        loop: whether to begin anew at the end, a mean period after the last message, until
+            stopped. Header stamps and /clock then jump back.
+        start_offset: s of bag time to leave out, from the first message of the topics on.
+        duration: s of bag time to play, in a loop again and again.
+        clock: Hz of the bag's time on /clock; 0 for none.
+        wait: s to wait until every topic has a subscriber; 0 does not wait.
+        stopped: asked at least every 0.1 s whether to stop.
+        progress: called with the number of messages sent: with 0 when the wait is over, then at
+            most ten times a second, and at the end.
+
+    Raises:
+        BagError: if the bag has no such topics or nothing to play, or is damaged; then what could
+            be read has been played.
+        ReplayError: if there is no subscriber in time, or a topic's type is not installed.
+        ValueError: if a number is out of its range.
+    """
+    for name, value in (
+        ('start offset', start_offset),
+        ('duration', duration),
+        ('clock', clock),
+        ('wait', wait),
+    ):
+        if not value >= 0.0:
+            raise ValueError(f'{name} must not be negative, but is {value:g}')
+    types = {topic: _type_of(source, topic) for topic in topics}
+    schedule = _schedule(source, topics, rate, start_offset, duration, loop=loop)
+    played = Played()
+    report = _throttled(progress)
+    with _node('') as node:
+        publishers = {
+            topic: _publisher(node, name, topic, types[topic]) for topic, name in topics.items()
+        }
+        bag_clock = _Clock(node, clock)
+        _wait_for_subscribers(publishers.values(), wait, stopped)
+        progress(0)
+        start = time.monotonic()
+        try:
+            for due, (topic, received, data) in schedule:
+                while (left := start + due - time.monotonic()) > 0.0 and not stopped():
+                    next_tick = bag_clock.update(received - round(left * rate * _SECOND))
+                    time.sleep(min(left, next_tick, _POLL))
+                if stopped():
+                    break
+                bag_clock.update(received)
+                publishers[topic].publish(data)
+                played.messages += 1
+                played.worst_delay = max(played.worst_delay, -left)
+                report(played.messages)
+        finally:
+            # What got lost on the way is sent again as long as the publisher is there.
+            for publisher in publishers.values():
+                publisher.wait_for_all_acked(Duration(seconds=0.0 if stopped() else _GRACE))
+    progress(played.messages)
+    return played
+
+
+def live_messages(
+    source: Bag,
+    parameters: Mapping[str, Any],
+    *,
+    rotor_topic: str = '/rotor_state',
+    rate: float = 1.0,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Iterator[BagMessage]:
+    """Play a bag's rotor topic into a node process of its own and give what it publishes.
+
+    The node runs in a private namespace and talks to this machine only. It is never sent more
+    than it can keep up with, so that nothing gets lost on the way, whatever the rate. Rotor
+    messages without a stamp are given the time of their reception as a stamp: the node would take
+    the clock, which nobody could tell afterwards.
+
+    Args:
+        source: an open bag.
+        parameters: of the node, as `parameters.load` gives them.
+        rotor_topic: name of the rotor topic in the bag.
+        rate: bag time per real time.
+        progress: called with the number of rotor messages sent, at most ten times a second and at
+            the end.
+
+    Yields:
+        Messages on /rotor_state, /output_state and /body_poses in the order of their reception.
+
+    Raises:
+        BagError: if the bag has no such topic or nothing on it; if it is damaged, then after what
+            the node made of what could be read.
+        ReplayError: if the node ends, or does not answer at all.
+    """
+    expected = RotorInput(InputSettings.from_mapping(parameters))
+    if (found := _type_of(source, rotor_topic)) != _JOINT_STATE:
+        raise BagError(f'{source.path}: {rotor_topic} is of type {found}, not {_JOINT_STATE}')
+    schedule = _schedule(source, [rotor_topic], rate)
+    report = _throttled(progress)
+    wanted: Counter[str] = Counter()
+    damage: DamagedBagError | None = None
+    with _private_node(parameters) as replay:
+        start = time.monotonic()
+        try:
+            for due, (_, received, recorded) in schedule:
+                while (left := start + due - time.monotonic()) > 0.0:
+                    replay.receive_until(time.monotonic() + min(left, _POLL))
+                    yield from replay.take()
+                data = _stamped(recorded, received)
+                replay.send(data)
+                wanted['/rotor_state'] += 1
+                with suppress(RejectedInputError):
+                    expected.accept(data, partial(int, received))
+                    wanted.update(_OUTPUTS)
+                if not replay.receive(wanted, but=_WINDOW):
+                    wanted = replay.counts.copy()  # what has not come by now does not come
+                report(expected.received)
+                yield from replay.take()
+        except DamagedBagError as error:
+            damage = error
+        replay.receive(wanted)
+        replay.receive_until(time.monotonic() + _AFTERWARDS)
+        yield from replay.take()
+    progress(expected.received)
+    if damage:
+        raise damage
+
+
 class Replay:
     """A driver on rotor_state and a recorder of rotor_state and of the node's outputs, in one.
 
@@ -55,13 +256,22 @@ class Replay:
     received within `receive_until` and the waits.
     """
 
-    def __init__(self, namespace: str = '') -> None:
-        """Open the topics, in a namespace."""
+    def __init__(self, namespace: str = '', alive: Callable[[], bool] = lambda: True) -> None:
+        """Open the topics.
+
+        Args:
+            namespace: of the topics.
+            alive: whether the node can still answer.
+        """
         self.received: list[BagMessage] = []
-        self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self._node = Node('gear_kinematics_replay', context=self._context, namespace=namespace)
-        self._executor = make_executor(self._context)
+        self.counts: Counter[str] = Counter()
+        """Of the messages received so far, by topic."""
+        self._alive = alive
+        self._probed: set[str] = set()
+        self._resources = ExitStack()
+        self._node = self._resources.enter_context(_node(namespace))
+        self._executor = make_executor(self._node.context)
+        self._resources.callback(self._executor.shutdown)
         self._executor.add_node(self._node)
         qos = QoSProfile(depth=_DEPTH)
         self._publisher = self._node.create_publisher(JointState, 'rotor_state', qos)
@@ -78,9 +288,7 @@ class Replay:
 
     def __exit__(self, *_: object) -> None:
         """Close the topics."""
-        self._executor.shutdown()
-        self._node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        self._resources.close()
 
     def wait_for_node(self, timeout: float = 20.0) -> None:
         """Wait until every topic has both ends: the node's and ours.
@@ -96,26 +304,269 @@ class Replay:
             timeout,
         )
 
+    def probe(self, joint: str, timeout: float = 20.0) -> None:
+        """Make sure that the node's answers arrive here, which the ends seen here cannot tell.
+
+        The probes are stamped with the far future, and are not recorded. Older messages than that
+        let the node start anew.
+
+        Args:
+            joint: the rotor's, or '' for the only one.
+            timeout: s.
+
+        Raises:
+            ReplayError: if nothing arrives.
+        """
+        template = JointStateTemplate([joint or 'rotor'], velocity=False, effort=False)
+        message = template.encode(_PROBE_SECOND * _SECOND, [0.0])
+        next_probe = 0.0
+
+        def answered() -> bool:
+            nonlocal next_probe
+            if time.monotonic() >= next_probe:
+                self.send(message)
+                next_probe = time.monotonic() + _PROBE_PERIOD
+            return len(self._probed) == len(_MESSAGE_TYPES)
+
+        self.wait_until(answered, timeout)
+
     def receive_until(self, moment: float) -> None:
         """Receive until a `time.monotonic()`."""
         while (left := moment - time.monotonic()) > 0.0:
-            self._executor.spin_once(timeout_sec=left)
+            self._executor.spin_once(timeout_sec=min(left, _POLL))  # no signal interrupts it
 
     def send(self, data: bytes) -> None:
         """Send a serialised JointState as rotor_state."""
         self._publisher.publish(data)
 
+    def take(self) -> list[BagMessage]:
+        """Take what was received out of `received`."""
+        taken, self.received = self.received, []
+        return taken
+
     def wait_until(self, condition: Callable[[], bool], timeout: float) -> None:
         """Receive until a condition holds.
 
         Raises:
-            ReplayError: if it does not after `timeout` s.
+            ReplayError: if it does not after `timeout` s, or the node has ended.
         """
         deadline = time.monotonic() + timeout
         while not condition():
             if time.monotonic() > deadline:
                 raise ReplayError(f'the node did not answer within {timeout:g} s')
-            self._executor.spin_once(timeout_sec=0.01)
+            self._spin()
+
+    def receive(self, wanted: Counter[str], but: int = 0) -> bool:
+        """Receive until so many messages of each topic are there, but for a few.
+
+        Args:
+            wanted: numbers of messages by topic, counted from the beginning.
+            but: how many of a topic may be missing.
+
+        Returns:
+            Whether they came; False when nothing has come for a second.
+
+        Raises:
+            ReplayError: if the node has ended before.
+        """
+        total, deadline = -1, 0.0
+        while max((wanted - self.counts).values(), default=0) > but:
+            now = time.monotonic()
+            if self.counts.total() > total:
+                total, deadline = self.counts.total(), now + _QUIET
+            if now > deadline:
+                return False
+            self._spin()
+        return True
+
+    def _spin(self) -> None:
+        if not self._alive():
+            raise ReplayError('the node has ended')
+        self._executor.spin_once(timeout_sec=0.01)
 
     def _recorder(self, topic: str) -> Callable[[bytes], None]:
-        return lambda data: self.received.append(BagMessage(topic, time.time_ns(), data))
+        def record(data: bytes) -> None:
+            if data[_STAMP] == _PROBE_STAMP:
+                self._probed.add(topic)
+                return
+            self.counts[topic] += 1
+            self.received.append(BagMessage(topic, time.time_ns(), data))
+
+        return record
+
+
+@contextmanager
+def _node(namespace: str) -> Iterator[Node]:
+    """A ROS node in a context of its own, which leaves the process's signals alone."""
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    node = Node('gear_kinematics_replay', context=context, namespace=namespace)
+    try:
+        yield node
+    finally:
+        node.destroy_node()
+        rclpy.try_shutdown(context=context)
+
+
+@contextmanager
+def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
+    """A node process that nobody else is connected with, and its other end."""
+    # Read by the middleware when a context begins, here and in the node's process.
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    namespace = f'/gear_kinematics_{os.getpid()}'
+    with TemporaryDirectory() as folder:
+        config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
+        config.write_text(yaml.safe_dump({'/**': {'ros__parameters': dict(parameters)}}), 'utf-8')
+        # Diagnostics have an absolute name.
+        arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
+                     '-r', '/diagnostics:=diagnostics']  # fmt: skip
+        with (
+            log.open('w', encoding='utf-8') as stream,
+            running_node(
+                arguments,
+                stdout=stream,
+                stderr=stream,
+                env=os.environ | {'ROS_LOG_DIR': folder},
+            ) as process,
+            Replay(namespace, alive=lambda: process.poll() is None) as replay,
+        ):
+            try:
+                replay.wait_for_node()
+                replay.probe(parameters['rotor_joint'])
+                yield replay
+            except ReplayError as error:
+                words = log.read_text(encoding='utf-8').splitlines()[-1:]
+                raise ReplayError(': '.join([str(error), *words])) from error
+
+
+def _schedule(*arguments: Any, **options: Any) -> Iterator[tuple[float, RawMessage]]:
+    """Give what `_rounds` does; what it has to complain about at the beginning comes at once."""
+    rounds = _rounds(*arguments, **options)
+    return chain([next(rounds)], rounds)
+
+
+def _rounds(
+    source: Bag,
+    topics: Collection[str],
+    rate: float,
+    start_offset: float = 0.0,
+    duration: float = math.inf,
+    *,
+    loop: bool = False,
+) -> Iterator[tuple[float, RawMessage]]:
+    """Give messages with the time at which each is due, s from the first; see `play`."""
+    if not 0.0 < rate < math.inf:
+        raise ValueError(f'rate must be positive and finite, but is {rate:g}')
+    due = round_start = 0.0
+    while True:
+        first, begin, count = None, 0, 0
+        for message in source.messages(topics):
+            _, received, _ = message
+            if first is None:
+                first = received
+            elapsed = received - first - start_offset * _SECOND + 0.5  # ns; half of one to round
+            if elapsed > duration * _SECOND + 1.0:
+                break
+            if elapsed < 0.0:
+                continue
+            if count == 0:
+                begin = received
+            due = round_start + (received - begin) / (rate * _SECOND)
+            count += 1
+            yield due, message
+        if count == 0:
+            raise BagError(f'{source.path}: nothing to play on {", ".join(topics)}')
+        if not loop:
+            return
+        # What takes no time, such as a single message, comes every second.
+        round_start = due + ((due - round_start) / max(count - 1, 1) or 1.0 / rate)
+
+
+class _Clock:
+    """Publishes the bag's time on /clock."""
+
+    def __init__(self, node: Node, hertz: float) -> None:
+        """Open the topic; for 0 Hz, do nothing."""
+        self._period = 1.0 / hertz if hertz else math.inf
+        self._next = -math.inf if hertz else math.inf  # of time.monotonic()
+        if hertz:
+            self._class = _load_class('rosgraph_msgs/msg/Clock')
+            self._publisher = node.create_publisher(self._class, '/clock', QoSProfile(depth=10))
+
+    def update(self, bag_time: int) -> float:
+        """Publish the time, ns, if it is due; returns the time until the next is due, s."""
+        now = time.monotonic()
+        if now >= self._next:
+            self._next += self._period
+            if self._next <= now:  # what was missed is not made up for
+                self._next = now + self._period
+            message = self._class()
+            message.clock.sec, message.clock.nanosec = divmod(bag_time, _SECOND)
+            self._publisher.publish(message)
+        return self._next - now
+
+
+def _wait_for_subscribers(
+    publishers: Collection[Publisher], timeout: float, stopped: Callable[[], bool]
+) -> None:
+    """Wait until each has a subscriber.
+
+    Raises:
+        ReplayError: if one has none after `timeout` s, unless that is 0.
+    """
+    deadline = time.monotonic() + timeout
+    while timeout and not stopped():
+        alone = [p.topic_name for p in publishers if not p.get_subscription_count()]
+        if not alone:
+            return
+        if time.monotonic() > deadline:
+            raise ReplayError(f'nobody listens to {", ".join(alone)} after {timeout:g} s')
+        time.sleep(0.01)
+
+
+def _type_of(source: Bag, topic: str) -> str:
+    try:
+        return source.topics[topic]
+    except KeyError:
+        there = ', '.join(sorted(source.topics)) or 'no topics'
+        raise BagError(f'{source.path}: no {topic} in it; there are {there}') from None
+
+
+def _publisher(node: Node, name: str, topic: str, message_type: str) -> Publisher:
+    try:
+        return node.create_publisher(_load_class(message_type), name, QoSProfile(depth=_DEPTH))
+    except (ImportError, AttributeError) as error:
+        raise ReplayError(f'{topic} is of the type {message_type}: {error}') from error
+    except NameValidationException as error:
+        raise ReplayError(' '.join(str(error).split())) from error
+
+
+def _load_class(message_type: str) -> Any:
+    package, *_, name = message_type.split('/')
+    module: Any = importlib.import_module(f'{package}.msg')
+    return getattr(module, name)
+
+
+def _stamped(data: bytes, received: int) -> bytes:
+    """The same message, with its time of reception as stamp if it has none."""
+    if any(data[_STAMP]) or len(data) < _STAMP.stop:
+        return data
+    layout = '<iI' if data[1] else '>iI'
+    return (
+        data[: _STAMP.start]
+        + struct.pack(layout, *divmod(received, _SECOND))
+        + data[_STAMP.stop :]
+    )
+
+
+def _throttled(progress: Callable[[int], None]) -> Callable[[int], None]:
+    """The same, at most ten times a second."""
+    next_call = 0.0
+
+    def call(count: int) -> None:
+        nonlocal next_call
+        if (now := time.monotonic()) >= next_call:
+            next_call = now + _PROGRESS_PERIOD
+            progress(count)
+
+    return call

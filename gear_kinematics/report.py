@@ -3,6 +3,7 @@
 Stamps are ns, times in s, angles in rad, lengths in m.
 """
 
+import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -33,13 +34,15 @@ class FieldReport:
     max_error: float = 0.0
     rms_error: float = 0.0
     worst_stamp: int | None = None
-    """Of the sample with `max_error`."""
+    """Of the sample with `max_error`; None where there is no error at all."""
     worst_rotor_angle: float | None = None
 
     @property
     def budget_used(self) -> float:
         """Share of the tolerance that the greatest error takes."""
-        return self.max_error / self.tolerance
+        if self.max_error == 0.0:
+            return 0.0
+        return self.max_error / self.tolerance if self.tolerance else math.inf
 
     @property
     def passed(self) -> bool:
@@ -102,6 +105,7 @@ class InputReport:
     duplicates: int = 0
     zero_stamps: int = 0
     resets: int = 0
+    first_stamp: int | None = None
     rate: float = 0.0
     """Hz, from the median period."""
     duration: float = 0.0

@@ -154,14 +154,14 @@ class Validator:
             self.output.report(self._topics.output),
             self.poses.report(self._topics.poses),
         )
-        passed = all(topic.passed for topic in topics) and error is None
-        unusable = not rotor.valid or not any(topic.messages for topic in topics)
-        if unusable and error is None:
-            missing = 'rotor states' if not rotor.valid else 'outputs'
-            error = f'no usable {missing} in it'
+        if error is None and not rotor.valid:
+            error = 'no usable rotor states in it'
+        elif error is None and not any(topic.messages for topic in topics):
+            error = 'no outputs in it'
+        passed = all(topic.passed for topic in topics)
         return BagReport(
             bag=bag,
-            verdict=Verdict.UNUSABLE if unusable else Verdict.PASS if passed else Verdict.FAIL,
+            verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
             gear_ratio=str(self._mechanism.gear_ratio),
             error=error,
             messages=rotor.messages + sum(topic.messages for topic in topics),
@@ -288,7 +288,7 @@ class _Errors:
         if not len(error):
             return False
         worst = int(np.argmax(error))
-        if report.worst_stamp is not None and error[worst] <= report.max_error:
+        if error[worst] <= report.max_error:
             return False
         self._report = replace(
             report,

@@ -92,7 +92,8 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
     }
     heard = {f'{namespace}/rotor_state': ['sensor_msgs/msg/JointState']}
     served = {f'{namespace}/gear_state_publisher/home': ['std_srvs/srv/Trigger']}
-    # News of the graph come in their own time.
+    # News of the graph come in their own time, and of a node's name apart from its endpoints.
+    shared.peer.wait_until(lambda: name in node.get_node_names_and_namespaces(), 'the name')
     for found, expected in (
         (node.get_publisher_names_and_types_by_node, published),
         (node.get_subscriber_names_and_types_by_node, heard),

@@ -415,7 +415,9 @@ def test_damage_keeps_what_came_before(recorded, config):
         validator.feed(cut_short())
     report = validator.report('bag', error='the disk is gone')
     assert report.messages == 600
-    assert report.verdict == Verdict.FAIL
+    assert report.verdict == Verdict.UNUSABLE
+    assert report.error == 'the disk is gone'
+    assert [t.compared for t in report.topics] == [200, 200]
     assert all(field.max_error < 1e-12 for t in report.topics for field in t.fields)
 
 

@@ -69,7 +69,8 @@ def solve(
 
     The turns are added to the angle as they are, so that many of them cost its last digits.
     """
-    angle = TURN * np.asarray(rotor_turns, dtype=np.float64) + rotor_angle
+    turns: Array = np.asarray(rotor_turns, dtype=np.float64)
+    angle: Array = np.asarray(rotor_angle, dtype=np.float64) + TURN * turns
     inputs = (angle, rotor_velocity, rotor_acceleration)
     rotor = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
     output = [output_turn(mechanism, value) for value in rotor]

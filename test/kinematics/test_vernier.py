@@ -13,6 +13,7 @@ from gear_kinematics.kinematics.vernier import (
     combinations,
     distinct_positions,
     nearest_setting,
+    ring_body_positions,
     step,
 )
 

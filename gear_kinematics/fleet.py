@@ -1,0 +1,325 @@
+"""Validating bags: one, many in processes of this machine, or many on a Dask cluster."""
+
+import concurrent.futures
+import glob
+import multiprocessing
+import re
+import signal
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.report import BagReport, Verdict
+from gear_kinematics.validation import Message, Tolerances, Topics, Validator
+
+_JOINT_STATE, _POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+_CONTRACT = {
+    'output': ('output_state', _JOINT_STATE),
+    'poses': ('body_poses', _POSE_ARRAY),
+    'rotor': ('rotor_state', _JOINT_STATE),
+}
+"""Name and type of the topics."""
+_OURS = {'mechanism_joint_states', *(name for name, _ in _CONTRACT.values())}
+_BAG_FILE = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
+_NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
+"""Of a file of a split recording."""
+_TRIES = 3
+"""How often a bag is begun whose worker dies."""
+_CONNECT_TIMEOUT = 10.0  # s
+_PATIENCE = 60.0  # s, with a cluster that has no workers
+_TOPICS = Topics()
+Progress = Callable[[int, int | None], None]
+"""Messages of a batch, and of the whole bag if that is known."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A bag, and what to validate it with."""
+
+    bag: Path
+    parameters: Mapping[str, Any]
+    """Of the node, as `parameters.load` gives them."""
+    config: str
+    """Where they are from."""
+    tolerances: Tolerances
+    allow_offset: bool = False
+    rotor_topic: str | None = None
+    """None: found by type and name, and so are the others."""
+    output_topic: str | None = None
+    poses_topic: str | None = None
+
+
+class SchedulerError(ValueError):
+    """The Dask cluster cannot be used; the text names it and the cause."""
+
+
+def find_bags(patterns: Iterable[str]) -> list[Path]:
+    """Find the bags that files, directories and globs name; a directory can hold many.
+
+    Raises:
+        BagError: naming a pattern that nothing fits.
+    """
+    found: list[Path] = []
+    for pattern in patterns:
+        path = Path(pattern)
+        bags = list(_bags_below(path)) if path.exists() else list(_glob(pattern))
+        if not bags:
+            raise BagError(f'{pattern}: no bag there')
+        found += bags
+    return list(dict.fromkeys(found))
+
+
+def _glob(pattern: str) -> Iterator[Path]:
+    # Path.glob takes no absolute patterns.
+    matches = sorted(map(Path, glob.iglob(pattern, recursive=True)))  # noqa: PTH207
+    bags = {bag: None for match in matches if _may_hold(match) for bag in _bags_below(match)}
+    # `**` also fits the files of the bags that it fits.
+    return (bag for bag in bags if bag.parent not in bags)
+
+
+def _bags_below(path: Path) -> Iterator[Path]:
+    if not path.is_dir() or (path / 'metadata.yaml').exists():
+        yield path
+        return
+    children = sorted(filter(_may_hold, path.iterdir()))
+    files = [child for child in children if not child.is_dir()]
+    if len(files) > 1 and len({_NUMBER.sub('', file.name) for file in files}) == 1:
+        yield path  # a split recording whose recorder was killed
+        children = [child for child in children if child.is_dir()]
+    for child in children:
+        yield from _bags_below(child)
+
+
+def _may_hold(path: Path) -> bool:
+    return path.is_dir() or bool(_BAG_FILE.search(path.name))
+
+
+def find_topics(bag: Bag, task: Task | None = None, *, outputs: bool = True) -> Topics:
+    """Find the three topics by type and name: as in the contract, in any namespace.
+
+    Args:
+        bag: an open bag.
+        task: may name them.
+        outputs: whether those have to be there.
+
+    Raises:
+        BagError: if one is not there, or which one is meant is not clear.
+    """
+    roles = list(_CONTRACT) if outputs else ['rotor']
+    given = {role: getattr(task, f'{role}_topic', None) for role in roles}
+    left = {topic: kind for topic, kind in bag.topics.items() if topic not in given.values()}
+    found = {}
+    for role, topic in given.items():
+        name, kind = _CONTRACT[role]
+        if topic is None:
+            found[role] = _find_topic(bag.path, left, name, kind)
+            del left[found[role]]
+        elif bag.topics.get(topic) == kind:
+            found[role] = topic
+        else:
+            raise BagError(f'{bag.path}: no topic {topic} of type {kind} in it')
+    return replace(_TOPICS, **found)
+
+
+def _find_topic(path: Path, available: Mapping[str, str], name: str, kind: str) -> str:
+    by_type = {
+        topic: topic.rpartition('/')[2]
+        for topic, its_kind in sorted(available.items())
+        if its_kind == kind
+    }
+    candidates = [topic for topic, base in by_type.items() if base == name] or [
+        topic for topic, base in by_type.items() if base not in _OURS
+    ]
+    if not candidates:
+        raise BagError(f'{path}: no topic {name} of type {kind} in it')
+    if len(candidates) > 1:
+        raise BagError(f'{path}: which topic is {name}? {", ".join(candidates)}')
+    return candidates[0]
+
+
+def validate_bag(
+    task: Task,
+    progress: Progress | None = None,
+    play: Callable[..., Iterable[Message]] | None = None,
+) -> BagReport:
+    """Validate one bag. What is wrong with the bag itself is told in the report.
+
+    Args:
+        task: the bag, and what to validate it with.
+        progress: called with the messages of each batch and of the whole bag, if that is known.
+        play: `replay.live_messages`, to validate what it gives for the rotor topic and not what
+            was recorded.
+
+    Raises:
+        MechanismError: if the parameters describe no mechanism.
+    """
+    try:
+        with Bag(task.bag) as bag:
+            topics = find_topics(bag, task, outputs=not play)
+            if play:
+                messages = play(bag, task.parameters, rotor_topic=topics.rotor)
+                return validate_messages(task, messages, progress)
+            messages = bag.messages(topics.names())
+            return validate_messages(task, messages, progress, topics, bag.message_count)
+    except BagError as error:
+        return _unusable(task, str(error))
+
+
+def validate_messages(
+    task: Task,
+    messages: Iterable[Message],
+    progress: Progress | None = None,
+    topics: Topics = _TOPICS,
+    total: int | None = None,
+) -> BagReport:
+    """Validate messages of a bag, as far as they can be had; the rest as for `validate_bag`."""
+    validator = Validator(
+        task.parameters,
+        topics=topics,
+        tolerances=task.tolerances,
+        allow_offset=task.allow_offset,
+    )
+    damage = None
+    try:
+        validator.feed(messages, progress and (lambda count: progress(count, total)))
+    except BagError as error:
+        damage = str(error)
+    return replace(validator.report(str(task.bag), error=damage), config=task.config)
+
+
+def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagReport]:
+    """Validate bags in several processes; gives the reports as they come.
+
+    A bag whose process dies is begun again, and is reported as unusable if that goes on.
+    """
+    left = list(tasks)
+    while left:
+        lost = []
+        for task, report in _in_a_pool(left, jobs):
+            if report:
+                yield report
+            else:
+                lost.append(task)
+        # A process that dies takes its pool with it. It was at one of the first bags of those
+        # that are left; whose fault it was shows when each of them is alone.
+        numbers = {id(task): number for number, task in enumerate(left)}
+        lost.sort(key=lambda task: numbers[id(task)])
+        for task in lost[:jobs]:
+            tries = (_in_a_pool([task], jobs=1) for _ in range(_TRIES - 1))
+            reports = (report for attempt in tries for _, report in attempt if report)
+            yield next(reports, None) or _lost(task)
+        left = lost[jobs:]
+
+
+def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagReport | None]]:
+    """Each bag with its report, or None where a process died."""
+    # Forking would copy the threads of a progress bar in whatever state they are.
+    context = multiprocessing.get_context('spawn')
+    others = multiprocessing.active_children()
+    with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
+        try:
+            with _interrupts_blocked():
+                futures = {_submit(pool, task): task for task in tasks}
+            for future in concurrent.futures.as_completed(futures):
+                try:
+                    yield futures[future], future.result()
+                except BrokenProcessPool:
+                    yield futures[future], None
+        except BaseException:  # nobody waits for the reports any more
+            for process in multiprocessing.active_children():
+                if process not in others:
+                    process.terminate()
+            raise
+
+
+def _submit(pool: concurrent.futures.Executor, task: Task) -> concurrent.futures.Future[BagReport]:
+    try:
+        return pool.submit(validate_bag, task)
+    except BrokenProcessPool as error:
+        failed = concurrent.futures.Future[BagReport]()
+        failed.set_exception(error)
+        return failed
+
+
+@contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Start processes that Ctrl-C does not reach: it is for the one that ends them."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagReport]:
+    """Validate bags on a Dask cluster; gives the reports as they come.
+
+    The workers see the bags under the same paths. A bag whose worker dies is begun again on
+    another, and is reported as unusable if that goes on.
+
+    Args:
+        tasks: the bags.
+        scheduler: such as tcp://host:8786.
+
+    Raises:
+        SchedulerError: if there is no such cluster, or dask is not installed.
+    """
+    try:
+        import distributed  # noqa: PLC0415, an extra
+    except ImportError as error:
+        raise SchedulerError(f'{scheduler}: dask is not installed, extra `dask`') from error
+    try:
+        distributed.comm.get_address_host_port(scheduler)  # a client would take long to close
+        client = distributed.Client(scheduler, timeout=_CONNECT_TIMEOUT, set_as_default=False)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise SchedulerError(f'{scheduler}: no Dask scheduler there: {error}') from error
+    with client:
+        lost = []
+        for task, report in _on_workers(client, tasks):
+            if report:
+                yield report
+            else:
+                lost.append(task)
+        # Dask blames every bag that a dead worker had before it; whose fault it was shows when
+        # each is alone.
+        for task in lost:
+            for _, report in _on_workers(client, [task]):
+                yield report or _lost(task)
+
+
+def _on_workers(client: Any, tasks: Sequence[Task]) -> Iterator[tuple[Task, BagReport | None]]:
+    """Each bag with its report, or None where workers died."""
+    import distributed  # noqa: PLC0415, an extra
+
+    waiting = {
+        # The workers' working directory is another.
+        client.submit(validate_bag, replace(task, bag=task.bag.absolute()), pure=False): task
+        for task in tasks
+    }
+    while waiting:
+        with suppress(TimeoutError):
+            for future in distributed.as_completed(waiting, client.loop, timeout=_PATIENCE):
+                task = waiting.pop(future)
+                try:
+                    yield task, replace(future.result(), bag=str(task.bag))
+                except distributed.KilledWorker:
+                    yield task, None
+                except Exception as error:  # noqa: BLE001, of the cluster, not of the bag
+                    cause = ' '.join(str(error).split())
+                    yield task, _unusable(task, f'{task.bag}: not done by the cluster: {cause}')
+        if waiting and not client.scheduler_info()['workers']:
+            for task in waiting.values():
+                yield task, _unusable(task, f'{task.bag}: the cluster has no workers for it')
+            return
+
+
+def _lost(task: Task) -> BagReport:
+    return _unusable(task, f'{task.bag}: lost, because its worker died again and again')
+
+
+def _unusable(task: Task, error: str) -> BagReport:
+    return BagReport(str(task.bag), Verdict.UNUSABLE, config=task.config, error=error)

@@ -1,0 +1,58 @@
+// Draws each figure when it comes into view: a fleet's page has hundreds.
+'use strict';
+(() => {
+  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const figures = new Map();
+
+  function draw(element) {
+    const {time, data, layout} = figures.get(element);
+    const grid = {gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--faint')};
+    const themed = {
+      ...layout,
+      paper_bgcolor: 'rgba(0,0,0,0)',
+      plot_bgcolor: 'rgba(0,0,0,0)',
+      font: {color: colour('--text'), family: 'system-ui, sans-serif', size: 12},
+      hoverlabel: {bgcolor: colour('--raised'), font: {color: colour('--text')}},
+      hovermode: 'x unified',
+      hoversubplots: 'axis',
+      margin: {l: 90, r: 20, t: 35, b: 50},
+      modebar: {bgcolor: 'rgba(0,0,0,0)', color: colour('--faint'), activecolor: colour('--text')},
+      showlegend: false,
+      shapes: layout.shapes.map(shape => ({
+        ...shape,
+        line: {color: colour('--fail'), dash: 'dash', width: 1},
+        label: {...shape.label, font: {color: colour('--fail'), size: 11}},
+      })),
+    };
+    for (const name of Object.keys(layout)) {
+      if (name.includes('axis')) themed[name] = {...grid, ...layout[name]};
+    }
+    const traces = data.map(trace => ({
+      ...trace, x: time, type: 'scatter', mode: 'lines', line: {color: colour('--' + trace.meta), width: 1.5},
+    }));
+    // Named one by one: others send the data to a server.
+    const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];
+    const config = {responsive: true, displaylogo: false, modeBarButtons: buttons};
+    Plotly.react(element, traces, themed, config);
+  }
+
+  const seen = new IntersectionObserver(entries => {
+    for (const entry of entries) {
+      if (!entry.isIntersecting) continue;
+      seen.unobserve(entry.target);
+      draw(entry.target);
+    }
+  }, {rootMargin: '400px'});
+
+  for (const script of document.querySelectorAll('script[data-figure]')) {
+    const element = document.getElementById(script.dataset.figure);
+    figures.set(element, JSON.parse(script.textContent));
+    seen.observe(element);
+  }
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+    for (const element of figures.keys()) if (element.data) draw(element);
+  });
+  addEventListener('beforeprint', () => {
+    for (const element of figures.keys()) if (!element.data) draw(element);
+  });
+})();
