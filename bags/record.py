@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from gear_kinematics.bag import write_bag
+from gear_kinematics.live_node import Replay, running_node
 from gear_kinematics.messages import JointStateTemplate
-from gear_kinematics.replay import Replay, running_node
 from gear_kinematics.share import share_directory
 
 _COUNTS = 2**20  # of the encoder, per turn

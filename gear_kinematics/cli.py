@@ -133,6 +133,7 @@ def _parser() -> argparse.ArgumentParser:
     replay.add_argument('--rate', type=float, default=1.0, help='bag time per real time')
     replay.add_argument('--loop', action='store_true', help='until stopped')
     replay.add_argument('--start-offset', type=float, default=0.0, metavar='S')
+    replay.add_argument('--duration', type=float, default=math.inf, metavar='S')
     replay.add_argument(
         '--topics', nargs='+', metavar='NAME', help='(default: the rotor topic, as rotor_state)'
     )
@@ -296,12 +297,15 @@ def _replay(options: argparse.Namespace) -> int:
             topics = {topic: topic for topic in options.topics}
         else:
             topics = {find_topics(bag, outputs=False).rotor: 'rotor_state'}
+        if not options.no_wait:
+            print(f'waiting for a subscriber on {", ".join(topics.values())}', file=sys.stderr)
         played = play(
             bag,
             topics,
             rate=options.rate,
             loop=options.loop,
             start_offset=options.start_offset,
+            duration=options.duration,
             clock=options.clock,
             stopped=stopped,
             wait=0.0 if options.no_wait else math.inf,

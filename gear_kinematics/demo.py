@@ -12,8 +12,8 @@ from rich.table import Table
 from gear_kinematics import parameters
 from gear_kinematics.bag import Bag, BagMessage
 from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.live_node import live_messages
 from gear_kinematics.messages import decode_joint_state, decode_pose_array
-from gear_kinematics.replay import live_messages
 from gear_kinematics.report import BagReport
 from gear_kinematics.share import share_directory
 from gear_kinematics.validation import Tolerances, Validator

@@ -2,13 +2,17 @@
 
 import concurrent.futures
 import glob
+import logging
 import multiprocessing
+import os
 import re
 import signal
+import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
@@ -110,19 +114,16 @@ def find_topics(bag: Bag, task: Task | None = None, *, outputs: bool = True) -> 
         BagError: if one is not there, or which one is meant is not clear.
     """
     roles = list(_CONTRACT) if outputs else ['rotor']
-    given = {role: getattr(task, f'{role}_topic', None) for role in roles}
-    left = {topic: kind for topic, kind in bag.topics.items() if topic not in given.values()}
-    found = {}
+    given = {role: topic for role in roles if (topic := getattr(task, f'{role}_topic', None))}
+    left = dict(bag.topics)
     for role, topic in given.items():
-        name, kind = _CONTRACT[role]
-        if topic is None:
-            found[role] = _find_topic(bag.path, left, name, kind)
-            del left[found[role]]
-        elif bag.topics.get(topic) == kind:
-            found[role] = topic
-        else:
+        if left.pop(topic, None) != (kind := _CONTRACT[role][1]):
             raise BagError(f'{bag.path}: no topic {topic} of type {kind} in it')
-    return replace(_TOPICS, **found)
+    for role in roles:
+        if role not in given:
+            given[role] = _find_topic(bag.path, left, *_CONTRACT[role])
+            del left[given[role]]
+    return replace(_TOPICS, **given)
 
 
 def _find_topic(path: Path, available: Mapping[str, str], name: str, kind: str) -> str:
@@ -220,7 +221,7 @@ def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagRepo
     # Forking would copy the threads of a progress bar in whatever state they are.
     context = multiprocessing.get_context('spawn')
     others = multiprocessing.active_children()
-    with concurrent.futures.ProcessPoolExecutor(jobs, mp_context=context) as pool:
+    with concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
         try:
             with _interrupts_blocked():
                 futures = {_submit(pool, task): task for task in tasks}
@@ -245,6 +246,17 @@ def _submit(pool: concurrent.futures.Executor, task: Task) -> concurrent.futures
         return failed
 
 
+def _end_with_parent() -> None:
+    """See to it that nothing is left of a pool whose owner is killed."""
+    if parent := multiprocessing.parent_process():
+        threading.Thread(target=_end_after, args=[parent], daemon=True).start()
+
+
+def _end_after(process: BaseProcess) -> None:
+    process.join()
+    os._exit(1)
+
+
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
     """Start processes that Ctrl-C does not reach: it is for the one that ends them."""
@@ -258,8 +270,9 @@ def _interrupts_blocked() -> Iterator[None]:
 def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagReport]:
     """Validate bags on a Dask cluster; gives the reports as they come.
 
-    The workers see the bags under the same paths. A bag whose worker dies is begun again on
-    another, and is reported as unusable if that goes on.
+    This package is installed where the scheduler and the workers are, and the workers see the
+    bags under the same paths. A bag whose worker dies is begun again on another, and is reported
+    as unusable if that goes on.
 
     Args:
         tasks: the bags.
@@ -272,6 +285,8 @@ def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagRe
         import distributed  # noqa: PLC0415, an extra
     except ImportError as error:
         raise SchedulerError(f'{scheduler}: dask is not installed, extra `dask`') from error
+    for name in ('distributed', 'distributed.client'):  # what matters is in the reports
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         distributed.comm.get_address_host_port(scheduler)  # a client would take long to close
         client = distributed.Client(scheduler, timeout=_CONNECT_TIMEOUT, set_as_default=False)

@@ -24,7 +24,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from gear_kinematics.replay import running_node
+from gear_kinematics.live_node import running_node
 
 DEADLINE = 30.0  # s: far beyond anything but a failure
 SECOND = 1_000_000_000  # ns

@@ -704,7 +704,7 @@ def test_what_cannot_be_read_is_named_with_its_cause(kind, recorded, tmp_path):
 
 
 def test_a_record_that_is_too_large_is_not_loaded(recorded, tmp_path, monkeypatch):
-    monkeypatch.setattr('gear_kinematics.bag._MAX_RECORD', 2000)
+    monkeypatch.setattr('gear_kinematics.bag.mcap.MAX_RECORD', 2000)
     path = mcap_file(
         tmp_path / 'b.mcap', [*recorded[:-1], (*recorded[-1][:2], bytes(2000))], use_chunking=False
     )
@@ -758,7 +758,7 @@ def test_a_checksum_that_does_not_match_is_damage(recorded, tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_message_that_grows_is_damage(recorded, tmp_path, storage, monkeypatch):
-    monkeypatch.setattr('gear_kinematics.bag._MAX_RECORD', 2**20)
+    monkeypatch.setattr('gear_kinematics.bag.storage.MAX_RECORD', 2**20)
     packed = [(topic, received, zstd.compress(data)) for topic, received, data in recorded]
     packed[700] = (*packed[700][:2], zstd.compress(bytes(2**21)))
     path = rosbags_bag(tmp_path / 'bag', packed, storage)

@@ -16,7 +16,7 @@ from rosbags.convert import convert
 from rosbags.highlevel import AnyReader
 
 from gear_kinematics.kinematics import RotorTurns, solve
-from gear_kinematics.replay import Replay, running_node
+from gear_kinematics.live_node import Replay, running_node
 
 ROOT = Path(__file__).resolve().parents[1]
 BAGS = ROOT / 'bags'

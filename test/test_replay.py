@@ -24,9 +24,11 @@ from replaying import SECOND, decode
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
-from gear_kinematics import parameters, replay
+from gear_kinematics import live_node, parameters
 from gear_kinematics.bag import Bag, BagError, BagWriter, DamagedBagError
-from gear_kinematics.replay import ReplayError, live_messages, play
+from gear_kinematics.live_node import ReplayError, live_messages
+from gear_kinematics.replay import play
+from gear_kinematics.schedule import due_messages
 
 ROOT = Path(__file__).resolve().parents[1]
 BAGS = ROOT / 'bags'
@@ -291,7 +293,7 @@ class Scripted:
 def schedule(times, topics=(ROTOR,), **options) -> list[tuple[float, int]]:
     source = Scripted([(ROTOR, round(time * SECOND), b'') for time in times])
     options = {'rate': 1.0} | options
-    found = islice(replay._schedule(source, topics, **options), 10)
+    found = islice(due_messages(source, topics, **options), 10)
     return [(pytest.approx(due, abs=1e-9), received / SECOND) for due, (_, received, _) in found]
 
 
@@ -440,7 +442,7 @@ def processes(monkeypatch) -> list[subprocess.Popen]:
             super().__init__(*arguments, **options)
             started.append(self)
 
-    monkeypatch.setattr(replay.subprocess, 'Popen', Noted)
+    monkeypatch.setattr(live_node.subprocess, 'Popen', Noted)
     return started
 
 
@@ -452,7 +454,9 @@ def test_the_node_ends_with_its_consumer(processes):
     assert process.returncode == 0
 
 
-def test_a_node_that_dies_is_an_error(processes):
+def test_a_node_that_dies_is_an_error(processes, monkeypatch):
+    # What is killed leaves its shared memory behind, and its peers in the middle of it.
+    monkeypatch.setenv('FASTDDS_BUILTIN_TRANSPORTS', 'UDPv4')
     messages = live_messages(Scripted(rotor_states(SECOND + k for k in range(5000))), config())
     next(messages)
     processes[0].kill()

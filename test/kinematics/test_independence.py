@@ -125,12 +125,34 @@ def test_closed_form_takes_nothing_from_the_matrix_method(imports):
 
 def test_rclpy_is_imported_where_something_runs_in_ros(imports):
     users = {path for path, names in imports.items() if any(within(n, 'rclpy') for n in names)}
-    assert users <= {'node.py', 'replay.py'}
+    assert users <= {'node.py', 'live_node.py', 'replay.py'}
 
 
 def test_rosbags_is_imported_where_bags_are_read(imports):
     users = {path for path, names in imports.items() if any(within(n, 'rosbags') for n in names)}
-    assert users <= {'bag.py'}
+    assert users
+    assert all(path.startswith('bag/') for path in users)
+
+
+def test_imports_within_bag_point_one_way(imports):
+    layers = (
+        ('errors', 'topics'),
+        ('compression',),
+        ('storage', 'contents'),
+        ('mcap', 'sqlite', 'ros1'),
+        ('opening',),
+        ('reading',),
+        ('writing',),
+        ('__init__',),
+    )
+    files = {f'bag/{name}.py' for layer in layers for name in layer}
+    assert files == {path for path in imports if path.startswith('bag/')}
+    below = []
+    for layer in layers:
+        for path in (f'bag/{name}.py' for name in layer):
+            taken = {name for name in imports[path] if within(name, 'gear_kinematics')}
+            assert all(within(name, *below) for name in taken), path
+        below += [f'gear_kinematics.bag.{name}' for name in layer]
 
 
 @pytest.mark.parametrize('path', ['messages.py', 'parameters.py', '__init__.py'])
@@ -140,7 +162,7 @@ def test_wire_format_and_parameters_are_free_of_ros(imports, path):
 
 def test_nothing_below_imports_the_programs(imports):
     programs = [f'gear_kinematics.{name}' for name in ('node', 'cli')]
-    tops = ('node.py', 'cli.py', 'replay.py')
+    tops = ('node.py', 'cli.py', 'live_node.py')
     for path, names in imports.items():
         if path not in tops:
             assert not {name for name in names if within(name, *programs)}, path

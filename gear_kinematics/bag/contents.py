@@ -1,0 +1,91 @@
+"""What a recording consists of, and what metadata.yaml says about it."""
+
+import re
+from pathlib import Path, PurePath
+from typing import Any, NamedTuple
+
+import yaml
+
+from gear_kinematics.bag.compression import DECOMPRESSORS
+from gear_kinematics.bag.errors import bag_errors
+from gear_kinematics.bag.topics import Topic
+
+_STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
+
+
+class Contents(NamedTuple):
+    """Files, and what is known without opening them."""
+
+    files: list[Path]
+    """In the order of recording."""
+    topics: dict[str, Topic]
+    """By their names; empty without metadata.yaml."""
+    message_count: int | None
+    """None without metadata.yaml."""
+
+
+def find_contents(path: Path) -> Contents:
+    """Find what a recording consists of.
+
+    Args:
+        path: a rosbag2 folder, or a file.
+
+    Raises:
+        ValueError: or whatever else tells that this is no recording.
+    """
+    if path.is_file():
+        return Contents([path], {}, None)
+    if not path.is_dir():
+        raise ValueError('no such file or folder')
+    metadata = path / 'metadata.yaml'
+    if metadata.exists():
+        with bag_errors(metadata):
+            return _listed_contents(path, yaml.safe_load(metadata.read_text('utf-8')))
+    # A recorder that is killed writes none.
+    files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
+    if not files:
+        raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')
+    if len({_STORAGE_NAME.sub('', file.name) for file in files}) > 1:
+        raise ValueError('several recordings without a metadata.yaml; name one of its files')
+    return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
+
+
+def _listed_contents(path: Path, metadata: Any) -> Contents:
+    if not isinstance(metadata, dict):
+        raise ValueError('no metadata in it')  # noqa: TRY004, of what is on disk
+    information = metadata['rosbag2_bagfile_information']
+    if information.get('compression_mode', '').lower() == 'message' and (
+        information['compression_format'] not in DECOMPRESSORS
+    ):
+        raise ValueError(f'unsupported compression {information["compression_format"]!r}')
+    message_count = int(information['message_count'])
+    topics: dict[str, Topic] = {}
+    for entry in information['topics_with_message_count']:
+        topic = _listed_topic(entry['topic_metadata'])
+        topics.setdefault(topic.name, topic)
+    files = [_listed_file(path, name) for name in information['relative_file_paths']]
+    if not files:
+        raise ValueError('no files are listed')
+    return Contents(files, topics, message_count)
+
+
+def _listed_topic(known: Any) -> Topic:
+    topic = Topic(
+        known['name'],
+        known['type'],
+        known['serialization_format'],
+        type_hash=known.get('type_description_hash', ''),
+        qos=known.get('offered_qos_profiles', ''),
+    )
+    if not all(isinstance(text, str) for text in topic[:-1]):
+        raise ValueError('a topic is not described by texts')
+    return topic
+
+
+def _listed_file(path: Path, name: str) -> Path:
+    folder = path.absolute()
+    file = folder / name
+    if '..' in PurePath(name).parts or not file.is_relative_to(folder):
+        raise ValueError(f'{name!r} leads outside the folder')
+    # Before version 4 names began with that of the folder, which may have changed since.
+    return path / (name if file.exists() else file.name)

@@ -1,0 +1,31 @@
+"""What is raised about a bag, whichever library noticed it."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+class BagError(ValueError):
+    """A bag that cannot be used; the text is one line that names it and the cause."""
+
+
+class DamagedBagError(BagError):
+    """A bag that is damaged behind messages that could be read; the text also says where."""
+
+
+def cause(error: BaseException) -> str:
+    """Put an error of any library into one line."""
+    if isinstance(error, KeyError):
+        return f'{error} is missing'
+    text = str(error.strerror if isinstance(error, OSError) else error)
+    return ' '.join(text.split()) or type(error).__name__
+
+
+@contextmanager
+def bag_errors(name: object) -> Iterator[None]:
+    """Turn whatever a library raises about bytes on disk into a BagError that names the file."""
+    try:
+        yield
+    except BagError:
+        raise
+    except Exception as error:
+        raise BagError(f'{name}: {cause(error)}') from error

@@ -1,0 +1,236 @@
+"""mcap files."""
+
+import os
+import struct
+from collections.abc import Collection, Iterator
+from contextlib import nullcontext, suppress
+from operator import itemgetter
+from pathlib import Path
+from zlib import crc32
+
+from gear_kinematics.bag.compression import DECOMPRESSORS, MAX_RECORD
+from gear_kinematics.bag.storage import RawMessage, Storage
+from gear_kinematics.bag.topics import Topic, check_encoding
+
+MCAP_MAGIC = b'\x89MCAP0\r\n'
+_FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _STATISTICS, _DATA_END = 2, 3, 4, 5, 6, 11, 15
+_DATA = frozenset({_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK})
+_KNOWLEDGE = frozenset({_SCHEMA, _CHANNEL, _STATISTICS})
+_NO_SCHEMA = ('', '', '')  # type, syntax, definition
+_RECORD = struct.Struct('<BQ')  # opcode, length of what follows
+_MESSAGE_START = struct.Struct('<H4xQ')  # channel, reception; the data begin at byte 22
+_BATCH = 4096  # messages outside of chunks that are handled together
+_RECEIVED = itemgetter(1)
+
+
+class Mcap(Storage):
+    """An mcap file, read from front to back: https://mcap.dev/spec.
+
+    The index serves to know topics and counts without reading everything, no more. So a file
+    without one is read like any other.
+    """
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._stream = path.open('rb')
+        self._size = os.fstat(self._stream.fileno()).st_size
+        self._offset = 0
+        self._schemas: dict[int, tuple[str, str, str]] = {}
+        self._channels: dict[int, Topic] = {}
+        self._total: int | None = None
+        self._counts: dict[int, int] = {}
+        self._wanted: Collection[str] = ()
+        self._wanted_channels: dict[int, str] = {}
+
+    def close(self) -> None:
+        """Close the file."""
+        self._stream.close()
+
+    def position(self) -> str:
+        """Tell where reading is, for errors."""
+        return f'at byte {self._offset}: '
+
+    def topics(self) -> list[Topic]:
+        """Give the topics of the index, or else of the file as far as it can be read."""
+        self._read_summary()
+        if not self._channels:
+            try:
+                for _ in self._batches():
+                    pass
+            except Exception:
+                if not self._channels:
+                    raise
+        return list(self._channels.values())
+
+    def count(self) -> int | None:
+        """Give the number in the index, if there is one; `topics` has to be asked first."""
+        return self._total
+
+    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+        """Read messages, in order if they are off it by no more than a chunk."""
+        # Recorders with several threads, and those with several chunks open at a time, put
+        # messages aside by up to a chunk: as much is held back to bring them into order.
+        number = 0
+        held: list[RawMessage] = []
+        self._read_summary()
+        self._wanted = topics
+        for channel, topic in self._channels.items():
+            self._want(channel, topic)
+        batches = self._batches()
+        while True:
+            error, batch = None, None
+            try:
+                batch = next(batches, None)
+            except Exception as caught:  # noqa: BLE001, raised below, behind what was held back
+                error = caught
+            if batch:
+                batch.sort(key=_RECEIVED)
+                if held and batch[0][1] < held[-1][1]:
+                    merged = sorted(held + batch, key=_RECEIVED)
+                    held, batch = merged[: len(held)], merged[len(held) :]
+            yield from held
+            number += len(held)
+            self.read = number
+            if batch is None:
+                break
+            held = batch
+        if error:
+            raise error
+        expected = sum(self._counts.get(channel, 0) for channel in self._wanted_channels)
+        if number < expected:
+            raise ValueError(f'the index lists {expected} messages, there are {number}')
+
+    def _batches(self) -> Iterator[list[RawMessage]]:
+        """Walk through the file; on damage, give the messages before it and then raise."""
+        stream, batch = self._stream, list[RawMessage]()
+        self._offset = stream.seek(len(MCAP_MAGIC))
+        try:
+            while header := stream.read(_RECORD.size):  # an unfinished file just ends
+                if len(header) < _RECORD.size:
+                    raise _CutOffError
+                opcode, length = _RECORD.unpack(header)
+                left = self._size - self._offset - 9
+                if opcode in {_FOOTER, _DATA_END}:
+                    break
+                if not opcode:
+                    raise ValueError('there is no record')
+                if opcode in _DATA:
+                    if min(length, left) > MAX_RECORD:
+                        raise ValueError(f'a record of {length} bytes is too large')
+                    body = stream.read(min(length, left))
+                    if opcode != _CHUNK:
+                        self._walk(header + body, batch)
+                    else:
+                        with suppress(Exception) if length > left else nullcontext():
+                            self._walk(_chunk_records(body, whole=length <= left), batch)
+                if length > left:
+                    raise _CutOffError
+                if opcode == _CHUNK or len(batch) >= _BATCH:
+                    yield batch
+                    batch = []
+                self._offset += 9 + length
+                stream.seek(self._offset)
+        except Exception:
+            yield batch
+            raise
+        yield batch
+
+    def _walk(self, records: bytes, batch: list[RawMessage]) -> None:
+        """Append the wanted messages among records, up to the first damage."""
+        wanted = self._wanted_channels
+        unpack_record, unpack_message = _RECORD.unpack_from, _MESSAGE_START.unpack_from
+        end, size = 0, len(records)
+        try:
+            while end < size:
+                opcode, length = unpack_record(records, end)
+                start = end + 9
+                end = start + length
+                if end > size:
+                    raise _CutOffError
+                if opcode == _MESSAGE:
+                    channel, received = unpack_message(records, start)
+                    if channel in wanted:
+                        batch.append((wanted[channel], received, records[start + 22 : end]))
+                elif opcode in _KNOWLEDGE:
+                    self._learn(opcode, records[start:end])
+        except struct.error as error:
+            raise _CutOffError from error
+
+    def _learn(self, opcode: int, body: bytes) -> None:
+        if opcode == _STATISTICS:
+            self._total, size = struct.unpack_from('<Q34xI', body)
+            self._counts = dict(struct.iter_unpack('<HQ', body[46 : 46 + size]))
+            return
+        number, schema = struct.unpack_from('<HH', body)
+        if opcode == _SCHEMA:
+            # Definitions that are no text belong to encodings that are of no use here.
+            texts = [text.decode(errors='replace') for text in _strings(body[2:], 3)]
+            self._schemas[number] = texts[0], texts[1], texts[2]
+        elif number not in self._channels:
+            name, encoding, metadata = _strings(body[4:], 3)
+            texts = [text.decode() for text in _strings(metadata)]
+            known = dict(zip(texts[::2], texts[1::2], strict=True))
+            message_type, syntax, definition = self._schemas.get(schema, _NO_SCHEMA)
+            topic = Topic(
+                name.decode(),
+                message_type,
+                encoding.decode(),
+                syntax,
+                definition,
+                known.get('topic_type_hash', ''),
+                known.get('offered_qos_profiles', ''),
+            )
+            self._channels[number] = topic
+            self._want(number, topic)
+
+    def _want(self, channel: int, topic: Topic) -> None:
+        if topic.name in self._wanted:
+            check_encoding(topic)
+            self._wanted_channels[channel] = topic.name
+
+    def _read_summary(self) -> None:
+        """Learn from the index, if there is one and it is sound."""
+        try:
+            end = self._stream.seek(-37, os.SEEK_END)
+            opcode, _, start, _, _, magic = struct.unpack('<BQQQI8s', self._stream.read())
+            if (opcode, magic) == (_FOOTER, MCAP_MAGIC) and 0 < end - start < MAX_RECORD:
+                self._stream.seek(start)
+                self._walk(self._stream.read(end - start), [])
+        except Exception:  # noqa: BLE001, bytes of any kind
+            self._schemas, self._channels, self._counts, self._total = {}, {}, {}, None
+
+
+class _CutOffError(ValueError):
+    def __str__(self) -> str:
+        return 'cut off within a record'
+
+
+def _strings(data: bytes, count: int | None = None) -> list[bytes]:
+    """Split strings that stand one after the other, each behind its length."""
+    strings: list[bytes] = []
+    end = 0
+    while len(strings) < count if count else end < len(data):
+        (length,) = struct.unpack_from('<I', data, end)
+        start, end = end + 4, end + 4 + length
+        if end > len(data):
+            raise ValueError('a string is longer than its record')
+        strings.append(data[start:end])
+    return strings
+
+
+def _chunk_records(body: bytes, *, whole: bool) -> bytes:
+    """Take the records out of a chunk; as many as there are, if it is not whole."""
+    size, crc, name_length = struct.unpack_from('<16xQII', body)
+    name = body[32 : 32 + name_length].decode()
+    (length,) = struct.unpack_from('<Q', body, 32 + name_length)
+    data = body[40 + name_length :][:length]
+    if size > MAX_RECORD:
+        raise ValueError(f'a chunk of {size} bytes is too large')
+    if name and name not in DECOMPRESSORS:
+        raise ValueError(f'unsupported compression {name!r}')
+    records = DECOMPRESSORS[name](data, size + 1)[0] if name else data
+    if whole and len(records) != size:
+        raise ValueError('a chunk is not of the size that it should have')
+    if whole and crc and crc32(records) != crc:
+        raise ValueError('a chunk does not match its checksum')
+    return records

@@ -1,0 +1,172 @@
+"""Writing a recording."""
+
+import shutil
+import sqlite3
+import tempfile
+from collections.abc import Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Literal, Self
+
+from rosbags.interfaces import (
+    Connection,
+    Qos,
+    QosDurability,
+    QosHistory,
+    QosLiveliness,
+    QosReliability,
+    QosTime,
+)
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2.metadata import parse_qos
+
+from gear_kinematics.bag.errors import BagError, bag_errors, cause
+from gear_kinematics.bag.reading import Bag, BagMessage
+from gear_kinematics.bag.topics import TOPIC_TYPES, jazzy_definition, ros2_definition
+
+_FOREVER = QosTime(9223372036, 854775807)
+_RELIABLE = Qos(
+    QosHistory.KEEP_LAST,
+    2000,
+    QosReliability.RELIABLE,
+    QosDurability.VOLATILE,
+    _FOREVER,
+    _FOREVER,
+    QosLiveliness.AUTOMATIC,
+    _FOREVER,
+    avoid_ros_namespace_conventions=False,
+)
+
+
+class BagWriter:
+    """Writes a rosbag2 folder, version 9; the same messages always give the same bytes.
+
+    A context manager. The folder gets its name when it is whole; after an exception, an
+    interruption included, nothing is left.
+    """
+
+    def __init__(
+        self,
+        path: Path | str,
+        storage: Literal['mcap', 'sqlite3'] = 'mcap',
+        compression: Literal['none', 'zstd'] = 'none',
+    ) -> None:
+        """Say what to write.
+
+        Args:
+            path: the folder to make, in one that exists.
+            storage: of the messages.
+            compression: zstd compresses the chunks of an mcap file, and an sqlite3 file whole.
+        """
+        self.path = Path(path)
+        self._storage = StoragePlugin[storage.upper()]
+        modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}
+        self._compression = modes[storage] if compression == 'zstd' else CompressionMode.NONE
+        self._connections: dict[str, Connection] = {}
+
+    def __enter__(self) -> Self:
+        """Begin.
+
+        Raises:
+            BagError: if the path exists already or nothing can be written there.
+        """
+        with bag_errors(self.path), ExitStack() as stack:
+            if self.path.exists() or self.path.is_symlink():
+                raise ValueError('exists already')
+            # rosbags names the file after its folder, which has to have the final name already.
+            folder = tempfile.mkdtemp(prefix=f'.{self.path.name}.', dir=self.path.parent)
+            stack.callback(shutil.rmtree, folder)
+            self._partial = Path(folder, self.path.name)
+            self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)
+            self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
+            self._writer.open()
+            self._folder = stack.pop_all()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Finish, or clear away after an exception.
+
+        Raises:
+            BagError: if it cannot be finished.
+        """
+        with bag_errors(self.path), self._folder:
+            self._writer.__exit__(kind, error, trace)
+            if kind is None:
+                self._partial.rename(self.path)
+
+    def add_topic(self, name: str, message_type: str) -> None:
+        """Add a topic of a type that ROS 2 Jazzy has, such as sensor_msgs/msg/JointState.
+
+        Raises:
+            BagError: if it has been added already, or the type is unknown.
+        """
+        with bag_errors(self.path):
+            self._add(name, message_type, *jazzy_definition(message_type), [_RELIABLE])
+
+    def copy_topic(self, bag: Bag, name: str) -> None:
+        """Add a topic as it is in another bag, with its type definition, hash and QoS.
+
+        Raises:
+            BagError: if it has been added already, or the bag lacks what is needed for it.
+        """
+        topic = bag.describe(name)
+        with bag_errors(f'{bag.path}: {name} cannot be copied'):
+            if topic.encoding != 'cdr':
+                raise ValueError(f'its messages are {topic.encoding!r}, not CDR')
+            definition, type_hash = ros2_definition(topic)
+            self._add(name, topic.type, definition, type_hash, parse_qos(topic.qos))
+
+    def write(self, topic: str, received: int, data: bytes) -> None:
+        """Write a message.
+
+        Args:
+            topic: one that has been added.
+            received: ns.
+            data: CDR.
+
+        Raises:
+            BagError: if the topic has not been added, or the message cannot be written.
+        """
+        if topic not in self._connections:
+            raise BagError(f'{self.path}: topic {topic} has not been added')
+        if not 0 <= received < 2**63:
+            raise BagError(f'{self.path}: {received} is no time of reception')
+        try:
+            self._writer.write(self._connections[topic], received, data)
+        except (OSError, sqlite3.Error) as error:
+            raise BagError(f'{self.path}: {cause(error)}') from error
+
+    def _add(
+        self, name: str, message_type: str, definition: str, type_hash: str, qos: list[Qos]
+    ) -> None:
+        if name in self._connections:
+            raise BagError(f'{self.path}: topic {name} has been added already')
+        self._connections[name] = self._writer.add_connection(
+            name, message_type, msgdef=definition, rihs01=type_hash, offered_qos_profiles=qos
+        )
+
+
+def write_bag(
+    path: Path, messages: Iterable[BagMessage], *, storage: Literal['mcap', 'sqlite3'] = 'mcap'
+) -> None:
+    """Write a rosbag2 recording, chunks compressed with zstd where the storage has chunks.
+
+    Args:
+        path: the folder to make, in one that exists.
+        messages: on topics of `TOPIC_TYPES`.
+        storage: of the messages.
+
+    Raises:
+        BagError: if it cannot be written.
+    """
+    with BagWriter(path, storage, 'zstd' if storage == 'mcap' else 'none') as writer:
+        for topic, message_type in TOPIC_TYPES.items():
+            writer.add_topic(topic, message_type)
+        for message in messages:
+            writer.write(*message)
