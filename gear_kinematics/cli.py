@@ -118,7 +118,9 @@ def _parser() -> argparse.ArgumentParser:
     way.add_argument('--jobs', type=_positive, default=1, metavar='N', help='processes')
     way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
     for form in ('json', 'junit', 'html'):
-        validate.add_argument(f'--{form}', metavar='FILE', help='write the report; - is stdout')
+        validate.add_argument(
+            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
+        )
 
     compute_command = command(
         'compute', _compute, 'write the outputs for a bag with the rotor topic', config, topics

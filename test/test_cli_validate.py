@@ -254,8 +254,9 @@ def schema():
     return jsonschema.Draft202012Validator(json.loads(path.read_text('utf-8')))
 
 
-def test_json_on_stdout_is_json_alone(bags, schema):
-    done = gearkin('validate', 'good', 'wrong', 'garbage.mcap', '--json', '-', cwd=bags)
+@pytest.mark.parametrize('stdout', [['--json', '-'], ['--json']])
+def test_json_on_stdout_is_json_alone(bags, schema, stdout):
+    done = gearkin('validate', 'good', 'wrong', 'garbage.mcap', *stdout, cwd=bags)
     assert done.returncode == 2
     document = json.loads(done.stdout)
     schema.validate(document)

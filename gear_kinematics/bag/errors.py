@@ -16,7 +16,8 @@ def cause(error: BaseException) -> str:
     """Put an error of any library into one line."""
     if isinstance(error, KeyError):
         return f'{error} is missing'
-    text = str(error.strerror if isinstance(error, OSError) else error)
+    # Some errors of the operating system's kind come from elsewhere and have no such text.
+    text = str(getattr(error, 'strerror', None) or error)
     return ' '.join(text.split()) or type(error).__name__
 
 
