@@ -9,11 +9,10 @@ from typing import Any, Literal
 from gear_kinematics.bag import Bag, BagError, BagWriter
 from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
 from gear_kinematics.state_messages import StateMessages
 
-_JOINT_STATE = 'sensor_msgs/msg/JointState'
-_POSE_ARRAY = 'geometry_msgs/msg/PoseArray'
 _PROGRESS_EVERY = 1000  # messages
 
 
@@ -73,8 +72,8 @@ def compute(
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     if len({rotor_topic, output_topic, poses_topic}) < 3:  # noqa: PLR2004
         raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: a name is there twice')
-    outputs = {output_topic: _JOINT_STATE, poses_topic: _POSE_ARRAY}
-    _check_topics(source, {rotor_topic: _JOINT_STATE}, outputs)
+    outputs = {output_topic: JOINT_STATE, poses_topic: POSE_ARRAY}
+    _check_topics(source, {rotor_topic: JOINT_STATE}, outputs)
 
     computed = copied = 0
     with BagWriter(target, storage=storage, compression=compression) as writer:

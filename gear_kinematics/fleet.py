@@ -17,14 +17,14 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.report import BagReport, Verdict
 from gear_kinematics.validation import Message, Tolerances, Topics, Validator
 
-_JOINT_STATE, _POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 _CONTRACT = {
-    'output': ('output_state', _JOINT_STATE),
-    'poses': ('body_poses', _POSE_ARRAY),
-    'rotor': ('rotor_state', _JOINT_STATE),
+    'output': ('output_state', JOINT_STATE),
+    'poses': ('body_poses', POSE_ARRAY),
+    'rotor': ('rotor_state', JOINT_STATE),
 }
 """Name and type of the topics."""
 _OURS = {'mechanism_joint_states', *(name for name, _ in _CONTRACT.values())}

@@ -27,17 +27,16 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import Bag, BagError, BagMessage, DamagedBagError
-from gear_kinematics.messages import JointStateTemplate
+from gear_kinematics.messages import JOINT_STATE, SECOND, JointStateTemplate
 from gear_kinematics.node import make_executor
 from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
-from gear_kinematics.schedule import SECOND, due_messages, throttled, type_of
+from gear_kinematics.schedule import due_messages, throttled, type_of
 
 DEPTH = 2000
 """Messages that wait on either side of a topic."""
 POLL = 0.1
 """s: how late a signal can be noticed."""
 
-_JOINT_STATE = 'sensor_msgs/msg/JointState'
 _OUTPUTS = ('/output_state', '/body_poses')
 _STAMP = slice(4, 12)  # of a serialised message with a header
 _LISTENERS = 2  # on rotor_state: the node and our own recorder
@@ -107,8 +106,8 @@ def live_messages(
         ReplayError: if the node ends, or does not answer at all.
     """
     expected = RotorInput(InputSettings.from_mapping(parameters))
-    if (found := type_of(source, rotor_topic)) != _JOINT_STATE:
-        raise BagError(f'{source.path}: {rotor_topic} is of type {found}, not {_JOINT_STATE}')
+    if (found := type_of(source, rotor_topic)) != JOINT_STATE:
+        raise BagError(f'{source.path}: {rotor_topic} is of type {found}, not {JOINT_STATE}')
     schedule = due_messages(source, [rotor_topic], rate)
     report = throttled(progress)
     wanted: Counter[str] = Counter()

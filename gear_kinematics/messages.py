@@ -9,6 +9,7 @@ import struct
 from collections.abc import Sequence
 from typing import NamedTuple
 
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # behind the encapsulation
 _LITTLE_ENDIAN, _BIG_ENDIAN = b'\x00\x01', b'\x00\x00'

@@ -17,7 +17,8 @@ from rclpy.qos import QoSProfile
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.live_node import DEPTH, POLL, ReplayError, live_messages, replay_node
-from gear_kinematics.schedule import SECOND, due_messages, throttled, type_of
+from gear_kinematics.messages import SECOND
+from gear_kinematics.schedule import due_messages, throttled, type_of
 
 __all__ = ['Played', 'ReplayError', 'live_messages', 'play', 'stopped_by_signals']
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Collection, Iterator
 from itertools import chain
 
 from gear_kinematics.bag import Bag, BagError, RawMessage
+from gear_kinematics.messages import SECOND
 
-SECOND = 1_000_000_000  # ns
 _PROGRESS_PERIOD = 0.1  # s
 
 
