@@ -1,5 +1,7 @@
 .DEFAULT_GOAL := help
 PYTHON ?= python3
+MINUTES ?= 30
+FUZZ_SECONDS ?= 300
 VENV := .venv
 BIN := $(VENV)/bin
 PIP_INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
@@ -10,7 +12,7 @@ LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
 	_ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help demo test lint types format lock clean
+.PHONY: help demo test lint types format soak fuzz lock clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
@@ -35,9 +37,17 @@ format: $(VENV)/test.stamp ## Rewrite the sources in the house format
 	$(BIN)/ruff format
 	$(BIN)/ruff check --fix
 
+soak: $(VENV)/demo.stamp ## Run the node at 1 kHz for MINUTES (30)
+	$(BIN)/python benchmark/soak.py --minutes $(MINUTES)
+
+fuzz: $(VENV)/test.stamp $(VENV)/fuzz.stamp ## Fuzz messages and bags for FUZZ_SECONDS (300) each
+	$(BIN)/python fuzz/run.py messages -max_total_time=$(FUZZ_SECONDS)
+	$(BIN)/python fuzz/run.py bags -max_total_time=$(FUZZ_SECONDS)
+
 lock: ## Pin the newest versions (needs uv)
 	cd requirements && $(LOCK) --output-file demo.txt demo.in
 	cd requirements && $(LOCK) --constraint demo.txt --output-file test.txt test.in
+	cd requirements && $(LOCK) --output-file fuzz.txt fuzz.in
 
 clean: ## Remove everything that was generated
 	rm -rf $(VENV) .coverage* .hypothesis .mypy_cache .pytest_cache .ruff_cache \

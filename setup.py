@@ -34,7 +34,9 @@ setup(
         *shared('config', '*.yaml'),
         *shared('launch', '*.launch.py'),
         *shared('bags', '*'),
+        *shared('policies', '*.policy.xml'),
         *shared('docs', 'report.*'),
+        *shared('docs', 'security.md'),
     ],
     python_requires='>=3.11',
     install_requires=[
@@ -52,6 +54,8 @@ setup(
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],
         'dask': ['dask[distributed]'],
+        # `--plot`
+        'plot': ['matplotlib>=3.6'],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

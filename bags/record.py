@@ -161,7 +161,7 @@ def record(path: Path, scenario: Scenario) -> None:
     """Record one scenario to a new bag."""
     path.parent.mkdir(parents=True, exist_ok=True)
     with running_node(scenario.arguments), Replay() as replay:
-        replay.wait_for_node()
+        replay.wait_for_node('rotor')
         sent = 0
         start = time.monotonic()
         for number in range(round(scenario.rate * scenario.duration)):

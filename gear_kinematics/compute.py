@@ -9,9 +9,9 @@ from typing import Any, Literal
 from gear_kinematics.bag import Bag, BagError, BagWriter
 from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
+from gear_kinematics.messages import JOINT_STATE
 from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
-from gear_kinematics.state_messages import StateMessages
+from gear_kinematics.state_messages import BODY_POSES, OUTPUT_STATE, STATE_TOPICS, StateMessages
 
 _PROGRESS_EVERY = 1000  # messages
 
@@ -72,7 +72,8 @@ def compute(
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     if len({rotor_topic, output_topic, poses_topic}) < 3:  # noqa: PLR2004
         raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: a name is there twice')
-    outputs = {output_topic: JOINT_STATE, poses_topic: POSE_ARRAY}
+    topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
+    outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
     _check_topics(source, {rotor_topic: JOINT_STATE}, outputs)
 
     computed = copied = 0
@@ -96,8 +97,8 @@ def compute(
                 sample = rotor_input.accept(data, partial(int, received))
             except RejectedInputError:
                 continue
-            for output, message in zip(outputs, state_messages.encode(sample), strict=False):
-                writer.write(output, received, message)
+            for state, message in state_messages.encode(sample, topic_of):
+                writer.write(topic_of[state], received, message)
             computed += 1
         progress(count)
         if not computed:

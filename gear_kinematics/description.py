@@ -25,13 +25,17 @@ def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -
     """Name every joint of the URDF: rotor, satellites, Oldham couplings, output shaft.
 
     Raises:
-        ValueError: if `output_joint` is empty or the name of another joint.
+        ValueError: if `output_joint` is empty or the name of another joint, or a name has
+            characters that are none in XML.
     """
     branches = [branch.name for branch in mechanism.branches]
     names = ['rotor']
     names += [f'{kind}_{branch}' for kind in ('satellite', 'oldham') for branch in branches]
     if not output_joint or output_joint in names:
         raise ValueError(f'output_joint {output_joint!r} is empty or the name of another joint')
+    for parameter, text in (('output_joint', output_joint), ('frame_prefix', frame_prefix)):
+        if not text.isprintable():
+            raise ValueError(f'{parameter} must be printable, not {text!r}')
     return [frame_prefix + name for name in (*names, output_joint)]
 
 
@@ -65,7 +69,7 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
         return element
 
     link('stator', 1.15 * ring_radius, 2.0 * half_length)
-    link('rotor', 0.5 * ring_radius, 2.0 * half_length - 3.0 * _FACE_WIDTH)
+    link('rotor', 0.5 * ring_radius, 1.6 * half_length)
     joint('continuous', 'rotor', 'stator', 'rotor')
     for branch in mechanism.branches:
         satellite, oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'

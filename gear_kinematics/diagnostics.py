@@ -26,12 +26,20 @@ class InputMonitor:
 
     started: float
     published: int = 0
+    drivers: int = 0
+    """Publishers on rotor_state."""
+    lost: int = 0
+    """Inputs that the middleware knows it did not deliver."""
+    unsent: int = 0
+    """Messages that the middleware did not take."""
     last_input: float | None = None
     """When the last message came, valid or not."""
     incompatible_qos: dict[str, str] = field(default_factory=dict)
     """The offending policy by topic, as long as the node runs."""
     _reported: float = 0.0
     _received: int = 0
+    _lost: int = 0
+    _unsent: int = 0
     _rejected: Counter[str] = field(default_factory=Counter)
 
     def report(
@@ -50,6 +58,8 @@ class InputMonitor:
         newly_rejected = rotor_input.rejected - self._rejected
         self._reported, self._received = now, rotor_input.received
         self._rejected = Counter(rotor_input.rejected)
+        newly_lost, self._lost = self.lost - self._lost, self.lost
+        newly_unsent, self._unsent = self.unsent - self._unsent, self.unsent
 
         age = now - (self.started if self.last_input is None else self.last_input)
         errors, warnings = [], []
@@ -62,12 +72,21 @@ class InputMonitor:
         if newly_rejected:
             causes = ', '.join(f'{cause} {count}' for cause, count in newly_rejected.items())
             warnings.append(f'rejected: {causes}')
+        if newly_lost:
+            warnings.append(f'lost {newly_lost}')
+        if newly_unsent:
+            warnings.append(f'not sent {newly_unsent}')
+        if self.drivers > 1:
+            warnings.append(f'{self.drivers} drivers')
         level = ERROR if errors else WARN if warnings else OK
         values = {
             'rate (Hz)': f'{rate:.1f}',
             'received': str(rotor_input.received),
             'published': str(self.published),
             **{f'rejected: {cause}': str(n) for cause, n in sorted(rotor_input.rejected.items())},
+            'lost messages': str(self.lost),
+            'not sent': str(self.unsent),
+            'drivers': str(self.drivers),
             'duplicate stamps': str(rotor_input.duplicates),
             'zero stamps': str(rotor_input.zero_stamps),
             'clock resets': str(rotor_input.resets),

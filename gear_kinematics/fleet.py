@@ -27,7 +27,7 @@ _CONTRACT = {
     'rotor': ('rotor_state', JOINT_STATE),
 }
 """Name and type of the topics."""
-_OURS = {'mechanism_joint_states', *(name for name, _ in _CONTRACT.values())}
+_OURS = {'mechanism_joint_states', 'output_encoder', *(name for name, _ in _CONTRACT.values())}
 _BAG_FILE = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
 """Of a file of a split recording."""
@@ -89,13 +89,20 @@ def _bags_below(path: Path) -> Iterator[Path]:
     if not path.is_dir() or (path / 'metadata.yaml').exists():
         yield path
         return
-    children = sorted(filter(_may_hold, path.iterdir()))
+    children = sorted(
+        child for child in path.iterdir() if _may_hold(child) and not _leads_astray(child)
+    )
     files = [child for child in children if not child.is_dir()]
     if len(files) > 1 and len({_NUMBER.sub('', file.name) for file in files}) == 1:
         yield path  # a split recording whose recorder was killed
         children = [child for child in children if child.is_dir()]
     for child in children:
         yield from _bags_below(child)
+
+
+def _leads_astray(path: Path) -> bool:
+    """Whether it is a link to a folder that is no bag: links can go round in circles."""
+    return path.is_symlink() and path.is_dir() and not (path / 'metadata.yaml').exists()
 
 
 def _may_hold(path: Path) -> bool:

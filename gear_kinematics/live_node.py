@@ -39,7 +39,6 @@ POLL = 0.1
 
 _OUTPUTS = ('/output_state', '/body_poses')
 _STAMP = slice(4, 12)  # of a serialised message with a header
-_LISTENERS = 2  # on rotor_state: the node and our own recorder
 _MESSAGE_TYPES: Mapping[str, type] = {
     'rotor_state': JointState,
     'output_state': JointState,
@@ -160,17 +159,15 @@ class Replay:
         self._probed: set[str] = set()
         self._resources = ExitStack()
         self._node = self._resources.enter_context(replay_node(namespace))
-        self._executor = make_executor(self._node.context)
+        self._executor = make_executor(context=self._node.context)
         self._resources.callback(self._executor.shutdown)
         self._executor.add_node(self._node)
         qos = QoSProfile(depth=DEPTH)
         self._publisher = self._node.create_publisher(JointState, 'rotor_state', qos)
-        self._subscriptions = [
+        for topic, message_type in _MESSAGE_TYPES.items():
             self._node.create_subscription(
                 message_type, topic, self._recorder('/' + topic), qos, raw=True
             )
-            for topic, message_type in _MESSAGE_TYPES.items()
-        ]
 
     def __enter__(self) -> Self:
         """Start."""
@@ -180,22 +177,8 @@ class Replay:
         """Close the topics."""
         self._resources.close()
 
-    def wait_for_node(self, timeout: float = 20.0) -> None:
-        """Wait until every topic has both ends: the node's and ours.
-
-        Raises:
-            ReplayError: if they have not found each other after `timeout` s.
-        """
-        self.wait_until(
-            lambda: (
-                self._publisher.get_subscription_count() >= _LISTENERS
-                and all(s.get_publisher_count() >= 1 for s in self._subscriptions)
-            ),
-            timeout,
-        )
-
-    def probe(self, joint: str, timeout: float = 20.0) -> None:
-        """Make sure that the node's answers arrive here, which the ends seen here cannot tell.
+    def wait_for_node(self, joint: str, timeout: float = 20.0) -> None:
+        """Wait until probes are answered here, which the ends of topics seen here cannot tell.
 
         The probes are stamped with the far future, and are not recorded. Older messages than that
         let the node start anew.
@@ -321,8 +304,7 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
             Replay(namespace, alive=lambda: process.poll() is None) as replay,
         ):
             try:
-                replay.wait_for_node()
-                replay.probe(parameters['rotor_joint'])
+                replay.wait_for_node(parameters['rotor_joint'])
                 yield replay
             except ReplayError as error:
                 words = log.read_text(encoding='utf-8').splitlines()[-1:]

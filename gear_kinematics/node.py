@@ -1,10 +1,13 @@
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
+import os
 import signal
 import sys
 import time
-from types import FrameType
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from threading import Event, Thread
+from typing import Any, NamedTuple
 
 import rclpy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -17,8 +20,10 @@ from rcl_interfaces.msg import (
 )
 from rclpy.clock import Clock, ClockType
 from rclpy.context import Context
+from rclpy.duration import Duration
 from rclpy.event_handler import (
     PublisherEventCallbacks,
+    QoSMessageLostInfo,
     QoSOfferedIncompatibleQoSInfo,
     QoSRequestedIncompatibleQoSInfo,
     SubscriptionEventCallbacks,
@@ -39,6 +44,7 @@ from rclpy.qos import (
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
+from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -47,13 +53,16 @@ from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import InputMonitor
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
-from gear_kinematics.state_messages import StateMessages
+from gear_kinematics.state_messages import STATE_TOPICS, StateMessages
 
+_MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
 _DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
-_SPIN_TIMEOUT = 0.1  # s: how late a signal can be noticed
+_SPIN_TIMEOUT = 3600.0  # s; without any, the EventsExecutor of some releases does nothing
+_STOP_TIMEOUT = 1.0  # s, to answer what was received, and as long for listeners to get it
 _UNUSABLE = 2  # exit code: parameters or arguments that cannot be used
 
 
@@ -85,15 +94,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             'robot_description',
             QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
         )
-        # In the order of StateMessages.encode.
-        self._outputs = [
-            self._create_output(message_type, topic, QoSProfile(depth=_DEPTH))
-            for message_type, topic in (
-                (JointState, 'output_state'),
-                (PoseArray, 'body_poses'),
-                (JointState, 'mechanism_joint_states'),
-            )
-        ]
+        self._outputs = {
+            topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
+            for topic, name in STATE_TOPICS.items()
+        }
         self._diagnostics = self._create_output(
             DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
         )
@@ -158,7 +162,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             raw=True,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(
-                incompatible_qos=self._on_incompatible_driver
+                incompatible_qos=self._on_incompatible_driver,
+                message_lost=self._on_message_lost,
             ),
         )
 
@@ -176,9 +181,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 reason = f'{parameter.name} must be one of {", ".join(known.choices)}'
                 return SetParametersResult(successful=False, reason=reason)
             # The first declaration comes before the mechanism, which then checks it itself.
-            if parameter.name == 'output_joint' and hasattr(self, '_mechanism'):
+            if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_mechanism'):
+                names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
                 try:
-                    joint_names(self._mechanism, output_joint=parameter.value, frame_prefix='')
+                    joint_names(self._mechanism, **names | {parameter.name: parameter.value})
                 except ValueError as error:
                     return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -191,7 +197,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
         if description != self._description:
             self._description = description
-            self._description_publisher.publish(description)
+            self._publish(self._description_publisher, description)
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
@@ -200,9 +206,23 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn(f'rotor_state rejected: {rejection}')
             return
-        for publisher, message in zip(self._outputs, self._messages.encode(sample), strict=True):
-            publisher.publish(message)
+        # What nobody listens to is not computed.
+        topics = [
+            topic
+            for topic, publisher in self._outputs.items()
+            if publisher.get_subscription_count()
+        ]
+        for topic, message in self._messages.encode(sample, topics):
+            self._publish(self._outputs[topic], message)
         self._monitor.published += 1
+
+    def _publish(self, publisher: Publisher, message: Any) -> None:
+        try:
+            publisher.publish(message)
+        except rclpy_implementation.RCLError as error:
+            # As with history keep_all, and a listener that is stuck.
+            self._monitor.unsent += 1
+            self._warn(f'{publisher.topic_name} not sent: {error}')
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -224,6 +244,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         else:
             self._on_incompatible_qos('rotor_state', event)
 
+    def _on_message_lost(self, event: QoSMessageLostInfo) -> None:
+        self._monitor.lost += event.total_count_change
+
     def _on_incompatible_qos(
         self,
         topic: str,
@@ -232,6 +255,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         policy = qos_policy_name_from_kind(event.last_policy_kind)
         self._monitor.incompatible_qos[topic] = policy
         self._warn(f'an endpoint on {topic} is incompatible with this node: {policy}')
+
+    def wait_for_delivery(self, timeout: float) -> None:
+        """Wait until the reliable listeners have what was published; `timeout` is in s."""
+        deadline = time.monotonic() + timeout
+        for publisher in self._outputs.values():
+            left = max(0.0, deadline - time.monotonic())
+            publisher.wait_for_all_acked(Duration(seconds=left))
 
     def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         home_angle = self._value('home_angle')
@@ -248,6 +278,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return response
 
     def _report(self) -> None:
+        self._monitor.drivers = self._subscription.get_publisher_count()
         report = self._monitor.report(
             self._input, self._mechanism, self._value('input_timeout'), time.monotonic()
         )
@@ -262,32 +293,36 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
             )
         ]
-        self._diagnostics.publish(message)
+        self._publish(self._diagnostics, message)
 
 
-def make_executor(context: Context | None = None) -> Executor:
-    """The executor with the least latency that this rclpy has."""
-    try:
-        # Not in every release of Jazzy.
-        from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415
-    except ImportError:
-        return SingleThreadedExecutor(context=context)
-    return EventsExecutor(context=context)
+def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:
+    """The executor that the parameter `executor` asks for.
+
+    Raises:
+        ValueError: if this rclpy does not have it.
+    """
+    if kind != 'single_threaded':
+        try:
+            # Not in every release of Jazzy.
+            from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415
+        except ImportError:
+            if kind == 'events':
+                raise ValueError(
+                    'this rclpy has no EventsExecutor: executor must not be events'
+                ) from None
+        else:
+            return EventsExecutor(context=context)
+    return SingleThreadedExecutor(context=context)
 
 
 def main(args: list[str] | None = None) -> int:
     """Run the node until SIGINT or SIGTERM; returns the exit code."""
-    stopping = False
-
-    def stop(_signal: int, _frame: FrameType | None) -> None:
-        nonlocal stopping
-        stopping = True
-
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, stop)
+    signals = _caught_signals()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         node = GearStatePublisher()
+        executor = make_executor(node.get_parameter('executor').value)
     except (ParameterException, ValueError, RuntimeError) as error:
         unknown = (
             'unknown arguments '
@@ -297,18 +332,57 @@ def main(args: list[str] | None = None) -> int:
         print(f'gear_state_publisher: {unknown}{error}', file=sys.stderr)
         rclpy.try_shutdown()
         return _UNUSABLE
-    executor = make_executor()
     executor.add_node(node)
-    try:
-        # EventsExecutor.spin() does not dispatch in every release; spin_once() does.
-        while not stopping and rclpy.ok():
-            executor.spin_once(timeout_sec=_SPIN_TIMEOUT)
-    except ExternalShutdownException:
-        pass  # somebody else in this process has shut rclpy down
+    # What ends in another way is that somebody else in this process has shut rclpy down.
+    with suppress(ExternalShutdownException), _stopped(executor, signals) as stopped:
+        while not stopped.done():
+            executor.spin_until_future_complete(stopped, timeout_sec=_SPIN_TIMEOUT)
+        node.wait_for_delivery(_STOP_TIMEOUT)
     executor.shutdown()
     node.destroy_node()
     rclpy.try_shutdown()
     return 0
+
+
+class _Pipe(NamedTuple):
+    """Its file descriptors."""
+
+    reader: int
+    writer: int
+
+
+def _caught_signals() -> _Pipe:
+    """A pipe from which SIGINT and SIGTERM, which do nothing else, can be read."""
+    pipe = _Pipe(*os.pipe())
+    os.set_blocking(pipe.writer, False)
+    signal.set_wakeup_fd(pipe.writer)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: None)
+    return pipe
+
+
+@contextmanager
+def _stopped(executor: Executor, signals: _Pipe) -> Iterator[Future]:
+    """A future that is done after the first signal: when what was received before is answered.
+
+    A thread waits for it, since the main thread is not in Python while it waits for messages.
+    """
+    stopped, ended = Future(), Event()
+
+    def wait() -> None:
+        os.read(signals.reader, 1)
+        executor.create_task(stopped.set_result, None)
+        if not ended.wait(_STOP_TIMEOUT):
+            stopped.set_result(None)
+
+    thread = Thread(target=wait)
+    thread.start()
+    try:
+        yield stopped
+    finally:
+        ended.set()
+        os.write(signals.writer, b'\0')  # in case that there was no signal
+        thread.join()
 
 
 if __name__ == '__main__':

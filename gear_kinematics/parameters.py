@@ -81,6 +81,11 @@ PARAMETERS: Mapping[str, Parameter] = {
     'output_joint': Parameter('Name of the output shaft in output_state and the URDF'),
     'home_angle': Parameter('Output angle that ~/home declares, rad', -1e9, 1e9),
     'frame_prefix': Parameter('Put before every frame id and joint name'),
+    'executor': Parameter(
+        'rclpy executor; auto: events where this ROS has it',
+        choices=('auto', 'events', 'single_threaded'),
+        read_only=True,
+    ),
 }
 BRANCH_PARAMETERS: Mapping[str, Parameter] = {
     'cam_phase': Parameter(
@@ -148,7 +153,7 @@ def _read(path: Path) -> dict[str, Any]:
         document = yaml.load(path.read_text(encoding='utf-8'), _RosLoader)  # noqa: S506, it is safe
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigError(f'{path}: {error}') from error
-    except yaml.YAMLError as error:
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error
     found = _parameters_of_node(document)
     if not found:
@@ -161,7 +166,14 @@ def _read(path: Path) -> dict[str, Any]:
 
 
 class _RosLoader(yaml.SafeLoader):
-    """Reads numbers as ROS does: 15e-4 is one."""
+    """Reads as ROS does: 15e-4 is a number, and aliases, which could go on and on, are refused."""
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        """Compose the next node."""
+        if self.check_event(yaml.AliasEvent):
+            problem = 'aliases are not supported'
+            raise yaml.composer.ComposerError(None, None, problem, self.get_mark())
+        return super().compose_node(parent, index)
 
 
 _RosLoader.add_implicit_resolver(

@@ -1,12 +1,14 @@
 """Recorded messages into DDS in their own time: `play` is a driver for whoever listens."""
 
-import importlib
+import importlib.util
 import math
+import re
 import signal
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from importlib.machinery import PathFinder
 from typing import Any
 
 from rclpy.duration import Duration
@@ -179,6 +181,10 @@ def _publisher(node: Node, name: str, topic: str, message_type: str) -> Publishe
 
 
 def _load_class(message_type: str) -> Any:
-    package, *_, name = message_type.split('/')
-    module: Any = importlib.import_module(f'{package}.msg')
-    return getattr(module, name)
+    """Import a message class; a bag, which names it, can have nothing else imported."""
+    named = re.fullmatch(r'([a-z]\w*)(?:/msg)?/([A-Z]\w*)', message_type, re.ASCII)
+    package = importlib.util.find_spec(named[1]) if named else None
+    places = package.submodule_search_locations if package else None
+    if not (named and places and PathFinder.find_spec('msg', places)):
+        raise ImportError('no message of that name is installed')
+    return getattr(importlib.import_module(f'{named[1]}.msg'), named[2])

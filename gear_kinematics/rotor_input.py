@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
 from gear_kinematics.message_batches import decode_joint_states, joint_index
-from gear_kinematics.messages import MalformedMessageError, decode_joint_state
+from gear_kinematics.messages import JointStateDecoder, MalformedMessageError
 
 Array = NDArray[Any]
 
@@ -22,7 +22,7 @@ _POSITION_MISSING = 'position missing'
 _POSITION_NOT_FINITE = 'position not finite'
 _OUT_OF_ORDER = 'out of order'
 
-_CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
+CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
 _MAX_POSITION = 1e300  # rad: beyond it, the output angle might not be finite any more
 
 
@@ -95,6 +95,9 @@ class RotorInput:
         self.resets = 0
         self.last: RotorSample | None = None
         self._settings = settings
+        self._decoder = JointStateDecoder()
+        self._names: tuple[bytes, ...] | None = None
+        self._joint: int | None = None
         self._turns = RotorTurns(
             single_turn=settings.single_turn,
             max_speed=settings.max_rotor_speed,
@@ -113,6 +116,7 @@ class RotorInput:
         if settings.encoder != self._settings.encoder:
             self._turns.single_turn = settings.single_turn
             self._turns.reset()
+            self._names = None
         self._settings = settings
 
     @property
@@ -220,10 +224,13 @@ class RotorInput:
 
     def _accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         try:
-            message = decode_joint_state(data)
+            message = self._decoder.decode(data)
         except MalformedMessageError as error:
             raise RejectedInputError(_MALFORMED) from error
-        index = joint_index(message.names, self._settings.rotor_joint.encode())
+        if message.names is not self._names:  # the decoder gives the same as long as they are
+            self._names = message.names
+            self._joint = joint_index(message.names, self._settings.rotor_joint.encode())
+        index = self._joint
         if index is None:
             raise RejectedInputError(_JOINT_MISSING)
         if index >= len(message.position):
@@ -266,7 +273,7 @@ class RotorInput:
             return
         if stamp == self.last.stamp:
             self.duplicates += 1
-        elif self.last.stamp - stamp <= _CLOCK_RESET:
+        elif self.last.stamp - stamp <= CLOCK_RESET:
             raise RejectedInputError(_OUT_OF_ORDER)
         else:
             self.resets += 1

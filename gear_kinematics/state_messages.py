@@ -1,14 +1,27 @@
 """The messages that the node publishes for a rotor sample, as bytes ready to be sent."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from gear_kinematics.description import joint_names
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.messages import JointStateTemplate, PoseArrayTemplate
+from gear_kinematics.messages import (
+    JOINT_STATE,
+    POSE_ARRAY,
+    JointStateTemplate,
+    PoseArrayTemplate,
+)
 from gear_kinematics.rotor_input import RotorSample
+
+OUTPUT_STATE, BODY_POSES, JOINT_STATES = 'output_state', 'body_poses', 'mechanism_joint_states'
+STATE_TOPICS: Mapping[str, str] = {
+    OUTPUT_STATE: JOINT_STATE,
+    BODY_POSES: POSE_ARRAY,
+    JOINT_STATES: JOINT_STATE,
+}
+"""The topics of the state and their types."""
 
 
 class StateMessages:
@@ -33,17 +46,23 @@ class StateMessages:
             for velocity in (False, True)
         }
 
-    def encode(self, sample: RotorSample) -> tuple[bytes, bytes, bytes]:
-        """Give output_state, body_poses and mechanism_joint_states for a sample."""
+    def encode(
+        self, sample: RotorSample, topics: Iterable[str] = STATE_TOPICS
+    ) -> Iterator[tuple[str, bytes]]:
+        """Yield the messages for a sample by topic: all, or those of some of STATE_TOPICS."""
         turns, angle = sample.position
         output_turns, output_rest = self._form.output_angle(turns, angle, math)
-        branches = self._form.branches(angle, output_rest, math)
         output_angle = TURN * output_turns + output_rest
-        return (
-            self._output_state(sample, output_angle),
-            self._body_poses.encode(sample.stamp, self._poses(output_rest, branches)),
-            self._joint_state(sample, output_angle, branches),
-        )
+        branches: list[BranchPosition] = []
+        for topic in topics:
+            if topic == OUTPUT_STATE:
+                yield topic, self._output_state(sample, output_angle)
+                continue
+            branches = branches or self._form.branches(angle, output_rest, math)
+            if topic == BODY_POSES:
+                yield topic, self._poses(sample, output_rest, branches)
+            else:
+                yield topic, self._joint_state(sample, output_angle, branches)
 
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
         arrays = [(output_angle,)]
@@ -54,15 +73,17 @@ class StateMessages:
         template = self._output_states[sample.velocity is not None, sample.effort is not None]
         return template.encode(sample.stamp, *arrays)
 
-    def _poses(self, output_angle: float, branches: Sequence[BranchPosition]) -> list[float]:
+    def _poses(
+        self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
+    ) -> bytes:
         # Every body but the rotor has the angle φ5; within the turn its quaternion has w >= 0.
         quaternion = (0.0, 0.0, math.sin(0.5 * output_angle), math.cos(0.5 * output_angle))
         numbers: list[float] = []
         for branch, z in zip(branches, self._axial_positions, strict=True):
-            numbers += (branch.satellite_x, branch.satellite_y, z, *quaternion)
+            numbers += (branch.satellite.real, branch.satellite.imag, z, *quaternion)
         for branch, z in zip(branches, self._axial_positions, strict=True):
-            numbers += (branch.oldham_x, branch.oldham_y, z, *quaternion)
-        return numbers
+            numbers += (branch.oldham.real, branch.oldham.imag, z, *quaternion)
+        return self._body_poses.encode(sample.stamp, numbers)
 
     def _joint_state(
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
@@ -71,13 +92,13 @@ class StateMessages:
         rotor_angle = TURN * sample.position.turns + sample.position.angle
         on_cam = output_angle - rotor_angle
         positions = [rotor_angle, *(on_cam for _ in branches)]
-        positions += [branch.satellite_slide for branch in branches]
+        positions += [branch.slides.imag for branch in branches]
         positions.append(output_angle)
         velocity = sample.velocity
         if velocity is None:
             return self._joint_states[False].encode(sample.stamp, positions)
         output_velocity = self._form.output_rate(velocity)
         velocities = [velocity, *(output_velocity - velocity for _ in branches)]
-        velocities += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
+        velocities += [self._form.slide_velocities(branch, velocity).imag for branch in branches]
         velocities.append(output_velocity)
         return self._joint_states[True].encode(sample.stamp, positions, velocities)

@@ -2,6 +2,7 @@
 
 import os
 import socket
+from pathlib import Path
 
 
 def _free_domain() -> int:
@@ -21,10 +22,10 @@ def _free_domain() -> int:
 # Before anything else is imported: middleware reads the environment once.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_DOMAIN_ID'] = str(_free_domain())
+os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(Path(__file__).with_name('discovery.xml'))
 
 import math  # noqa: E402, see above
 from collections.abc import Callable  # noqa: E402
-from pathlib import Path  # noqa: E402
 
 import hypothesis  # noqa: E402
 import pytest  # noqa: E402

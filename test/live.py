@@ -19,6 +19,7 @@ from rclpy.parameter import Parameter
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
 from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
@@ -90,28 +91,25 @@ def stamp_of(message) -> int:
     return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
 
 
-class Peer:
-    """The other end of a node under test. Messages arrive only within the waits."""
+class Listener:
+    """A participant that keeps the node's outputs. Messages arrive only within the waits."""
 
-    def __init__(self, namespace: str, **topics: str) -> None:
+    def __init__(self, namespace: str, name: str = 'listener', **topics: str) -> None:
         """Open the topics; `topics` gives those that are not at their usual place."""
         self.received: dict[str, list] = {}
         self.alive = lambda: True
-        self._stamps = itertools.count(START, SECOND // 1000)
         self._context = Context()
         rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node('peer', context=self._context, namespace=namespace)
+        self.node = Node(name, context=self._context, namespace=namespace)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self.node)
         self.namespace = namespace
-        qos = QoSProfile(depth=2000)
-        self._driver = self.node.create_publisher(
-            JointState, topics.get('rotor_state', 'rotor_state'), qos
-        )
-        for name, message_type in zip(STATES, (JointState, PoseArray, JointState), strict=True):
-            self.listen(message_type, name, qos, topics.get(name, name))
-        self.listen(DiagnosticArray, 'diagnostics', qos, topics.get('diagnostics', '/diagnostics'))
-        self._parameters = AsyncParameterClient(self.node, f'{namespace}/gear_state_publisher')
+        self._subscriptions = [
+            self.listen(message_type, topic, QoSProfile(depth=2000), topics.get(topic, topic))
+            for topic, message_type in zip(
+                STATES, (JointState, PoseArray, JointState), strict=True
+            )
+        ]
 
     def close(self) -> None:
         """Leave."""
@@ -119,10 +117,10 @@ class Peer:
         self.node.destroy_node()
         rclpy.try_shutdown(context=self._context)
 
-    def listen(self, message_type, name, qos, topic=None) -> None:
+    def listen(self, message_type, name, qos, topic=None) -> Subscription:
         """Keep what comes on a topic in `received[name]`."""
         messages = self.received.setdefault(name, [])
-        self.node.create_subscription(message_type, topic or name, messages.append, qos)
+        return self.node.create_subscription(message_type, topic or name, messages.append, qos)
 
     def wait_until(self, condition, what: str):
         """Receive until a condition holds, and return what it gave."""
@@ -132,6 +130,25 @@ class Peer:
             assert time.monotonic() < deadline, f'waited in vain for {what}'
             self._executor.spin_once(timeout_sec=0.02)
         return result
+
+    def receive(self) -> None:
+        """Receive a message if there is one."""
+        self._executor.spin_once(timeout_sec=0.0)
+
+
+class Peer(Listener):
+    """The other end of a node under test: its driver, listener and client."""
+
+    def __init__(self, namespace: str, **topics: str) -> None:
+        """Open the topics; `topics` gives those that are not at their usual place."""
+        super().__init__(namespace, 'peer', **topics)
+        self._stamps = itertools.count(START, SECOND // 1000)
+        qos = QoSProfile(depth=2000)
+        self._driver = self.node.create_publisher(
+            JointState, topics.get('rotor_state', 'rotor_state'), qos
+        )
+        self.listen(DiagnosticArray, 'diagnostics', qos, topics.get('diagnostics', '/diagnostics'))
+        self._parameters = AsyncParameterClient(self.node, f'{namespace}/gear_state_publisher')
 
     def connect(self, *, probes=True, joint='rotor') -> None:
         """Wait until the node hears the driver and, found out by probes, this peer hears it.
@@ -153,6 +170,11 @@ class Peer:
                 break
         for name in STATES:
             self.received[name].clear()
+
+    def matches(self) -> list[int]:
+        """Count the ends that the driver and the listeners to STATES are matched with."""
+        listeners = (subscription.get_publisher_count() for subscription in self._subscriptions)
+        return [self._driver.get_subscription_count(), *listeners]
 
     def _heard(self, stamp: int) -> bool:
         return all(
@@ -240,6 +262,11 @@ class Peer:
         """Set parameters through the service; returns every result."""
         self.wait_until(self._parameters.services_are_ready, 'the parameter services')
         return self._result(self._parameters.set_parameters(parameters)).results
+
+    def set_atomically(self, parameters):
+        """Set all of some parameters or none of them through the service; returns the result."""
+        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
+        return self._result(self._parameters.set_parameters_atomically(parameters)).result
 
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""

@@ -75,8 +75,8 @@ def valid_samples(
 
 
 @cache
-def expected_motion(position: float, turns: int) -> oracle.Expected:
-    return oracle.expected_motion(ACTUATOR, oracle.rotor_angle_of(position, turns=turns))
+def expected_motion(position: float, turns: int, zero: float = 0.0) -> oracle.Expected:
+    return oracle.expected_motion(ACTUATOR, oracle.rotor_angle_of(position, zero, turns=turns))
 
 
 @dataclass
@@ -93,13 +93,15 @@ class Worst:
         self.position = max(self.position, math.inf if math.isnan(error) else error)
 
 
-def compare_messages(samples: list[Sample], states: list[bytes], poses: list[bytes]) -> Worst:
+def compare_messages(
+    samples: list[Sample], states: list[bytes], poses: list[bytes], *, zero: float = 0.0
+) -> Worst:
     """Compare every output message with its sample, in order and by stamp; nothing may miss."""
     worst = Worst()
     assert len(states) == len(samples)
     assert len(poses) == len(samples)
     for sample, state_data, poses_data in zip(samples, states, poses, strict=True):
-        expected = expected_motion(sample.position, sample.turns)
+        expected = expected_motion(sample.position, sample.turns, zero)
         state = decode(state_data, 'sensor_msgs/msg/JointState')
         assert stamp_of(state) == sample.stamp
         assert state.name == ['output_shaft']

@@ -596,6 +596,7 @@ def database(path: Path, script: str) -> Path:
     return path
 
 
+CORPUS = ROOT / 'test' / 'corpus' / 'bags'
 BOMB = zstd.compress(bytes(2**27))
 UNREADABLE: dict[str, tuple[str, Callable[[Path, Messages], Path]]] = {
     'nothing there': ('no such file or folder', lambda p, _: p / 'b'),
@@ -624,6 +625,21 @@ UNREADABLE: dict[str, tuple[str, Callable[[Path, Messages], Path]]] = {
     'another database': (
         'no such table: topics',
         lambda p, _: database(p / 'b.db3', 'CREATE TABLE t(a); INSERT INTO t VALUES (1);'),
+    ),
+    'a column that is computed': (
+        'messages has columns that are computed',
+        lambda p, m: database(
+            single(rosbags_bag(p / 'b', m, 'sqlite3')),
+            'ALTER TABLE messages ADD COLUMN more AS (zeroblob(1000000000));',
+        ),
+    ),
+    'pages that refer to the same pages again and again': (
+        'more rows than a file of this size can hold',
+        lambda *_: CORPUS / 'repeated_pages.db3',
+    ),
+    'chunk of zeros': (
+        r'at byte \d+: there is no record',
+        lambda *_: CORPUS / 'chunk_of_zeros.mcap',
     ),
     'mcap cut before any message': (
         'at byte 8: cut off within a record',
@@ -658,6 +674,18 @@ UNREADABLE: dict[str, tuple[str, Callable[[Path, Messages], Path]]] = {
     'a file far outside': (
         "'/etc/passwd' leads outside",
         lambda p, m: metadata_bag(p / 'b', m, relative_file_paths=['/etc/passwd']),
+    ),
+    'a file twice': (
+        'listed more than once',
+        lambda p, m: metadata_bag(p / 'b', m, relative_file_paths=['b.mcap', './b.mcap']),
+    ),
+    'fewer messages than none': (
+        'message count is out of range',
+        lambda p, m: metadata_bag(p / 'b', m, message_count=-1),
+    ),
+    'more messages than any file can hold': (
+        'message count is out of range',
+        lambda p, m: metadata_bag(p / 'b', m, message_count=2**63),
     ),
     'a file that is missing': (
         r'other\.mcap: No such file',

@@ -152,7 +152,7 @@ def test_the_node_publishes_what_the_rotor_topic_calls_for(
     if recording.single_turn:
         arguments += ['-p', 'rotor_encoder:=single_turn']
     with running_node(arguments), Replay(namespace) as replay:
-        replay.wait_for_node()
+        replay.wait_for_node(recording.joint)
         begin, start = rotor_messages[0][0], time.monotonic()
         for received, data in rotor_messages:
             replay.receive_until(start + (received - begin) * 1e-9 / recording.speed_up)

@@ -28,6 +28,8 @@ CONFIG = BAGS.parent / 'config' / 'actuator.yaml'
 SAMPLES = 300
 CHANGED = 100
 """Which output is changed, if one is."""
+LAST_BITS = ('--tolerance-angle', '0', '--tolerance-position', '1e-18')
+"""m: numpy fuses a sum of products and rounds it once, plain floats twice; angles are the same."""
 
 
 def rewrite(path: Path, edit=lambda *_: None, rename=lambda topic: topic, drop=()) -> Path:
@@ -151,7 +153,7 @@ def test_a_bag_that_is_given_twice_is_validated_once(bags):
         ('wrong', ['--tolerance-angle', '1.9e-9'], 1),
         ('wrong', ['--tolerance-angle', '2.1e-9'], 0),
         ('wrong', ['--tolerance-position', '1'], 1),
-        ('good', ['--tolerance-angle', '0', '--tolerance-position', '0'], 0),
+        ('good', LAST_BITS, 0),
         ('shifted', [], 1),
         ('shifted', ['--allow-offset'], 0),
         ('wrong', ['--allow-offset'], 1),
@@ -518,13 +520,12 @@ def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
     assert done.stdout == (
         f'{out}: {SAMPLES} outputs for {SAMPLES} rotor states, 0 other messages copied\n'
     )
-    done = gearkin('validate', out, '--tolerance-angle', 0, '--tolerance-position', 0)
+    done = gearkin('validate', out, *LAST_BITS)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     namespace = '/arm' if name == 'namespaced' else ''
     for topic in ('output_state', 'body_poses'):
         assert found[f'{namespace}/{topic}: compared'] == str(SAMPLES)
-        assert found[f'{namespace}/{topic} position: max error'].split()[0] == '0'
 
 
 def test_compute_uses_the_config_beside_the_bag(tmp_path):

@@ -143,6 +143,16 @@ def test_every_link_is_shown_and_has_sizes(mechanism):
         assert float(cylinder.get('length')) > 0.0
 
 
+def test_mechanism_that_is_thin_has_sizes_too():
+    # A branch is at 0 unless it is told to be elsewhere.
+    thin = Mechanism(80, 76, 0.0011, (Branch('a'),))
+    robot = ET.fromstring(urdf(thin, module=MODULE, **NAMES))  # noqa: S314, our own
+    lengths = [float(x.get('length')) for x in robot.iterfind('link/visual/geometry/cylinder')]
+    masses = [float(x.get('value')) for x in robot.iterfind('link/inertial/mass')]
+    assert len(lengths) == len(masses) == 5
+    assert min(lengths + masses) > 0.0
+
+
 def test_slide_is_limited_by_the_eccentricity(actuator):
     robot = ET.fromstring(urdf(actuator, module=MODULE, **NAMES))  # noqa: S314, our own
     limits = [joint.find('limit') for joint in robot.iterfind("joint[@type='prismatic']")]
@@ -152,7 +162,8 @@ def test_slide_is_limited_by_the_eccentricity(actuator):
 
 def messages_at(mechanism, rotor_angle, names=NAMES):
     sample = RotorSample(5, split_turns(rotor_angle), 1.0, None)
-    _, poses, states = StateMessages(mechanism, **names).encode(sample)
+    encoded = dict(StateMessages(mechanism, **names).encode(sample))
+    poses, states = encoded['body_poses'], encoded['mechanism_joint_states']
     return deserialize_message(poses, PoseArray), deserialize_message(states, JointState)
 
 

@@ -86,6 +86,28 @@ def test_rejects_since_the_last_report_are_a_warning_and_then_over(bench):
     assert 'joint missing' not in report.message
 
 
+def test_what_the_middleware_lost_since_the_last_report_is_a_warning_and_then_over(bench):
+    bench.feed(START + 0.5, good())
+    bench.monitor.lost += 3
+    bench.monitor.unsent += 2
+    report = bench.report(START + 1.0)
+    assert (report.level, report.message) == (WARN, 'lost 3; not sent 2')
+    bench.feed(START + 1.5, good(2))
+    report = bench.report(START + 2.0)
+    assert (report.level, report.message) == (OK, 'ok')
+    assert (report.values['lost messages'], report.values['not sent']) == ('3', '2')
+
+
+@pytest.mark.parametrize(('drivers', 'level'), [(0, OK), (1, OK), (2, WARN), (3, WARN)])
+def test_more_than_one_driver_is_a_warning(bench, drivers, level):
+    bench.feed(START + 0.5, good())
+    bench.monitor.drivers = drivers
+    report = bench.report(START + 1.0)
+    assert report.level == level
+    assert report.values['drivers'] == str(drivers)
+    assert (f'{drivers} drivers' in report.message) is (level == WARN)
+
+
 @pytest.mark.parametrize(('silence', 'level'), [(0.9, OK), (1.0, OK), (1.1, ERROR), (60.0, ERROR)])
 def test_silence_beyond_the_timeout_is_an_error(bench, silence, level):
     bench.feed(START + 10.0, good())
@@ -166,6 +188,9 @@ def test_values_count_what_happened(bench):
         'rejected: not a JointState': '1',
         'rejected: out of order': '1',
         'rejected: position not finite': '1',
+        'lost messages': '0',
+        'not sent': '0',
+        'drivers': '0',
         'duplicate stamps': '1',
         'zero stamps': '1',
         'clock resets': '1',

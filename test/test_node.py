@@ -5,9 +5,12 @@ import sys
 
 import pytest
 import rclpy
+from live import rotor_bytes
 from rclpy.context import Context
 from rclpy.exceptions import ParameterException
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 
 from gear_kinematics.kinematics import MechanismError
@@ -15,7 +18,7 @@ from gear_kinematics.node import GearStatePublisher, make_executor
 
 READ_ONLY = (
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
-    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position',
+    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'executor',
 )  # fmt: skip
 INTEGER_BOUNDS = {
     'ring_teeth': (2, 100_000, 0),
@@ -65,14 +68,14 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 19
+    assert len(own) == 20
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
         assert not descriptor.dynamic_typing
 
 
-def test_what_makes_the_mechanism_is_read_only_and_nothing_else(node):
+def test_what_is_settled_at_the_start_is_read_only_and_nothing_else(node):
     found = {
         name
         for name in node.get_parameters_by_prefix('')
@@ -169,9 +172,54 @@ def test_nodes_may_live_together(context):
         node.destroy_node()
 
 
-def test_executor_is_found_in_every_release(context, monkeypatch):
-    # Releases without the experimental one; None in sys.modules makes the import fail.
+def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(context, monkeypatch):
+    # As it does for history keep_all, when a listener is stuck and everything is full.
+    node = GearStatePublisher(context=context, namespace='refused')
+    published = {}
+
+    def publish(publisher, message):
+        if publisher.topic_name == '/refused/output_state':
+            raise rclpy_implementation.RCLError('full')
+        published[publisher.topic_name] = message
+
+    monkeypatch.setattr(Publisher, 'publish', publish)
+    monkeypatch.setattr(Publisher, 'get_subscription_count', lambda _: 1)
+    node._on_rotor_state(rotor_bytes(1, position=[1.0]))
+    assert {'/refused/body_poses', '/refused/mechanism_joint_states'} <= set(published)
+    node._report()
+    [status] = published['/diagnostics'].status
+    assert 'not sent 1' in status.message
+    node.destroy_node()
+
+
+@pytest.mark.parametrize(
+    ('kind', 'name'),
+    [
+        ('auto', 'EventsExecutor'),
+        ('events', 'EventsExecutor'),
+        ('single_threaded', 'SingleThreadedExecutor'),
+    ],
+)
+def test_executor_is_the_one_that_is_asked_for(context, kind, name):
+    executor = make_executor(kind, context)
+    assert type(executor).__name__ == name
+    executor.shutdown()
+
+
+@pytest.fixture
+def no_events_executor(monkeypatch):
+    # Not every release has it; None in sys.modules makes the import fail.
     monkeypatch.setitem(sys.modules, 'rclpy.experimental.events_executor', None)
-    executor = make_executor(context)
+
+
+@pytest.mark.usefixtures('no_events_executor')
+def test_executor_is_found_in_every_release(context):
+    executor = make_executor('auto', context)
     assert type(executor).__name__ == 'SingleThreadedExecutor'
     executor.shutdown()
+
+
+@pytest.mark.usefixtures('no_events_executor')
+def test_executor_that_a_release_lacks_is_refused(context):
+    with pytest.raises(ValueError, match='executor must not be events'):
+        make_executor('events', context)

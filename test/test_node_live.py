@@ -763,9 +763,10 @@ def test_simulated_time_stamps_inputs_without_stamp_and_diagnostics(start):
 # The end, and beginnings that fail.
 
 
+@pytest.mark.parametrize('executor', ['events', 'single_threaded'])
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_signal_ends_the_node_cleanly(start, number):
-    live = start()
+def test_signal_ends_the_node_cleanly(start, number, executor):
+    live = start(*parameter('executor', executor))
     live.peer.answer(rotor_state(START, position=[1.0]))
     live.process.send_signal(number)
     assert live.process.wait(20.0) == 0
@@ -816,6 +817,7 @@ BAD_STARTS = [
     (['output_joint:=rotor'], ['output_joint', 'rotor']),
     (['output_joint:=satellite_a'], ['output_joint', 'satellite_a']),
     (['frame_prefix:=5'], ['frame_prefix', 'STRING']),
+    (['executor:=multi_threaded'], ['executor', 'auto', 'events', 'single_threaded']),
 ]
 
 

@@ -26,6 +26,7 @@ DEADLINE = 60.0
 ROSDEP_KEYS = {
     'backports': 'python3-rosbags-pip',  # rosbags brings it, and lz4
     'lz4': 'python3-rosbags-pip',
+    'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
     'rich': 'python3-rich',
     'rosbags': 'python3-rosbags-pip',
@@ -152,7 +153,7 @@ def metadata(wheel) -> Message:
 
 def shared_files(root: Path) -> set[str]:
     """Return every file that belongs into share/gear_kinematics."""
-    folders = {'config': '*.yaml', 'launch': '*.launch.py', 'bags': '*'}
+    folders = {'config': '*.yaml', 'launch': '*.launch.py', 'bags': '*', 'policies': '*'}
     files = {
         path.relative_to(root).as_posix()
         for folder, pattern in folders.items()
@@ -232,6 +233,20 @@ def test_manifest_agrees_with_metadata(manifest, metadata):
     assert manifest.findtext('description') == metadata['Summary']
     assert manifest.findtext('maintainer') == metadata['Maintainer']
     assert manifest.find('maintainer').get('email') == metadata['Maintainer-email']
+
+
+@pytest.mark.filterwarnings('ignore::DeprecationWarning')  # in those tools
+def test_changelog_is_one_to_the_release_tools(manifest):
+    """REP 132; they put the version in the place of Forthcoming."""
+    catkin_changelog = pytest.importorskip('catkin_pkg.changelog')
+    version, text = manifest.findtext('version'), (ROOT / 'CHANGELOG.rst').read_text('utf-8')
+    heading = f'{version} (2026-01-01)'
+    text = text.replace(f'Forthcoming\n{"-" * 11}\n', f'{heading}\n{"-" * len(heading)}\n')
+    found = catkin_changelog.Changelog(manifest.findtext('name'))
+    catkin_changelog.populate_changelog_from_rst(found, text)
+    versions = [name for name, _, content in found.foreach_version() if content]
+    assert version in versions
+    assert len(versions) == text.count('\n---'), 'a heading is no version and date'
 
 
 def test_manifest_names_everything_that_is_imported(manifest):

@@ -30,7 +30,8 @@ CONTRACT = {
     'input_timeout': 1.0,
     'frame_prefix': '',
 }
-READ_ONLY = {'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches'}
+OUR_OWN = {'max_rotor_acceleration': 6500.0, 'executor': 'auto'}
+READ_ONLY = {'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'executor'}
 LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
 
 
@@ -72,7 +73,7 @@ def test_every_parameter_is_described():
     assert all(parameter.description for parameter in tables.values())
 
 
-def test_what_makes_the_mechanism_is_read_only():
+def test_what_is_settled_at_the_start_is_read_only():
     assert {name for name, parameter in PARAMETERS.items() if parameter.read_only} == READ_ONLY
     assert all(parameter.read_only for parameter in BRANCH_PARAMETERS.values())
     assert set(PARAMETERS) >= LIVE
@@ -176,12 +177,12 @@ def test_typo_is_named(tmp_path, name):
 
 
 def test_shipped_file_loads_as_the_defaults():
-    assert load(parameters.default_config()) == CONTRACT | {'max_rotor_acceleration': 6500.0}
+    assert load(parameters.default_config()) == CONTRACT | OUR_OWN
 
 
 def test_what_a_file_leaves_out_has_its_default(tmp_path):
     loaded = load(config(tmp_path, ring_teeth=90))
-    assert loaded == CONTRACT | {'ring_teeth': 90, 'max_rotor_acceleration': 6500.0}
+    assert loaded == CONTRACT | OUR_OWN | {'ring_teeth': 90}
 
 
 @pytest.mark.parametrize('nested', [True, False])

@@ -1,6 +1,7 @@
 """The published messages against the motion at 50 digits, and their layout."""
 
 import math
+from itertools import combinations
 
 import oracle
 import pytest
@@ -17,15 +18,20 @@ from gear_kinematics.state_messages import StateMessages
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
+TYPES = {
+    'output_state': JointState,
+    'body_poses': PoseArray,
+    'mechanism_joint_states': JointState,
+}
 DIGITS = 1e-12  # of the eccentricity, of a radian within the turn
 TINY = 1e-20  # rates below: the oracle differentiates numerically, at 50 digits
 
 
 def encode(mechanism, sample, names=NAMES):
     """Give the three messages as rclpy reads them."""
-    encoded = StateMessages(mechanism, **names).encode(sample)
-    types = (JointState, PoseArray, JointState)
-    return [deserialize_message(data, kind) for data, kind in zip(encoded, types, strict=True)]
+    encoded = dict(StateMessages(mechanism, **names).encode(sample))
+    assert list(encoded) == list(TYPES)
+    return [deserialize_message(encoded[topic], kind) for topic, kind in TYPES.items()]
 
 
 def sample_at(rotor_angle, velocity=None, effort=None) -> RotorSample:
@@ -132,6 +138,14 @@ def test_fields_that_the_input_lacks_stay_empty(actuator, velocity, effort):
     assert list(state.effort) == ([] if effort is None else [pytest.approx(-9.5)])
     assert len(joints.velocity) == (0 if velocity is None else len(joints.name))
     assert len(joints.effort) == 0
+
+
+@pytest.mark.parametrize('topics', [subset for n in range(4) for subset in combinations(TYPES, n)])
+def test_only_what_is_wanted_is_encoded(actuator, topics):
+    messages = StateMessages(actuator, **NAMES)
+    sample = sample_at(1.9, 3.8, 0.5)
+    every = dict(messages.encode(sample))
+    assert list(messages.encode(sample, topics)) == [(topic, every[topic]) for topic in topics]
 
 
 def test_power_is_the_same_on_both_sides(mechanism):

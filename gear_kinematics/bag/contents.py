@@ -40,7 +40,9 @@ def find_contents(path: Path) -> Contents:
     metadata = path / 'metadata.yaml'
     if metadata.exists():
         with bag_errors(metadata):
-            return _listed_contents(path, yaml.safe_load(metadata.read_text('utf-8')))
+            if not metadata.is_file():  # a device may have no end
+                raise ValueError('not a regular file')
+            return _listed_contents(path, parse_yaml(metadata.read_text('utf-8')))
     # A recorder that is killed writes none.
     files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
     if not files:
@@ -48,6 +50,18 @@ def find_contents(path: Path) -> Contents:
     if len({_STORAGE_NAME.sub('', file.name) for file in files}) > 1:
         raise ValueError('several recordings without a metadata.yaml; name one of its files')
     return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
+
+
+class _Loader(yaml.SafeLoader):
+    """Takes no merge keys (`<<`), by which a few lines can stand for endlessly many."""
+
+    def flatten_mapping(self, _node: yaml.MappingNode) -> None:
+        """Leave them to be refused as keys of no known kind."""
+
+
+def parse_yaml(text: str) -> Any:
+    """Parse what a bag says in YAML."""
+    return yaml.load(text, _Loader)  # noqa: S506, it is a SafeLoader
 
 
 def _listed_contents(path: Path, metadata: Any) -> Contents:
@@ -59,6 +73,8 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     ):
         raise ValueError(f'unsupported compression {information["compression_format"]!r}')
     message_count = int(information['message_count'])
+    if not 0 <= message_count < 2**63:
+        raise ValueError('the message count is out of range')
     topics: dict[str, Topic] = {}
     for entry in information['topics_with_message_count']:
         topic = _listed_topic(entry['topic_metadata'])
@@ -66,6 +82,8 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     files = [_listed_file(path, name) for name in information['relative_file_paths']]
     if not files:
         raise ValueError('no files are listed')
+    if len(set(files)) < len(files):
+        raise ValueError('a file is listed more than once')
     return Contents(files, topics, message_count)
 
 

@@ -153,6 +153,8 @@ class Mcap(Storage):
                         batch.append((wanted[channel], received, records[start + 22 : end]))
                 elif opcode in _KNOWLEDGE:
                     self._learn(opcode, records[start:end])
+                elif not opcode:
+                    raise ValueError('there is no record')
         except struct.error as error:
             raise _CutOffError from error
 

@@ -1,13 +1,29 @@
 """ROS 1 bags."""
 
-from collections.abc import Collection, Iterator
+import bz2
+from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import partial
 from pathlib import Path
 
+import lz4.frame  # type: ignore[import-untyped]
 from rosbags import rosbag1
 from rosbags.interfaces import Connection
 
+from gear_kinematics.bag.compression import DECOMPRESSORS, MAX_RECORD, Decompressor
 from gear_kinematics.bag.storage import RawMessage, Storage
 from gear_kinematics.bag.topics import Topic, typestore
+
+
+def _unbz2(data: bytes, limit: int) -> tuple[bytes, bool]:
+    decompressor = bz2.BZ2Decompressor()
+    return decompressor.decompress(data, limit), decompressor.eof
+
+
+_BOUNDED: Mapping[Callable[[bytes], bytes], Decompressor] = {
+    bz2.decompress: _unbz2,
+    lz4.frame.decompress: DECOMPRESSORS['lz4'],
+}
+"""In place of those of rosbags, which decompress whatever there is."""
 
 
 class Ros1(Storage):
@@ -17,6 +33,10 @@ class Ros1(Storage):
         super().__init__()
         self._reader = rosbag1.Reader(path)
         self._reader.open()
+        chunks = self._reader.chunks
+        for place, chunk in chunks.items():
+            if decompress := _BOUNDED.get(chunk.decompressor):
+                chunks[place] = chunk._replace(decompressor=partial(_records, decompress))
 
     def close(self) -> None:
         """Close the file."""
@@ -51,3 +71,10 @@ class Ros1(Storage):
         return Topic(
             connection.topic, connection.msgtype, 'cdr', 'ros1msg', connection.msgdef.data
         )
+
+
+def _records(decompress: Decompressor, chunk: bytes) -> bytes:
+    records, whole = decompress(chunk, MAX_RECORD)
+    if not whole:
+        raise ValueError('a chunk is cut off or too large')
+    return records

@@ -6,12 +6,18 @@ import sqlite3
 import struct
 import tempfile
 from collections.abc import Collection, Iterator
-from contextlib import ExitStack, closing, suppress
+from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag.storage import RawMessage, Storage
 from gear_kinematics.bag.topics import Topic, check_encoding
+
+_STEPS = 1000
+_REASONS = {
+    sqlite3.SQLITE_AUTH: 'a view stands where a table should be',
+    sqlite3.SQLITE_INTERRUPT: 'there are more rows than a file of this size can hold',
+}
 
 
 class Sqlite(Storage):
@@ -22,11 +28,20 @@ class Sqlite(Storage):
         with ExitStack() as stack:
             path = _whole_pages(path, stack)
             # Without a journal nothing changes: no need for locks, which read-only media lack.
-            journal = path.with_name(f'{path.name}-wal').exists()
-            options = '?mode=ro' if journal else '?mode=ro&immutable=1'
+            journal = path.with_name(f'{path.name}-wal')
+            options = '?mode=ro' if journal.exists() else '?mode=ro&immutable=1'
             uri = path.absolute().as_uri() + options
             self._database = sqlite3.connect(uri, uri=True, check_same_thread=False)
             stack.enter_context(closing(self._database))
+            self._database.set_authorizer(_only_tables)
+            # Pages that are in a tree again and again make more rows than anybody can read.
+            size = sum(file.stat().st_size for file in (path, journal) if file.exists())
+            self._steps = 100_000 + 10 * size
+            self._database.set_progress_handler(self._spend, _STEPS)
+            for table in ('topics', 'message_definitions', 'messages'):
+                columns = self._execute(f'PRAGMA table_xinfo({table})')
+                if any(hidden for *_, hidden in columns):
+                    raise ValueError(f'{table} has columns that are computed')
             self._resources = stack.pop_all()
 
     def close(self) -> None:
@@ -39,8 +54,15 @@ class Sqlite(Storage):
         return self._database.execute(query, tuple(parameters))
 
     def _rows(self, table: str) -> list[dict[str, Any]]:
-        cursor = self._execute(f'SELECT * FROM {table}')  # noqa: S608, our own names
-        return [dict(zip((c[0] for c in cursor.description), row, strict=True)) for row in cursor]
+        with _reasons():
+            cursor = self._execute(f'SELECT * FROM {table}')  # noqa: S608, our own names
+            names = [column[0] for column in cursor.description]
+            return [dict(zip(names, row, strict=True)) for row in cursor]
+
+    def _spend(self) -> bool:
+        """Count steps of sqlite's machine, and tell it to stop when they are used up."""
+        self._steps -= _STEPS
+        return self._steps < 0
 
     def topics(self) -> list[Topic]:
         """Give the rows of the table of topics."""
@@ -70,7 +92,8 @@ class Sqlite(Storage):
     def count(self) -> int | None:
         """Count the rows; None where the file is too damaged for it."""
         with suppress(sqlite3.Error):
-            return int(self._execute('SELECT count(*) FROM messages').fetchone()[0])
+            # Of a column: rows as such are counted in a single step, which nothing stops.
+            return int(self._execute('SELECT count(timestamp) FROM messages').fetchone()[0])
         return None
 
     def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
@@ -82,17 +105,35 @@ class Sqlite(Storage):
         places = ','.join('?' * len(names))
         number = 0
         try:
-            for key, received, data in self._execute(
-                'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, question marks
-                f' WHERE topic_id IN ({places}) ORDER BY timestamp',
-                names,
-            ):
-                if type(data) is not bytes or type(received) is not int:
-                    raise ValueError('a message without a time or data')
-                yield names[key], received, data
-                number += 1
+            with _reasons():
+                for key, received, data in self._execute(
+                    'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, question marks
+                    f' WHERE topic_id IN ({places}) ORDER BY timestamp',
+                    names,
+                ):
+                    if type(data) is not bytes or type(received) is not int:
+                        raise ValueError('a message without a time or data')
+                    yield names[key], received, data
+                    number += 1
         finally:
             self.read = number
+
+
+def _only_tables(_action: int, _1: object, _2: object, _database: object, view: object) -> int:
+    """Refuse views: what a file makes up while it is read may have no end."""
+    return sqlite3.SQLITE_DENY if view else sqlite3.SQLITE_OK
+
+
+@contextmanager
+def _reasons() -> Iterator[None]:
+    """Say what is wrong with a file where sqlite was told to stop."""
+    try:
+        yield
+    except sqlite3.DatabaseError as error:
+        reason = _REASONS.get(getattr(error, 'sqlite_errorcode', -1))
+        if reason:
+            raise ValueError(reason) from error
+        raise
 
 
 def _whole_pages(path: Path, stack: ExitStack) -> Path:

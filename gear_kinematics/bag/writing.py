@@ -21,6 +21,7 @@ from rosbags.interfaces import (
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.metadata import parse_qos
 
+from gear_kinematics.bag.contents import parse_yaml
 from gear_kinematics.bag.errors import BagError, bag_errors, cause
 from gear_kinematics.bag.reading import Bag, BagMessage
 from gear_kinematics.bag.topics import TOPIC_TYPES, jazzy_definition, ros2_definition
@@ -120,7 +121,8 @@ class BagWriter:
             if topic.encoding != 'cdr':
                 raise ValueError(f'its messages are {topic.encoding!r}, not CDR')
             definition, type_hash = ros2_definition(topic)
-            self._add(name, topic.type, definition, type_hash, parse_qos(topic.qos))
+            qos = parse_yaml(topic.qos) if isinstance(topic.qos, str) else topic.qos
+            self._add(name, topic.type, definition, type_hash, parse_qos(qos))
 
     def write(self, topic: str, received: int, data: bytes) -> None:
         """Write a message.

@@ -8,6 +8,7 @@ u(q) = (-sin q, cos q), i gear ratio, p/q = (zk - zs)/zs = -1/i in lowest terms.
 """
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from functools import lru_cache
 from types import ModuleType
@@ -76,55 +77,68 @@ class MotionState:
         satellite_slide: Array,
         arm_slide: Array,
     ) -> Self:
-        """Gather a state from arrays whose first axis is the order of the derivative."""
+        """Gather a state from arrays whose first axis is the order of the derivative.
+
+        Derivatives that an array leaves out are zero, and take no memory.
+        """
+        zero = np.broadcast_to(0.0, satellite.shape[1:])
+        outputs = (*output, zero[..., 0, 0], zero[..., 0, 0])
+        satellites, oldhams = (*satellite, zero, zero), (*oldham, zero, zero)
+        satellite_slides = (*satellite_slide, zero[..., 0])
+        arm_slides = (*arm_slide, zero[..., 0])
         return cls(
-            output_angle=output[0],
-            output_velocity=output[1],
-            output_acceleration=output[2],
+            output_angle=outputs[0],
+            output_velocity=outputs[1],
+            output_acceleration=outputs[2],
             output_turn_angle=output_turn_angle,
-            satellite_centre=satellite[0],
-            satellite_velocity=satellite[1],
-            satellite_acceleration=satellite[2],
-            oldham_centre=oldham[0],
-            oldham_velocity=oldham[1],
-            oldham_acceleration=oldham[2],
-            satellite_slide=satellite_slide[0],
-            satellite_slide_velocity=satellite_slide[1],
-            arm_slide=arm_slide[0],
-            arm_slide_velocity=arm_slide[1],
+            satellite_centre=satellites[0],
+            satellite_velocity=satellites[1],
+            satellite_acceleration=satellites[2],
+            oldham_centre=oldhams[0],
+            oldham_velocity=oldhams[1],
+            oldham_acceleration=oldhams[2],
+            satellite_slide=satellite_slides[0],
+            satellite_slide_velocity=satellite_slides[1],
+            arm_slide=arm_slides[0],
+            arm_slide_velocity=arm_slides[1],
         )
 
 
 class BranchPosition(NamedTuple):
-    """Where the bodies of one branch are, m: floats or arrays."""
+    """Where the bodies of one branch are, m: complex numbers or arrays of them."""
 
-    satellite_x: Any
-    satellite_y: Any
-    oldham_x: Any
-    oldham_y: Any
-    satellite_slide: Any
-    arm_slide: Any
+    satellite: Any
+    """O3 as x + iy."""
+    oldham: Any
+    """O4 as x + iy."""
+    slides: Any
+    """y_k + i x_k: the slide on the arm, and i times the slide on the satellite."""
 
 
-class BranchDerivative(NamedTuple):
-    """The first (m/s) or second (m/s²) time derivative of the centres of one branch."""
+class BranchRates(NamedTuple):
+    """The time derivatives of a `BranchPosition`, m/s and m/s²."""
 
-    satellite_x: Any
-    satellite_y: Any
-    oldham_x: Any
-    oldham_y: Any
+    satellite_velocity: Any
+    oldham_velocity: Any
+    slide_velocities: Any
+    satellite_acceleration: Any
+    oldham_acceleration: Any
 
 
 class ClosedForm:
-    """The formulas with the constants of one mechanism; `xp` is `math` for floats, else numpy."""
+    """The formulas with the constants of one mechanism; `xp` is `math` for floats, else numpy.
+
+    Vectors in the plane are complex numbers x + iy here. Turning by an angle q multiplies them
+    by exp(iq), so that u(q) = i exp(iq), whose time derivative is i q' u(q).
+    """
 
     def __init__(self, mechanism: Mechanism) -> None:
         """Take what the formulas need from the mechanism."""
         ratio = -1 / mechanism.gear_ratio
         self._p, self._q = ratio.numerator, ratio.denominator
         self._eccentricity = mechanism.eccentricity
-        self._cams = tuple(
-            (math.cos(b.cam_phase), math.sin(b.cam_phase)) for b in mechanism.branches
+        self._cams = tuple(  # u(α)
+            complex(-math.sin(b.cam_phase), math.cos(b.cam_phase)) for b in mechanism.branches
         )
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
         self._kappa = -2.0 * float(ratio) - 1.0
@@ -135,12 +149,12 @@ class ClosedForm:
         Of the whole turns only their remainder by q counts within the turn, so nothing cancels.
         """
         p, q = self._p, self._q
-        cycles, part = turns // q, turns % q
-        step = part * p % q
-        step = step - q * (2 * step > q)
-        rest = -(TURN * step + p * angle) / q
+        cycles = xp.trunc(turns / q)
+        steps = p * (turns - q * cycles)
+        whole = xp.ceil(steps / q - 0.5)
+        rest = (TURN * (steps - q * whole) + p * angle) / -q
         wraps = xp.floor(rest / TURN + 0.5)
-        return wraps - (cycles * p + (part * p - step) // q), rest - TURN * wraps
+        return wraps - (p * cycles + whole), rest - TURN * wraps
 
     def output_rate(self, rotor_rate: Any) -> Any:
         """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
@@ -149,61 +163,51 @@ class ClosedForm:
     def branches(self, angle: Any, output_angle: Any, xp: ModuleType) -> list[BranchPosition]:
         """Positions of the bodies, branch by branch; both angles within their turn."""
         e = self._eccentricity
-        sin2, cos2 = xp.sin(angle), xp.cos(angle)
-        sin5, cos5 = xp.sin(output_angle), xp.cos(output_angle)
+        rotor, arm = _direction(angle, xp), 1j * _direction(output_angle, xp)
+        from_arm = arm.conjugate()
         positions = []
-        for cos_cam, sin_cam in self._cams:
-            sin_theta = sin2 * cos_cam + cos2 * sin_cam
-            cos_theta = cos2 * cos_cam - sin2 * sin_cam
-            arm_slide = e * (cos_theta * cos5 + sin_theta * sin5)  # eq. (20): e cos(θ - φ5)
-            positions.append(
-                BranchPosition(
-                    satellite_x=-e * sin_theta,  # eq. (9)
-                    satellite_y=e * cos_theta,  # eq. (10)
-                    oldham_x=-arm_slide * sin5,  # eq. (21)
-                    oldham_y=arm_slide * cos5,  # eq. (22)
-                    satellite_slide=e * (sin_theta * cos5 - cos_theta * sin5),  # eq. (19)
-                    arm_slide=arm_slide,
-                )
-            )
+        for cam in self._cams:
+            turned = rotor * cam  # u(θ)
+            satellite = e * turned  # eqs. (9), (10)
+            slides = e * (turned * from_arm)  # eqs. (19), (20): e exp(iβ), β = θ - φ5
+            oldham = slides.real * arm  # eqs. (21), (22): y u(φ5)
+            positions.append(BranchPosition(satellite, oldham, slides))
         return positions
 
-    def slide_velocities(self, position: BranchPosition, w: Any) -> tuple[Any, Any]:
-        """x' = y w zk/zs and y' = -x w zk/zs, m/s, for the rotor velocity w."""
-        rate = self._slide_ratio * w
-        return position.arm_slide * rate, -position.satellite_slide * rate
+    def rates(self, positions: Iterable[BranchPosition], w: Any, a: Any) -> Iterator[BranchRates]:
+        """Yield the rates of each branch for the rotor velocity w and acceleration a.
 
-    def velocity(self, position: BranchPosition, w: Any) -> BranchDerivative:
-        """O3' and O4'. O4 is the sum of two vectors that turn with θ and with 2 φ5 - θ.
-
-        Turning with angle q, a vector (x, y) changes by q'·(-y, x); (2 φ5 - θ)' = κ w.
+        O4 is the sum of two vectors, which turn with θ and with 2 φ5 - θ: at w and at κ w.
         """
-        along_x, along_y, counter_x, counter_y = self._turning_parts(position)
-        return BranchDerivative(
-            -position.satellite_y * w,
-            position.satellite_x * w,
-            -(along_y + self._kappa * counter_y) * w,
-            (along_x + self._kappa * counter_x) * w,
-        )
+        kappa = self._kappa
+        first = 1j * w
+        square = first * first
+        second = 1j * a + square  # u(θ)' = first u(θ), u(θ)'' = second u(θ)
+        for position in positions:
+            along = 0.5 * position.satellite  # (e/2) u(θ)
+            counter = kappa * (position.oldham - along)  # κ (e/2) u(2 φ5 - θ)
+            both = along + counter
+            yield BranchRates(
+                satellite_velocity=position.satellite * first,
+                oldham_velocity=both * first,
+                slide_velocities=self.slide_velocities(position, w),
+                satellite_acceleration=position.satellite * second,
+                oldham_acceleration=both * second + (kappa - 1.0) * counter * square,
+            )
 
-    def acceleration(self, position: BranchPosition, w: Any, a: Any) -> BranchDerivative:
-        """O3'' and O4'' for the rotor velocity w and acceleration a."""
-        along_x, along_y, counter_x, counter_y = self._turning_parts(position)
-        tangential = self.velocity(position, a)
-        w2 = w * w
-        kappa2 = self._kappa * self._kappa
-        return BranchDerivative(
-            tangential.satellite_x - position.satellite_x * w2,
-            tangential.satellite_y - position.satellite_y * w2,
-            tangential.oldham_x - (along_x + kappa2 * counter_x) * w2,
-            tangential.oldham_y - (along_y + kappa2 * counter_y) * w2,
-        )
+    def slide_velocities(self, position: BranchPosition, w: Any) -> Any:
+        """y' + i x', m/s, for the rotor velocity w: β' = w zk/zs."""
+        return 1j * self._slide_ratio * w * position.slides
 
-    @staticmethod
-    def _turning_parts(position: BranchPosition) -> tuple[Any, Any, Any, Any]:
-        """(e/2) u(θ) and (e/2) u(2 φ5 - θ), whose sum is O4."""
-        along_x, along_y = 0.5 * position.satellite_x, 0.5 * position.satellite_y
-        return along_x, along_y, position.oldham_x - along_x, position.oldham_y - along_y
+
+def _direction(angle: Any, xp: ModuleType) -> Any:
+    """exp(i angle)."""
+    if xp is math:
+        return complex(math.cos(angle), math.sin(angle))
+    direction = np.empty(angle.shape, np.complex128)
+    np.cos(angle, out=direction.real)
+    np.sin(angle, out=direction.imag)
+    return direction
 
 
 @lru_cache
@@ -235,44 +239,46 @@ def solve(
             large angles without loss.
     """
     form = closed_form(mechanism)
+    moving = bool(np.any(rotor_velocity) or np.any(rotor_acceleration))
     inputs = (rotor_turns, rotor_angle, rotor_velocity, rotor_acceleration)
     arrays = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
     shape, branches = arrays[0].shape, len(mechanism.branches)
     turns, angle, velocity, acceleration = (array.reshape(-1) for array in arrays)
-    moving = bool(np.any(velocity) or np.any(acceleration))
 
-    # The first axis is the order of the derivative. What stays zero is never touched again.
-    output, turn_angle = np.zeros((3, angle.size)), np.zeros(angle.size)
-    satellite, oldham = np.zeros((2, 3, angle.size, branches, 2))
-    slide, arm_slide = np.zeros((2, 2, angle.size, branches))
-    for start in range(0, angle.size, _CHUNK):
+    # The first axis is the order of the derivative.
+    orders, size = 3 if moving else 1, angle.size
+    output, turn_angle = np.empty((orders, size)), np.empty(size)
+    satellite, oldham = np.empty((2, orders, size, branches), np.complex128)
+    slides = np.empty((min(orders, 2), size, branches), np.complex128)
+    for start in range(0, size, _CHUNK):
         part = slice(start, start + _CHUNK)
-        w, a = velocity[part], acceleration[part]
         own_turns, rest = split_turns(angle[part])
         output_turns, output_rest = form.output_angle(turns[part] + own_turns, rest, np)
         turn_angle[part] = output_rest
         output[0, part] = TURN * output_turns + output_rest
-        if moving:
-            output[1, part], output[2, part] = form.output_rate(w), form.output_rate(a)
-        for k, position in enumerate(form.branches(rest, output_rest, np)):
-            centres = [position[:4]]
-            slide[0, part, k], arm_slide[0, part, k] = position[4:]
-            if moving:
-                centres += [form.velocity(position, w), form.acceleration(position, w, a)]
-                slide[1, part, k], arm_slide[1, part, k] = form.slide_velocities(position, w)
-            for order, (satellite_x, satellite_y, oldham_x, oldham_y) in enumerate(centres):
-                satellite[order, part, k, 0] = satellite_x
-                satellite[order, part, k, 1] = satellite_y
-                oldham[order, part, k, 0] = oldham_x
-                oldham[order, part, k, 1] = oldham_y
+        positions = form.branches(rest, output_rest, np)
+        for k, position in enumerate(positions):
+            satellite[0, part, k] = position.satellite
+            oldham[0, part, k] = position.oldham
+            slides[0, part, k] = position.slides
+        if not moving:
+            continue
+        w, a = velocity[part], acceleration[part]
+        output[1, part], output[2, part] = form.output_rate(w), form.output_rate(a)
+        for k, rates in enumerate(form.rates(positions, w, a)):
+            satellite[1, part, k] = rates.satellite_velocity
+            satellite[2, part, k] = rates.satellite_acceleration
+            oldham[1, part, k] = rates.oldham_velocity
+            oldham[2, part, k] = rates.oldham_acceleration
+            slides[1, part, k] = rates.slide_velocities
 
-    vectors = (3, *shape, branches, 2)
-    slides = (2, *shape, branches)
+    vectors = (orders, *shape, branches, 2)
+    slides = slides.reshape(len(slides), *shape, branches)
     return MotionState.from_orders(
-        output=output.reshape(3, *shape),
+        output=output.reshape(orders, *shape),
         output_turn_angle=turn_angle.reshape(shape),
-        satellite=satellite.reshape(vectors),
-        oldham=oldham.reshape(vectors),
-        satellite_slide=slide.reshape(slides),
-        arm_slide=arm_slide.reshape(slides),
+        satellite=satellite.view(np.float64).reshape(vectors),
+        oldham=oldham.view(np.float64).reshape(vectors),
+        satellite_slide=slides.imag,
+        arm_slide=slides.real,
     )

@@ -6,6 +6,7 @@ the positions of the bodies repeat with the turns of the rotor.
 """
 
 import math
+from functools import lru_cache
 from types import ModuleType
 from typing import Any, NamedTuple, overload
 
@@ -13,7 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 TURN = 2.0 * math.pi
-_TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: what the float64 leaves out
+TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: what the float64 leaves out
+_MANY = 2**25  # turns: up to so many, their products with either part of TURN fit into 53 bits
+_TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
+_TURN_LOW = TURN - _TURN_HIGH
 
 
 class RotorPosition(NamedTuple):
@@ -41,10 +45,16 @@ def split_turns(angle: Any) -> Any:
         Turns (an int; for arrays whole numbers as float64) and the rest in rad.
     """
     xp: ModuleType = np if isinstance(angle, np.ndarray) else math
-    rest = xp.fmod(angle, TURN)  # exact, and so is taking off one turn more
+    # All is exact here. fmod alone would do, but is slow where it takes something off.
+    rest = xp.fmod(angle, _MANY * TURN)
+    whole = xp.floor(rest / TURN + 0.5)  # rounded: one turn more may have to be taken off
+    rest = rest - whole * _TURN_HIGH - whole * _TURN_LOW
     rest = rest - TURN * xp.floor(rest / TURN + 0.5)
     turns = xp.floor((angle - rest) / TURN + 0.5)
-    return RotorPosition(turns, rest - turns * _TURN_TAIL)
+    return RotorPosition(turns, rest - turns * TURN_TAIL)
+
+
+_split_zero = lru_cache(maxsize=1)(split_turns)  # the same for many samples
 
 
 class RotorTurns:
@@ -123,7 +133,7 @@ class RotorTurns:
             RuntimeError: before the first update.
         """
         turns, angle = self._known_position()
-        zero_turns, zero_angle = split_turns(zero)
+        zero_turns, zero_angle = _split_zero(zero)
         return RotorPosition(direction * (turns - zero_turns), direction * (angle - zero_angle))
 
     def home(self, rotor_angle: float, direction: int) -> float:

@@ -1,13 +1,22 @@
 """The vernier of pin holes that fixes a ring gear in the chassis and sets the preload.
 
 A ring gear has zk teeth and zk + 1 pin holes, the chassis zk + 2 holes; one pin goes through a
-ring hole and a chassis hole. A setting turns the ring gear's tooth profile by
-2π [tooth/zk + ring_hole/(zk + 1) + chassis_hole/(zk + 2)].
+ring hole and a chassis hole. Seen against the z axis, teeth and chassis holes count anticlockwise
+from the zero marks of ring gear and chassis, ring holes clockwise. A setting puts its tooth, in
+turns anticlockwise from the chassis's zero mark, at
+
+    tooth/zk + ring_hole/(zk + 1) + chassis_hole/(zk + 2)      (mod 1)
+
+which is the turn of the tooth profile: teeth are alike, and what meshes is where they stand.
+Turns are exact fractions of a whole turn here; angles in rad are rounded once.
 """
 
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import NamedTuple
+
+from gear_kinematics.kinematics.rotor_turns import TURN, TURN_TAIL
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,13 +29,35 @@ class PinSetting:
     """0 ... zk."""
     chassis_hole: int
     """0 ... zk + 1."""
+    body_turn: Fraction
+    """The turn of the ring gear's body, whole turns in [0, 1): what the two holes give."""
     turn: Fraction
-    """The exact turn of the ring gear's profile, in whole turns, within [0, 1)."""
+    """The turn of its tooth profile, whole turns in [0, 1): the tooth's place in the body more."""
+
+    def __str__(self) -> str:
+        holes = f'ring hole {self.ring_hole} in chassis hole {self.chassis_hole}'
+        return f'{holes}, tooth {self.tooth}'
 
     @property
     def angle(self) -> float:
         """`turn` in rad."""
-        return 2.0 * math.pi * self.turn.numerator / self.turn.denominator
+        return TURN * self.turn.numerator / self.turn.denominator
+
+
+class Choice(NamedTuple):
+    """A position that the vernier can hold, beside a wanted one."""
+
+    steps: int
+    """Positions on from the nearest."""
+    settings: tuple[PinSetting, ...]
+    """Those that give it: for even zk two, with bodies half a turn apart, else one.
+
+    The one that takes less turning of the ring's body comes first.
+    """
+    ring_turn: float
+    """What it turns the tooth profile by, rad."""
+    error: float
+    """By how much that is more than wanted, rad."""
 
 
 def combinations(ring_teeth: int) -> int:
@@ -46,42 +77,111 @@ def ring_body_positions(ring_teeth: int) -> int:
 
 def step(ring_teeth: int) -> float:
     """2π / lcm(zk, zk + 1, zk + 2), rad: from one position to the next."""
-    return 2.0 * math.pi / distinct_positions(ring_teeth)
+    return TURN / distinct_positions(ring_teeth)
+
+
+def turns(angle: float) -> Fraction:
+    """An angle in rad as whole turns, of 2π itself and not of its float64.
+
+    Raises:
+        ValueError: if `angle` is not finite.
+    """
+    if not math.isfinite(angle):
+        raise ValueError(f'an angle must be finite, not {angle} rad')
+    return Fraction(angle) / (Fraction(TURN) + Fraction(TURN_TAIL))
+
+
+def angle_between(start: Fraction, end: Fraction) -> float:
+    """The angle from one turn to another the short way round, rad in [-π, π)."""
+    apart = (end - start + Fraction(1, 2)) % 1 - Fraction(1, 2)
+    return TURN * float(apart)
+
+
+def pin_setting(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> PinSetting:
+    """The setting of a tooth and two holes.
+
+    Raises:
+        ValueError: if there is no such tooth or hole.
+    """
+    if ring_teeth < 1:
+        raise ValueError(f'a ring gear has at least 1 tooth, not {ring_teeth}')
+    parts = (
+        ('tooth', tooth, ring_teeth),
+        ('ring hole', ring_hole, ring_teeth + 1),
+        ('chassis hole', chassis_hole, ring_teeth + 2),
+    )
+    for name, number, count in parts:
+        if not 0 <= number < count:
+            raise ValueError(f'{name} {number} is not one of 0 to {count - 1}')
+    body_turn = Fraction(ring_hole, ring_teeth + 1) + Fraction(chassis_hole, ring_teeth + 2)
+    turn = body_turn + Fraction(tooth, ring_teeth)
+    return PinSetting(tooth, ring_hole, chassis_hole, body_turn % 1, turn % 1)
+
+
+def choices(
+    ring_teeth: int, ring_turn: float, start: PinSetting | None = None, neighbours: int = 0
+) -> list[Choice]:
+    """Find the position nearest to a wanted turn of the ring gear, and its neighbours.
+
+    Solved as a congruence, without enumeration.
+
+    Args:
+        ring_teeth: zk, at least 1.
+        ring_turn: what the tooth profile should turn by, rad.
+        start: where it turns from; without it, where tooth and holes 0 are together.
+        neighbours: how many positions to give on either side.
+
+    Raises:
+        ValueError: if `ring_turn` is not finite or `ring_teeth` less than 1.
+    """
+    start = start or pin_setting(ring_teeth, 0, 0, 0)
+    wanted = start.turn + turns(ring_turn)
+    lcm = distinct_positions(ring_teeth)
+    nearest = round(wanted * lcm)
+    found = []
+    for steps in range(-neighbours, neighbours + 1):
+        settings = sorted(
+            _settings_at(ring_teeth, nearest + steps),
+            key=lambda setting: abs(angle_between(start.body_turn, setting.body_turn)),
+        )
+        error = TURN * float(Fraction(nearest + steps, lcm) - wanted)
+        found.append(Choice(steps, tuple(settings), ring_turn + error, error))
+    return found
 
 
 def nearest_setting(ring_teeth: int, angle: float) -> PinSetting:
     """Find the setting that turns the ring gear's profile nearest to `angle`, rad.
 
-    Solved as a congruence, without enumeration. Of settings at the same position, for even zk two,
-    it gives one.
-
-    Args:
-        ring_teeth: zk, at least 1.
-        angle: finite, rad; taken modulo a whole turn.
-
     Raises:
         ValueError: if `angle` is not finite or `ring_teeth` less than 1.
     """
-    if ring_teeth < 1 or not math.isfinite(angle):
-        raise ValueError(f'no pin setting for {ring_teeth} teeth at an angle of {angle} rad')
-    positions = distinct_positions(ring_teeth)
-    position = round(math.remainder(angle, 2.0 * math.pi) / step(ring_teeth)) % positions
-    return _setting(ring_teeth, position)
+    [nearest] = choices(ring_teeth, angle)
+    return nearest.settings[0]
 
 
-def _setting(ring_teeth: int, position: int) -> PinSetting:
+def _settings_at(ring_teeth: int, position: int) -> tuple[PinSetting, ...]:
     """Solve tooth/zk + ring_hole/(zk+1) + chassis_hole/(zk+2) ≡ position/lcm (mod 1).
 
     Modulo zk + 1 only the ring hole remains. What is left over is a multiple of zk + 1 and splits
-    between tooth and chassis hole: zk/2 and zk/2 + 1 differ by 1, zk and zk + 2 by 2.
+    between tooth and chassis hole: zk/2 and zk/2 + 1 differ by 1, zk and zk + 2 by 2. For even zk
+    both can go half a turn on, which is a whole turn together.
     """
     holes_ring, holes_chassis = ring_teeth + 1, ring_teeth + 2
     lcm = distinct_positions(ring_teeth)
     ring_hole = position * pow(lcm // holes_ring, -1, holes_ring) % holes_ring
     rest = (position - ring_hole * (lcm // holes_ring)) // holes_ring
     if ring_teeth % 2:
-        tooth = rest * pow(2, -1, ring_teeth) % ring_teeth
-        chassis_hole = -rest * pow(2, -1, holes_chassis) % holes_chassis
+        ways = 1
+        tooth = rest * pow(2, -1, ring_teeth)
+        chassis_hole = -rest * pow(2, -1, holes_chassis)
     else:
-        tooth, chassis_hole = rest % ring_teeth, -rest % holes_chassis
-    return PinSetting(tooth, ring_hole, chassis_hole, Fraction(position, lcm))
+        ways, tooth, chassis_hole = 2, rest, -rest
+    return tuple(
+        pin_setting(
+            ring_teeth,
+            (tooth + way * ring_teeth // 2) % ring_teeth,
+            ring_hole,
+            (chassis_hole + way * holes_chassis // 2) % holes_chassis,
+        )
+        for way in range(ways)
+    )

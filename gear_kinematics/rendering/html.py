@@ -1,17 +1,15 @@
 """The report as one page, which needs neither network nor server."""
 
-import base64
-import hashlib
-import json
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from html import escape
-from importlib.resources import files
 from typing import Any
 
 from gear_kinematics.rendering import wording
-from gear_kinematics.rendering.wording import OUTCOME, Cell, Table
+from gear_kinematics.rendering.page import definitions, page, table
+from gear_kinematics.rendering.page import figure as write_figure
+from gear_kinematics.rendering.wording import OUTCOME
 from gear_kinematics.report import BagReport, Series, Verdict
 
 _GAP = 0.05
@@ -28,44 +26,8 @@ def to_html(reports: Sequence[BagReport]) -> str:
     Raises:
         RuntimeError: if there is something to plot, and plotly is not installed.
     """
-    scripts = [_plotly_js(), _resource('page.js')] if any(map(_plotted, reports)) else []
-    body = ''.join(_body(reports))
-    verdict = wording.worst_verdict(reports)
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f'<title>{OUTCOME[verdict]}: {escape(_title(reports))}</title>\n'
-        f'<style>\n{_resource("page.css")}</style>\n</head>\n<body>\n{body}'
-        + ''.join(f'<script>{script}</script>\n' for script in scripts)
-        + '</body>\n</html>\n'
-    )
-
-
-def _policy(scripts: Sequence[str]) -> str:
-    """Let the browser run these scripts alone, and load nothing from anywhere."""
-    none = ["'none'"]
-    hashes = [
-        f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
-        for script in scripts
-    ]
-    return (
-        f"default-src 'none'; script-src {' '.join(hashes or none)}; "
-        "style-src 'unsafe-inline'; img-src data: blob:"
-    )
-
-
-def _plotly_js() -> str:
-    try:
-        # Large, and of use here only.
-        from plotly.offline import get_plotlyjs  # noqa: PLC0415
-    except ModuleNotFoundError as error:
-        raise RuntimeError('the HTML report needs the Python package plotly') from error
-    return str(get_plotlyjs())
-
-
-def _resource(name: str) -> str:
-    return files('gear_kinematics.rendering').joinpath(name).read_text('utf-8')
+    title = f'{OUTCOME[wording.worst_verdict(reports)]}: {_title(reports)}'
+    return page(title, ''.join(_body(reports)), plots=any(map(_plotted, reports)))
 
 
 # Page
@@ -81,7 +43,7 @@ def _body(reports: Sequence[BagReport]) -> Iterator[str]:
     yield f'<p>{escape(wording.totals(reports))}</p></header>\n<main>\n'
     if len(reports) > 1:
         links = [f'#bag-{k}' for k in range(len(reports))]
-        yield f'<section id="top">{_table(wording.summary_table(reports), links)}</section>\n'
+        yield f'<section id="top">{table(wording.summary_table(reports), links)}</section>\n'
     for k, report in enumerate(reports):
         yield f'<section id="bag-{k}">\n'
         yield from _section(report, f'figure-{k}')
@@ -91,66 +53,25 @@ def _body(reports: Sequence[BagReport]) -> Iterator[str]:
     yield '</main>\n'
 
 
-def _section(report: BagReport, figure: str) -> Iterator[str]:
+def _section(report: BagReport, name: str) -> Iterator[str]:
     yield f'<h2>{_badge(report.verdict)} {escape(wording.bag_name(report))}</h2>\n'
-    yield _definitions(wording.head(report))
+    yield definitions(wording.head(report))
     remarks = wording.remarks(report)
     if remarks:
         items = ''.join(f'<li>{escape(remark)}</li>' for remark in remarks)
         yield f'<ul class="remarks {report.verdict}">{items}</ul>\n'
     for make_table in (wording.topic_table, wording.field_table, wording.worst_table):
-        yield _table(make_table(report))
+        yield table(make_table(report))
     if report.rotor:
-        yield _definitions(wording.rotor_table(report.rotor))
-    yield _table(wording.gap_table(report))
+        yield definitions(wording.rotor_table(report.rotor))
+    yield table(wording.gap_table(report))
     if _plotted(report):
-        yield from _plot(report, figure)
+        yield '<h3>Angles and errors over time</h3>\n'
+        yield from write_figure(name, figure(report))
 
 
 def _badge(verdict: Verdict) -> str:
     return f'<span class="badge {verdict}">{OUTCOME[verdict]}</span>'
-
-
-def _table(table: Table, links: Sequence[str] = ()) -> str:
-    """Write a table, with the first cell of each row as a link where there are any."""
-    if not table.rows:
-        return ''
-    table = table.without_empty_columns()
-    classes = [
-        'words' if k == 0 or column in table.prose else 'number'
-        for k, column in enumerate(table.columns)
-    ]
-    head = ''.join(
-        f'<th scope="col" class="{kind}">{escape(column)}</th>'
-        for kind, column in zip(classes, table.columns, strict=True)
-    )
-    rows = ''.join(
-        f'<tr>{_row(row, classes, links[k] if links else "")}</tr>\n'
-        for k, row in enumerate(table.rows)
-    )
-    return f'<div class="scroll"><table>\n<tr>{head}</tr>\n{rows}</table></div>\n'
-
-
-def _row(row: Sequence[Cell], classes: Sequence[str], link: str) -> str:
-    subject, *cells = row
-    name = escape(subject.as_subject())
-    linked = f'<a href="{link}">{name}</a>' if link else name
-    return f'<th scope="row" class="words">{linked}</th>' + ''.join(
-        f'<td class="{kind} {cell.tone}">{escape(cell.in_row_of(subject))}</td>'
-        for kind, cell in zip(classes[1:], cells, strict=True)
-    )
-
-
-def _definitions(table: Table) -> str:
-    """Write a table of one row as labelled values."""
-    subject = table.rows[0][0].text
-    heading = f'<h3>{escape(table.columns[0])} {escape(subject)}</h3>\n' if subject else ''
-    items = ''.join(
-        f'<div><dt>{escape(column)}</dt>'
-        f'<dd class="{cell.tone}">{escape(cell.with_unit())}</dd></div>'
-        for _, column, cell in table.facts()
-    )
-    return f'{heading}<dl>{items}</dl>\n'
 
 
 # Plots
@@ -158,16 +79,6 @@ def _definitions(table: Table) -> str:
 
 def _plotted(report: BagReport) -> bool:
     return report.series is not None and bool(report.series.time)
-
-
-def _plot(report: BagReport, name: str) -> Iterator[str]:
-    data = json.dumps(figure(report), allow_nan=False, separators=(',', ':'))
-    # Nothing in it may look like the end of the script element.
-    for char in '<>&':
-        data = data.replace(char, f'\\u{ord(char):04x}')
-    yield '<h3>Angles and errors over time</h3>\n'
-    yield f'<div class="figure" id="{name}"><noscript>Plots need JavaScript.</noscript></div>\n'
-    yield f'<script type="application/json" data-figure="{name}">{data}</script>\n'
 
 
 def figure(report: BagReport) -> dict[str, Any]:

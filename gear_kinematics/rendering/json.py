@@ -14,13 +14,18 @@ VERSION = 1
 
 
 def to_json(reports: Sequence[BagReport]) -> str:
-    """Write the reports as strict JSON; numbers that it cannot write are null."""
+    """Write the reports."""
     document = {
         'schema': SCHEMA,
         'version': VERSION,
         'verdict': wording.worst_verdict(reports),
         'bags': [_bag(report) for report in reports],
     }
+    return dumps(document)
+
+
+def dumps(document: Any) -> str:
+    """Write strict JSON; numbers that it cannot write are null."""
     # ASCII passes every pipe and every code page.
     return json.dumps(_strict(document), indent=2, allow_nan=False, ensure_ascii=True) + '\n'
 

@@ -13,22 +13,24 @@
       plot_bgcolor: 'rgba(0,0,0,0)',
       font: {color: colour('--text'), family: 'system-ui, sans-serif', size: 12},
       hoverlabel: {bgcolor: colour('--raised'), font: {color: colour('--text')}},
-      hovermode: 'x unified',
+      hovermode: layout.hovermode ?? 'x unified',
       hoversubplots: 'axis',
       margin: {l: 90, r: 20, t: 35, b: 50},
       modebar: {bgcolor: 'rgba(0,0,0,0)', color: colour('--faint'), activecolor: colour('--text')},
-      showlegend: false,
-      shapes: layout.shapes.map(shape => ({
+      showlegend: layout.showlegend ?? false,
+      shapes: layout.shapes.map(({meta = 'fail', ...shape}) => ({
         ...shape,
-        line: {color: colour('--fail'), dash: 'dash', width: 1},
-        label: {...shape.label, font: {color: colour('--fail'), size: 11}},
+        line: {color: colour('--' + meta), dash: 'dash', width: 1},
+        label: {...shape.label, font: {color: colour('--' + meta), size: 11}},
       })),
     };
     for (const name of Object.keys(layout)) {
       if (name.includes('axis')) themed[name] = {...grid, ...layout[name]};
     }
     const traces = data.map(trace => ({
-      ...trace, x: time, type: 'scatter', mode: 'lines', line: {color: colour('--' + trace.meta), width: 1.5},
+      ...trace, x: trace.x ?? time, type: 'scatter', mode: trace.mode ?? 'lines',
+      line: {color: colour('--' + trace.meta), width: 1.5, ...trace.line},
+      marker: {color: colour('--' + trace.meta), ...trace.marker},
     }));
     // Named one by one: others send the data to a server.
     const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];

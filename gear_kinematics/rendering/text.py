@@ -1,6 +1,6 @@
 """The report on a terminal, and as plain lines in a pipe."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from rich import box
 from rich.columns import Columns
@@ -24,10 +24,20 @@ _TONE_STYLES = {Tone.PLAIN: '', Tone.NOTABLE: 'yellow', Tone.BAD: 'bold red'}
 
 def render(reports: Sequence[BagReport], console: Console) -> None:
     """Print the reports: tables on a terminal that has room, one fact per line elsewhere."""
-    if console.is_terminal and console.width >= _NARROWEST:
+    if is_wide(console):
         _render_tables(reports, console)
-        return
-    for line in lines(reports):
+    else:
+        print_lines(lines(reports), console)
+
+
+def is_wide(console: Console) -> bool:
+    """Whether this is a terminal on which tables have room."""
+    return console.is_terminal and console.width >= _NARROWEST
+
+
+def print_lines(lines: Iterable[str], console: Console) -> None:
+    """Print lines as they are, however long."""
+    for line in lines:
         # A name must not stop the report where the pipe's encoding cannot express it.
         written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
         console.print(Text(written), soft_wrap=True)
@@ -70,7 +80,7 @@ def _render_tables(reports: Sequence[BagReport], console: Console) -> None:
     if len(reports) > 1:
         console.print(Text(wording.totals(reports), 'bold'))
         console.print()
-        console.print(_rich_table(wording.summary_table(reports)))
+        console.print(rich_table(wording.summary_table(reports)))
 
 
 def _render_bag(report: BagReport, console: Console) -> None:
@@ -78,29 +88,29 @@ def _render_bag(report: BagReport, console: Console) -> None:
     verdict = (f'{OUTCOME[report.verdict].upper()} ', style)
     name = (wording.bag_name(report), 'bold')
     console.print(Text.assemble(verdict, name, overflow='fold'))
-    console.print(_in_columns(wording.head(report)))
+    console.print(in_columns(wording.head(report)))
     if report.rotor:
-        console.print(_in_columns(wording.rotor_table(report.rotor)))
+        console.print(in_columns(wording.rotor_table(report.rotor)))
     for table in _tables(report, with_rotor=False):
         if table.rows:
             console.print()
-            console.print(_rich_table(table))
+            console.print(rich_table(table))
     remarks = wording.remarks(report)
     if remarks:
         console.print()
     for remark in remarks:
-        console.print(_item(remark, '' if report.passed else style))
+        console.print(item(remark, '' if report.passed else style))
     console.print()
 
 
-def _item(sentence: str, style: str) -> RichTable:
+def item(sentence: str, style: str) -> RichTable:
     """Set a sentence beside its bullet, so that it wraps below itself."""
     item = RichTable.grid(padding=(0, 1))
     item.add_row(Text('•', style), Text(sentence, overflow='fold'))
     return item
 
 
-def _in_columns(table: Table) -> Columns:
+def in_columns(table: Table) -> Columns:
     """Set the only row of a table of many columns as labelled values."""
     values = []
     if subject := table.rows[0][0].text:
@@ -111,7 +121,8 @@ def _in_columns(table: Table) -> Columns:
     return Columns(values, padding=(0, 3))
 
 
-def _rich_table(table: Table) -> RichTable:
+def rich_table(table: Table) -> RichTable:
+    """Set a table; numbers are never broken, words and headings are."""
     table = table.without_empty_columns()
     rich_table = RichTable(
         box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0), header_style='dim'

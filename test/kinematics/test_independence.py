@@ -134,6 +134,13 @@ def test_rosbags_is_imported_where_bags_are_read(imports):
     assert all(path.startswith('bag/') for path in users)
 
 
+def test_matplotlib_is_imported_where_plots_are_made(imports):
+    users = {
+        path for path, names in imports.items() if any(within(n, 'matplotlib') for n in names)
+    }
+    assert users == {'plotting.py'}
+
+
 def test_imports_within_bag_point_one_way(imports):
     layers = (
         ('errors', 'topics'),
@@ -161,11 +168,21 @@ def test_wire_format_and_parameters_are_free_of_ros(imports, path):
 
 
 def test_nothing_below_imports_the_programs(imports):
-    programs = [f'gear_kinematics.{name}' for name in ('node', 'cli')]
+    programs = [f'gear_kinematics.{name}' for name in ('node', 'cli', 'commands')]
     tops = ('node.py', 'cli.py', 'live_node.py')
     for path, names in imports.items():
-        if path not in tops:
+        if path not in tops and not path.startswith('commands/'):
             assert not {name for name in names if within(name, *programs)}, path
+
+
+def test_commands_import_nothing_of_each_other(imports):
+    commands = {path: names for path, names in imports.items() if path.startswith('commands/')}
+    modules = {f'gear_kinematics.commands.{Path(path).stem}' for path in commands}
+    shared = {f'gear_kinematics.commands.{name}' for name in ('arguments', 'output')}
+    assert modules > shared
+    for path, names in commands.items():
+        assert not names & (modules - shared), path
+        assert not {name for name in names if within(name, 'gear_kinematics.cli')}, path
 
 
 def test_imports_are_found_wherever_they_are():

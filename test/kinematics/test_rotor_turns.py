@@ -87,6 +87,14 @@ def test_split_of_arrays_is_exact(angles):
         assert_split(angles[index], turns[index], float(rest[index]))
 
 
+@SIDES
+def test_split_is_exact_at_every_magnitude(side):
+    angles = side * LARGEST * 2.0 ** -np.random.default_rng(5).uniform(0.0, 53.0, 3000)
+    for angle, *parts in zip(angles.tolist(), *split_turns(angles), strict=True):
+        assert_split(angle, *map(float, parts))
+        assert split_turns(angle) == tuple(parts)
+
+
 @pytest.mark.parametrize('angle', [5e-324, 1e-300, -1e-17, 3.0, -3.0])
 def test_split_leaves_angles_within_the_turn_alone(angle):
     assert split_turns(angle) == (0, angle)

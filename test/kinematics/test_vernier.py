@@ -1,6 +1,9 @@
 """The vernier of pin holes: counts by brute force, and the nearest setting truly nearest."""
 
 import math
+import sys
+import tracemalloc
+from collections import defaultdict
 from fractions import Fraction
 from itertools import pairwise, product
 
@@ -10,9 +13,12 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from gear_kinematics.kinematics.vernier import (
+    angle_between,
+    choices,
     combinations,
     distinct_positions,
     nearest_setting,
+    pin_setting,
     ring_body_positions,
     step,
 )
@@ -29,9 +35,37 @@ def turn_of(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> F
     ) % 1
 
 
+def every_setting(ring_teeth: int) -> list[tuple[int, int, int]]:
+    return list(product(range(ring_teeth), range(ring_teeth + 1), range(ring_teeth + 2)))
+
+
 def every_turn(ring_teeth: int) -> list[Fraction]:
-    holes = (range(ring_teeth), range(ring_teeth + 1), range(ring_teeth + 2))
-    return [turn_of(ring_teeth, *setting) for setting in product(*holes)]
+    return [turn_of(ring_teeth, *setting) for setting in every_setting(ring_teeth)]
+
+
+def fraction(value: Fraction) -> mpmath.mpf:
+    return mpmath.mpf(value.numerator) / value.denominator
+
+
+def cost_of_choices(ring_teeth: int) -> tuple[int, int]:
+    """Count the calls of finding a setting and seven neighbours, and the bytes at their peak."""
+    calls = 0
+
+    def count(_frame, event, _argument) -> None:
+        nonlocal calls
+        calls += event in {'call', 'c_call'}
+
+    choices(ring_teeth, 1.0)  # what is made once only
+    tracemalloc.start()
+    previous = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        choices(ring_teeth, 1.0, neighbours=3)
+    finally:
+        sys.setprofile(previous)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    return calls, peak
 
 
 def apart(angle: float, turn: Fraction) -> mpmath.mpf:
@@ -127,9 +161,103 @@ def test_half_steps_of_the_paper_are_enough_for_every_angle():
 
 
 @pytest.mark.parametrize(
-    ('ring_teeth', 'angle'),
-    [(0, 1.0), (-80, 1.0), (80, math.nan), (80, math.inf), (80, -math.inf)],
+    ('ring_teeth', 'angle', 'cause'),
+    [
+        (0, 1.0, 'at least 1 tooth, not 0'),
+        (-80, 1.0, 'at least 1 tooth, not -80'),
+        (80, math.nan, 'finite, not nan rad'),
+        (80, math.inf, 'finite, not inf rad'),
+        (80, -math.inf, 'finite, not -inf rad'),
+    ],
 )
-def test_what_has_no_setting_is_refused(ring_teeth, angle):
-    with pytest.raises(ValueError, match=f'no pin setting for {ring_teeth} teeth at an angle of'):
+def test_what_has_no_setting_is_refused(ring_teeth, angle, cause):
+    with pytest.raises(ValueError, match=cause):
         nearest_setting(ring_teeth, angle)
+
+
+@pytest.mark.parametrize(
+    ('holes', 'cause'),
+    [
+        ((80, 0, 0), 'tooth 80 is not one of 0 to 79'),
+        ((0, 81, 0), 'ring hole 81 is not one of 0 to 80'),
+        ((0, 0, 82), 'chassis hole 82 is not one of 0 to 81'),
+        ((0, -1, 0), 'ring hole -1 is not one of 0 to 80'),
+    ],
+)
+def test_a_hole_that_is_not_there_is_refused(holes, cause):
+    with pytest.raises(ValueError, match=cause):
+        pin_setting(80, *holes)
+
+
+@pytest.mark.parametrize('ring_teeth', SMALL)
+def test_settings_of_a_position_are_all_that_there_are(ring_teeth):
+    """And of their bodies' turns the first is the least, from wherever the ring is turned."""
+    same = defaultdict(set)
+    for holes in every_setting(ring_teeth):
+        same[turn_of(ring_teeth, *holes)].add(holes)
+    start = pin_setting(ring_teeth, 0, ring_teeth // 3, ring_teeth // 2)
+    for turn, expected in same.items():
+        angle = 2.0 * math.pi * float(turn - start.turn)
+        [choice] = choices(ring_teeth, angle, start)
+        found = [(s.tooth, s.ring_hole, s.chassis_hole) for s in choice.settings]
+        assert len(found) == len(expected)
+        assert set(found) == expected
+        assert {s.turn for s in choice.settings} == {turn}
+        bodies = [
+            s.turn - Fraction(s.tooth, ring_teeth) - start.body_turn for s in choice.settings
+        ]
+        assert [s.body_turn for s in choice.settings] == [
+            (body + start.body_turn) % 1 for body in bodies
+        ]
+        ways = [abs(body - round(body)) for body in bodies]
+        assert ways == sorted(ways)
+
+
+@given(
+    ring_teeth=st.integers(1, 9),
+    angle=st.floats(-7.0, 7.0),
+    neighbours=st.integers(0, 12),
+    data=st.data(),
+)
+def test_neighbours_are_the_next_positions_either_way(ring_teeth, angle, neighbours, data):
+    """As counted along the sorted list of all positions, over its ends."""
+    start = pin_setting(ring_teeth, *data.draw(st.sampled_from(every_setting(ring_teeth))))
+    positions = sorted({turn_of(ring_teeth, *holes) for holes in every_setting(ring_teeth)})
+    found = choices(ring_teeth, angle, start, neighbours)
+    assert [choice.steps for choice in found] == list(range(-neighbours, neighbours + 1))
+    nearest = positions.index(found[neighbours].settings[0].turn)
+    for choice in found:
+        expected = positions[(nearest + choice.steps) % len(positions)]
+        assert {setting.turn for setting in choice.settings} == {expected}
+        assert choice.ring_turn == pytest.approx(angle + choice.error, abs=1e-14)
+        turned = mpmath.mpf(angle) + choice.error - 2 * mpmath.pi * fraction(expected - start.turn)
+        assert abs(mpmath.sin(turned / 2)) < 1e-14
+    assert abs(found[neighbours].error) <= step(ring_teeth) / 2.0 + 1e-14
+
+
+@given(st.integers(1, 400), st.floats(-7.0, 7.0))
+def test_errors_keep_their_last_bits(ring_teeth, angle):
+    [choice] = choices(ring_teeth, angle)
+    with mpmath.workdps(50):
+        turn = choice.settings[0].turn
+        exact = 2 * mpmath.pi * fraction(turn) - mpmath.mpf(angle)
+        exact -= 2 * mpmath.pi * mpmath.nint(exact / (2 * mpmath.pi))
+        assert abs(choice.error - exact) <= 4e-16 * abs(exact) + mpmath.mpf('1e-30')
+
+
+@pytest.mark.parametrize('ring_teeth', [500, 501, 100_000])
+def test_the_work_does_not_grow_with_the_number_of_settings(ring_teeth):
+    """Neither the calls nor the memory: 80 teeth and 100 000 cost the same."""
+    calls, peak = cost_of_choices(ring_teeth)
+    calls_of_80, peak_of_80 = cost_of_choices(80)
+    assert calls <= 1.5 * calls_of_80
+    assert peak <= 1.5 * peak_of_80 + 10_000
+
+
+@pytest.mark.parametrize(
+    ('start', 'end', 'expected'),
+    [('0', '1/4', 90), ('1/4', '0', -90), ('9/10', '1/10', 72), ('0', '1/2', -180), ('1', '2', 0)],
+)
+def test_angles_go_the_short_way_round(start, end, expected):
+    angle = angle_between(Fraction(start), Fraction(end))
+    assert math.degrees(angle) == pytest.approx(expected, abs=1e-13)

@@ -1,0 +1,117 @@
+"""Programs that a benchmark runs side by side, each a process of its own.
+
+They talk to each other over ROS, and to the benchmark in lines of JSON: orders on their standard
+input, reports on their standard output.
+"""
+
+import json
+import os
+import select
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple, Self
+
+NODE = ('-m', 'gear_kinematics.node')
+"""What Python runs as gear_state_publisher."""
+
+_FOLDER = Path(__file__).parent
+_PAGE = os.sysconf('SC_PAGE_SIZE')
+_PATIENCE = 1.0  # s
+_ON_PROCESSOR = 2  # Linux's CPUCLOCK_SCHED
+
+
+def program(name: str) -> tuple[str, ...]:
+    """Give what Python runs as a program of this folder."""
+    return (str(_FOLDER / name),)
+
+
+class Surroundings(NamedTuple):
+    """What the programs of one benchmark run in: topics and a log of their own."""
+
+    log: Path
+    arguments: list[str]
+    environment: dict[str, str]
+
+
+@contextmanager
+def private_surroundings() -> Iterator[Surroundings]:
+    """Give surroundings that nobody else is in, on this machine only."""
+    with TemporaryDirectory() as folder:
+        environment = {
+            'ROS_DOMAIN_ID': str(1 + os.getpid() % 101),
+            **os.environ,
+            'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST',
+            'ROS_LOG_DIR': folder,
+        }
+        arguments = ['--ros-args', '-r', f'__ns:=/benchmark_{os.getpid()}']
+        yield Surroundings(Path(folder, 'log'), arguments, environment)
+
+
+class Program:
+    """A running Python program; a context manager, which ends it."""
+
+    def __init__(self, command: Sequence[str], surroundings: Surroundings) -> None:
+        """Start it."""
+        self._name = Path(command[-1]).name
+        self._log = surroundings.log
+        self.started = time.time_ns()
+        """When, ns."""
+        with self._log.open('a', encoding='utf-8') as log:
+            self._process = subprocess.Popen(  # noqa: S603, the project's own
+                [sys.executable, *command, *surroundings.arguments],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=log,
+                text=True,
+                env=surroundings.environment,
+            )
+
+    def __enter__(self) -> Self:
+        """Give the running program."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """End it."""
+        self._process.stdin.close()
+        while self._process.poll() is None:
+            self._process.terminate()  # again and again: rclpy.spin() can miss a signal
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(_PATIENCE)
+        self._process.stdout.close()
+
+    def tell(self, **order: Any) -> None:
+        """Send an order."""
+        print(json.dumps(order), file=self._process.stdin, flush=True)
+
+    def reports(self) -> bool:
+        """Tell whether there is a report, so that `report` would not wait."""
+        return bool(select.select([self._process.stdout], [], [], 0.0)[0])
+
+    def report(self) -> dict[str, Any]:
+        """Wait for the next report.
+
+        Raises:
+            RuntimeError: if the program has ended instead.
+        """
+        if line := self._process.stdout.readline():
+            return dict(json.loads(line))
+        raise RuntimeError(f'{self._name} has ended:\n{self.log()}')
+
+    def log(self) -> str:
+        """Give what all programs in these surroundings have written to their standard error."""
+        return self._log.read_text('utf-8')
+
+    def cpu_time(self) -> float:
+        """Give the time that its threads have spent on processors so far, s."""
+        clock = (~self._process.pid << 3) | _ON_PROCESSOR  # what clock_getcpuclockid(3) gives
+        return time.clock_gettime(clock)
+
+    def memory(self) -> int:
+        """Give its resident memory, bytes."""
+        _, resident, *_ = Path(f'/proc/{self._process.pid}/statm').read_text('ascii').split()
+        return int(resident) * _PAGE

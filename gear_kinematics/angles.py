@@ -1,0 +1,34 @@
+"""Angles as people read them."""
+
+import math
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def arc(angle: float) -> str:
+    """Degrees, minutes and seconds of arc to a thousandth: -1° 02′ 03.450″.
+
+    Args:
+        angle: finite, rad.
+    """
+    thousandths = round(arc_seconds(abs(angle)) * 1000.0)
+    sign = '-' if angle < 0.0 and thousandths else ''
+    minutes, rest = divmod(thousandths, 60_000)
+    degrees, minutes = divmod(minutes, 60)
+    seconds = rest / 1000.0
+    if degrees:
+        return f'{sign}{degrees}° {minutes:02}′ {seconds:06.3f}″'
+    if minutes:
+        return f'{sign}{minutes}′ {seconds:06.3f}″'
+    return f'{sign}{seconds:.3f}″'
+
+
+@overload
+def arc_seconds(angle: float) -> float: ...
+@overload
+def arc_seconds(angle: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def arc_seconds(angle: Any) -> Any:
+    """An angle in rad, or an array of them, as seconds of arc."""
+    return angle * (3600.0 * 180.0 / math.pi)

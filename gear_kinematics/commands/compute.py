@@ -1,0 +1,57 @@
+"""`gearkin compute`: the outputs for a bag that has only the rotor topic."""
+
+import argparse
+from pathlib import Path
+
+from gear_kinematics import parameters
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import add_config, add_topics, config_path
+from gear_kinematics.commands.output import message_progress
+from gear_kinematics.compute import compute
+from gear_kinematics.fleet import find_topics
+
+HELP = 'write the outputs for a bag with the rotor topic'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    add_config(parser)
+    add_topics(parser)
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument('out', type=Path, metavar='OUT', help='directory to make')
+    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
+    parser.add_argument('--compression', choices=('none', 'zstd'), default='none')
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Write the bag, and say what is in it."""
+    config = parameters.load(config_path(options, options.bag))
+    with Bag(options.bag) as bag, message_progress(options.bag.name) as progress:
+        rotor = options.rotor_topic or find_topics(bag, outputs=False).rotor
+        namespace = rotor.rpartition('/')[0]
+        count = 0
+
+        def told(now: int) -> None:
+            nonlocal count
+            progress(now - count, bag.message_count)
+            count = now
+
+        result = compute(
+            bag,
+            options.out,
+            config,
+            rotor_topic=rotor,
+            output_topic=options.output_topic or f'{namespace}/output_state',
+            poses_topic=options.poses_topic or f'{namespace}/body_poses',
+            storage=options.storage,
+            compression=options.compression,
+            progress=told,
+        )
+    rejected = ', '.join(f'{cause} {number}' for cause, number in result.rejected.items())
+    print(
+        f'{options.out}: {result.computed} outputs for {result.received} rotor states'
+        + (f' (rejected: {rejected})' if rejected else '')
+        + f', {result.copied} other messages copied'
+    )
+    return ExitCode.DONE

@@ -1,0 +1,21 @@
+"""`gearkin demo`: the shipped bag through the live node."""
+
+import argparse
+
+from rich.console import Console
+
+from gear_kinematics.commands import ExitCode
+
+HELP = 'the shipped bag through the live node, validated'
+
+
+def add_arguments(_parser: argparse.ArgumentParser) -> None:
+    """Take none."""
+
+
+def run(_options: argparse.Namespace) -> ExitCode:
+    """Show it live, then whether it agrees."""
+    # Needs ROS, which most commands do without.
+    from gear_kinematics import demo  # noqa: PLC0415
+
+    return ExitCode.DONE if demo.run(Console()).passed else ExitCode.FAILED

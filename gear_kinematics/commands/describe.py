@@ -1,0 +1,56 @@
+"""`gearkin describe`: what follows from the mechanism alone."""
+
+import argparse
+import json
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import add_mechanism, mechanism
+from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
+
+HELP = 'what a tooth pair implies: ratio, mobility, vernier'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    add_mechanism(parser)
+    parser.add_argument('--eccentricity', type=float, metavar='M')
+    parser.add_argument('--json', action='store_true', help='for programs')
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Print the facts."""
+    facts = _facts(mechanism(options))
+    if options.json:
+        print(json.dumps({name: value for name, value, _ in facts}, indent=2))
+        return ExitCode.DONE
+    table = Table('', 'value', 'unit', box=None, show_header=False)
+    for name, value, unit in facts:
+        table.add_row(name.replace('_', ' '), str(value), unit)
+    Console().print(table)
+    return ExitCode.DONE
+
+
+def _facts(mechanism: Mechanism) -> list[tuple[str, Any, str]]:
+    """Name, value and unit of what follows from the mechanism alone."""
+    zk = mechanism.ring_teeth
+    return [
+        ('ring_teeth', zk, ''),
+        ('satellite_teeth', mechanism.satellite_teeth, ''),
+        ('eccentricity', mechanism.eccentricity, 'm'),
+        ('branches', [branch.name for branch in mechanism.branches], ''),
+        ('gear_ratio', str(mechanism.gear_ratio), ''),
+        ('mobility_by_counting', loop_closure.mobility_by_counting(mechanism), ''),
+        ('mobility_by_rank', loop_closure.mobility_by_rank(mechanism), ''),
+        ('redundant_constraints', loop_closure.redundant_constraints(mechanism), ''),
+        ('ring_rolling_radius', mechanism.ring_rolling_radius, 'm'),
+        ('satellite_rolling_radius', mechanism.satellite_rolling_radius, 'm'),
+        ('oldham_petals', mechanism.oldham_petals, ''),
+        ('vernier_combinations', vernier.combinations(zk), ''),
+        ('vernier_distinct_positions', vernier.distinct_positions(zk), ''),
+        ('vernier_ring_body_positions', vernier.ring_body_positions(zk), ''),
+        ('vernier_step', vernier.step(zk), 'rad'),
+    ]

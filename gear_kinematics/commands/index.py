@@ -1,0 +1,228 @@
+"""`gearkin index`: the pin setting for a wanted turn of a ring gear."""
+
+import argparse
+import math
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from rich.table import Table
+
+from gear_kinematics.angles import arc, arc_seconds
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import (
+    add_mechanism,
+    add_ring_turn,
+    add_setting,
+    add_stiffness,
+    mechanism,
+    ring_turn,
+    stiffness,
+    within_a_turn,
+)
+from gear_kinematics.commands.output import Console, facts, numbers, write
+from gear_kinematics.kinematics import vernier
+from gear_kinematics.kinematics.preload import Preload, ring_phase
+from gear_kinematics.kinematics.vernier import Choice, PinSetting
+from gear_kinematics.rendering.json import dumps
+from gear_kinematics.vernier_drawing import draw
+
+HELP = 'pin holes for a turn of the ring gear, a preload or the phase of branch B'
+
+
+class _Row(NamedTuple):
+    """A position, and the preload that it gives."""
+
+    choice: Choice
+    preload: float | None
+    """N·m; None where no stiffness is known."""
+
+
+class _Answer(NamedTuple):
+    """What is wanted, and what the vernier can do about it."""
+
+    ring_teeth: int
+    start: PinSetting
+    phase: float | None
+    """The part of the turn that the cam of branch B calls for, rad; None if not asked for."""
+    ring_turn: float
+    """The wanted turn, rad."""
+    preload: float | None
+    """What that gives, N·m; None where no stiffness is known."""
+    rows: tuple[_Row, ...]
+
+    @property
+    def nearest(self) -> _Row:
+        """The row in the middle."""
+        return self.rows[len(self.rows) // 2]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    add_mechanism(parser)
+    ways = parser.add_mutually_exclusive_group()
+    add_ring_turn(ways)
+    ways.add_argument(
+        '--preload',
+        type=float,
+        metavar='N·m',
+        help='what the turn should brace the branches with; negative: turned the other way',
+    )
+    parser.add_argument(
+        '--phase-b', action='store_true', help='turn by what the cam of branch B calls for, too'
+    )
+    add_setting(parser, '--from', 'start', 'the setting to turn from (default: 0 0 0)')
+    parser.add_argument(
+        '--neighbours', type=int, default=3, metavar='N', help='on either side (default: 3)'
+    )
+    parser.add_argument('--json', action='store_true', help='for programs')
+    parser.add_argument(
+        '--drawing', metavar='FILE', help='of the holes, an SVG for a page of A4 (-: stdout)'
+    )
+    parser.add_argument(
+        '--mirrored', action='store_true', help='draw as seen along the z axis, not against it'
+    )
+    add_stiffness(parser)
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Print the setting and its neighbours, and draw it."""
+    answer = _answer(options)
+    if options.drawing:
+        setting = answer.nearest.choice.settings[0]
+        notes = [' '.join(fact) for fact in _outcome(answer)]
+        write(options.drawing, draw(answer.ring_teeth, setting, notes, mirrored=options.mirrored))
+    if options.json:
+        print(dumps(_document(answer)), end='')
+    elif options.drawing != '-':
+        _print(answer, Console())
+    return ExitCode.DONE
+
+
+def _answer(options: argparse.Namespace) -> _Answer:
+    known, bracing, backlash = stiffness(options), ring_turn(options), options.backlash or 0.0
+    if bracing is None and options.preload is None and not options.phase_b:
+        raise ValueError('nothing is wanted: give --angle, --degrees, --preload or --phase-b')
+    if options.neighbours < 0:
+        raise ValueError(f'--neighbours must not be negative, not {options.neighbours}')
+    # The vernier alone needs no satellite.
+    pair = mechanism(options) if known or options.phase_b or not options.ring_teeth else None
+    ring_teeth = pair.ring_teeth if pair else options.ring_teeth
+    phase = ring_phase(pair) if pair and options.phase_b else None
+    if options.preload is not None:
+        if not (pair and known):
+            raise ValueError('--preload needs the stiffness of branches and shaft')
+        wanted = Preload.from_torque(known, abs(options.preload))
+        bracing = math.copysign(wanted.ring_turn(pair, backlash), options.preload)
+    in_phase = phase or 0.0
+    wanted_turn = within_a_turn(in_phase + (bracing or 0.0))
+
+    def preload(turn: float) -> float | None:
+        if not (pair and known):
+            return None
+        return Preload.from_ring_turn(pair, known, turn - in_phase, backlash).torque
+
+    start = vernier.pin_setting(ring_teeth, *(options.start or (0, 0, 0)))
+    choices = vernier.choices(ring_teeth, wanted_turn, start, options.neighbours)
+    rows = tuple(_Row(choice, preload(choice.ring_turn)) for choice in choices)
+    return _Answer(ring_teeth, start, phase, wanted_turn, preload(wanted_turn), rows)
+
+
+def _document(answer: _Answer) -> dict[str, Any]:
+    return {
+        'ring_teeth': answer.ring_teeth,
+        'ring_holes': answer.ring_teeth + 1,
+        'chassis_holes': answer.ring_teeth + 2,
+        'positions': vernier.distinct_positions(answer.ring_teeth),
+        'step': vernier.step(answer.ring_teeth),
+        'from': _pins(answer.start),
+        'wanted': {
+            'ring_turn': answer.ring_turn,
+            'phase': answer.phase,
+            'preload': answer.preload,
+        },
+        'positions_around': [
+            {
+                'steps': choice.steps,
+                'ring_turn': choice.ring_turn,
+                'error': choice.error,
+                'preload': preload,
+                'preload_error': _more(preload, answer.preload),
+                'settings': [_pins(setting) for setting in choice.settings],
+            }
+            for choice, preload in answer.rows
+        ],
+    }
+
+
+def _pins(setting: PinSetting) -> dict[str, Any]:
+    return {
+        'tooth': setting.tooth,
+        'ring_hole': setting.ring_hole,
+        'chassis_hole': setting.chassis_hole,
+        'turn': str(setting.turn),
+        'body_turn': str(setting.body_turn),
+    }
+
+
+def _more(preload: float | None, wanted: float | None) -> float | None:
+    return None if preload is None or wanted is None else preload - wanted
+
+
+def _print(answer: _Answer, console: Console) -> None:
+    zk = answer.ring_teeth
+    console.print(
+        f'{zk} teeth, {zk + 1} ring holes, {zk + 2} chassis holes: '
+        f'{vernier.distinct_positions(zk)} positions, one every {arc(vernier.step(zk))}',
+        style='dim',
+        soft_wrap=True,
+    )
+    console.print(facts([*_pinning(answer), *_outcome(answer)]))
+    console.print()
+    console.print(_table(answer))
+    console.print()
+    console.print(
+        'Seen against the z axis, angles, teeth and chassis holes count anticlockwise, ring holes '
+        'clockwise, from 0 at the zero marks.',
+        style='dim',
+        soft_wrap=True,
+    )
+
+
+def _pinning(answer: _Answer) -> Iterator[tuple[str, str]]:
+    first, *others = answer.nearest.choice.settings
+    yield 'from', str(answer.start)
+    yield 'pin', str(first)
+    for other in others:
+        yield 'or', f'{other}: the same position'
+    yield 'ring body', arc(vernier.angle_between(answer.start.body_turn, first.body_turn))
+
+
+def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
+    choice, preload = answer.nearest
+    error = f'{arc_seconds(choice.error):+.3f}″'
+    yield 'turn', f'{arc(choice.ring_turn)} for a wanted {arc(answer.ring_turn)} ({error})'
+    if answer.phase is not None:
+        yield 'phase', f'{arc(answer.phase)} of it'
+    if preload is not None and answer.preload is not None:
+        error = f'{preload - answer.preload:+.2g}'
+        yield 'preload', f'{preload:.4g} N·m for a wanted {answer.preload:.4g} N·m ({error} N·m)'
+
+
+def _table(answer: _Answer) -> Table:
+    columns = ['steps', 'tooth', 'ring\nhole', 'chassis\nhole', 'turn', 'error\n″']
+    if answer.preload is not None:
+        columns += ['preload\nN·m', 'error\nN·m']
+    table = numbers(*columns)
+    for choice, preload in answer.rows:
+        cells = [
+            f'{choice.steps:+}' if choice.steps else '0',
+            ' or '.join(str(setting.tooth) for setting in choice.settings),
+            str(choice.settings[0].ring_hole),
+            ' or '.join(str(setting.chassis_hole) for setting in choice.settings),
+            arc(choice.ring_turn),
+            f'{arc_seconds(choice.error):+.3f}',
+        ]
+        if preload is not None and answer.preload is not None:
+            cells += [f'{preload:.4f}', f'{preload - answer.preload:+.4f}']
+        table.add_row(*cells, style='' if choice.steps else 'bold')
+    return table

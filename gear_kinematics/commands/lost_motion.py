@@ -1,0 +1,184 @@
+"""`gearkin lost-motion`: hysteresis, stiffness, play and transmission error from recordings."""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from gear_kinematics import parameters, plotting
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import add_config, config_path
+from gear_kinematics.commands.output import (
+    Console,
+    closed_pipe_ignored,
+    message_progress,
+    write,
+    write_file,
+)
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.lost_motion import Columns, LostMotionReport, measure, read_bag, read_csv
+from gear_kinematics.lost_motion.csv_files import UNITS
+from gear_kinematics.lost_motion.curves import panels
+from gear_kinematics.lost_motion.document import to_json
+from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
+from gear_kinematics.lost_motion.page import to_html
+from gear_kinematics.lost_motion.ramps import RampError
+from gear_kinematics.lost_motion.text import render
+from gear_kinematics.lost_motion.transmission import MotionError
+
+HELP = 'lost motion, stiffness, play and transmission error from recordings'
+_CSV = {'.csv', '.tsv', '.txt'}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    shares = ' and '.join(f'{100.0 * share:g}' for share in STIFFNESS_SHARES)
+    parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
+    add_config(parser)
+    parser.add_argument(
+        '--rated-torque',
+        type=_positive,
+        metavar='N·m',
+        help='at the output (default: the amplitude of the largest ramps)',
+    )
+    parser.add_argument(
+        '--stiffness-torques',
+        type=_positive,
+        nargs='+',
+        metavar='N·m',
+        help=f'where ranges of stiffness meet (default: {shares} %% of the rated torque)',
+    )
+    columns = parser.add_argument_group('columns of a CSV', 'by default found by their names')
+    for role, text in (
+        ('angle', 'under torque'),
+        ('torque', 'N·m'),
+        ('rotor', 'angle of the rotor'),
+        ('output', "angle of the output's encoder"),
+    ):
+        columns.add_argument(f'--{role}-column', metavar='NAME', help=text)
+    columns.add_argument(
+        '--angle-unit', choices=tuple(UNITS), help='of all angles (default: by the names, or rad)'
+    )
+    columns.add_argument(
+        '--on-rotor',
+        action='store_true',
+        help="angle and torque are the rotor's, not the output's",
+    )
+    topics = parser.add_argument_group('topics of a bag')
+    for topic in ('rotor', 'encoder'):
+        topics.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
+    topics.add_argument(
+        '--max-gap',
+        type=_positive,
+        default=0.1,
+        metavar='S',
+        help='between rotor states, to interpolate in (default: %(default)g)',
+    )
+    encoders = parser.add_argument_group('encoders')
+    encoders.add_argument(
+        '--counts',
+        type=_counts,
+        metavar='N',
+        help='steps in a turn of the rotor, or of the angle column (default: from the readings)',
+    )
+    encoders.add_argument(
+        '--output-counts', type=_counts, metavar='N', help="of the output's encoder"
+    )
+    encoders.add_argument(
+        '--travel',
+        type=_positive,
+        default=1.0,
+        metavar='DEG',
+        help='of the output after a reversal until the direction counts (default: %(default)g)',
+    )
+    for form in ('json', 'html'):
+        parser.add_argument(
+            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
+        )
+    parser.add_argument('--plot', metavar='FILE', help='of one recording: .png, .svg, .pdf ...')
+
+
+def _positive(text: str) -> float:
+    number = float(text)
+    if not (number > 0.0 and math.isfinite(number)):
+        raise argparse.ArgumentTypeError(f'must be greater than 0, not {text}')
+    return number
+
+
+def _counts(text: str) -> int:
+    if (number := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f'must be at least 1, not {text}')
+    return number
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Measure every recording; one that is unusable does not keep the others."""
+    if options.plot and len(options.recordings) > 1:
+        raise ValueError('--plot takes one recording')
+    if options.json == options.html == '-':
+        raise ValueError('only one report can go to stdout, not --json and --html')
+    reports, code = [], ExitCode.DONE
+    for path in options.recordings:
+        try:
+            reports.append(_measure(path, options))
+        except (RampError, MotionError) as error:
+            _complain(f'{path}: {error}')
+            code = ExitCode.UNUSABLE
+        except (ValueError, OSError) as error:
+            _complain(str(error))
+            code = ExitCode.UNUSABLE
+    for report in reports:
+        if report.recording.error:
+            _complain(report.recording.error)
+            code = ExitCode.UNUSABLE
+    if reports:
+        _write(reports, options)
+    return code
+
+
+def _complain(text: str) -> None:
+    print(f'gearkin: {" ".join(text.split())}', file=sys.stderr)
+
+
+def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
+    config = parameters.load(config_path(options, path))
+    mechanism = Mechanism.from_mapping(config)
+    travel = math.radians(options.travel)
+    if path.suffix.lower() in _CSV:
+        columns = Columns(
+            options.angle_column,
+            options.torque_column,
+            options.rotor_column,
+            options.output_column,
+            options.angle_unit,
+            on_rotor=options.on_rotor,
+        )
+        recording = read_csv(
+            path, mechanism, columns, travel, options.counts, options.output_counts
+        )
+    else:
+        with message_progress(path.name) as told:
+            recording = read_bag(
+                path,
+                config,
+                travel,
+                round(options.max_gap * 1e9),
+                options.rotor_topic,
+                options.encoder_topic,
+                options.counts,
+                options.output_counts,
+                told,
+            )
+    corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
+    return measure(recording, mechanism, options.rated_torque, corners)
+
+
+def _write(reports: list[LostMotionReport], options: argparse.Namespace) -> None:
+    if '-' not in {options.json, options.html}:
+        with closed_pipe_ignored():
+            render(reports, Console())
+    for target, make in ((options.json, to_json), (options.html, to_html)):
+        if target:
+            write(target, make(reports))
+    if options.plot:
+        write_file(options.plot, plotting.lost_motion(panels(reports[0]), Path(options.plot)))

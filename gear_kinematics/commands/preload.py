@@ -1,0 +1,264 @@
+"""`gearkin preload`: what bracing the branches against each other gives, and what it takes."""
+
+import argparse
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from rich.table import Table
+
+from gear_kinematics import plotting
+from gear_kinematics.angles import arc, arc_seconds
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import (
+    add_mechanism,
+    add_ring_turn,
+    add_setting,
+    add_stiffness,
+    mechanism,
+    ring_turn,
+    stiffness,
+    within_a_turn,
+)
+from gear_kinematics.commands.output import Console, facts, numbers, write_file
+from gear_kinematics.kinematics import Mechanism, vernier
+from gear_kinematics.kinematics.preload import Preload, braced
+from gear_kinematics.kinematics.vernier import PinSetting
+from gear_kinematics.rendering.json import dumps
+
+HELP = 'preload, torque limits and torque split, and the ring turn for them'
+_LOADS = 4
+"""Rows of the table on either side of no load, besides the thresholds."""
+_NEAT = (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)
+"""What the loads of the table are spaced by, times a power of ten."""
+_BEYOND = 1.2
+"""Times the farther threshold: how far table and plot go at least."""
+
+_DECIMALS = 9
+"""The most that the table gives."""
+
+
+class _Answer(NamedTuple):
+    """A preload, and the pin setting for it."""
+
+    mechanism: Mechanism
+    names: tuple[str, str]
+    """Of branches A and B."""
+    backlash: float
+    ring_turn: float
+    preload: Preload
+    setting: PinSetting
+    """The one asked for, or the nearest."""
+    pinned_turn: float
+    """Ring turn that the setting gives, rad."""
+    pinned: Preload
+    """What the setting gives."""
+    max_load: float
+    """How far table and plot go, N·m."""
+
+    @property
+    def loads(self) -> list[float]:
+        """Those of the table, N·m: evenly spaced, and the thresholds among them."""
+        even = np.linspace(-self.max_load, self.max_load, 2 * _LOADS + 1).tolist()
+        thresholds = (self.preload.threshold_a, self.preload.threshold_b)
+        return sorted({*even, *(load for load in thresholds if abs(load) < self.max_load)})
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    add_mechanism(parser)
+    ways = parser.add_mutually_exclusive_group(required=True)
+    add_ring_turn(ways)
+    add_setting(ways, '--setting', 'setting', 'what the ring gear is pinned at')
+    ways.add_argument(
+        '--wanted-preload', type=float, metavar='N·m', help='in both branches without a load'
+    )
+    ways.add_argument(
+        '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
+    )
+    add_setting(parser, '--from', 'start', 'where the turn starts (default: 0 0 0)')
+    parser.add_argument(
+        '--max-load', type=float, metavar='N·m', help='how far table and plot go, either way'
+    )
+    parser.add_argument('--json', action='store_true', help='for programs')
+    parser.add_argument('--plot', metavar='FILE', help='of the torque split: .png, .svg, .pdf ...')
+    add_stiffness(parser)
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Print preload, limits and torque split, and plot the latter."""
+    answer = _answer(options)
+    if options.plot:
+        image = plotting.torque_split(
+            answer.preload, answer.names, answer.max_load, Path(options.plot)
+        )
+        write_file(options.plot, image)
+    if options.json:
+        print(dumps(_document(answer)), end='')
+    else:
+        _print(answer, Console())
+    return ExitCode.DONE
+
+
+def _answer(options: argparse.Namespace) -> _Answer:
+    pair, known, backlash = mechanism(options), stiffness(options), options.backlash or 0.0
+    if known is None:
+        raise ValueError('the stiffness of branches and shaft is missing; --help lists the ways')
+    start = vernier.pin_setting(pair.ring_teeth, *(options.start or (0, 0, 0)))
+    if options.setting:
+        setting = vernier.pin_setting(pair.ring_teeth, *options.setting)
+        turn = pinned_turn = vernier.angle_between(start.turn, setting.turn)
+    else:
+        if options.wanted_preload is not None:
+            turn = Preload.from_torque(known, options.wanted_preload).ring_turn(pair, backlash)
+        elif options.wanted_threshold is not None:
+            turn = Preload.from_limit(known, options.wanted_threshold).ring_turn(pair, backlash)
+        else:
+            turn = ring_turn(options) or 0.0
+        turn = within_a_turn(turn)
+        [nearest] = vernier.choices(pair.ring_teeth, turn, start)
+        setting, pinned_turn = nearest.settings[0], nearest.ring_turn
+    preload, pinned = (
+        Preload.from_ring_turn(pair, known, angle, backlash) for angle in (turn, pinned_turn)
+    )
+    branch_a, branch_b = braced(pair)
+    return _Answer(
+        pair,
+        (branch_a.name, branch_b.name),
+        backlash,
+        turn,
+        preload,
+        setting,
+        pinned_turn,
+        pinned,
+        _max_load(options.max_load, preload),
+    )
+
+
+def _max_load(given: float | None, preload: Preload) -> float:
+    if given is not None:
+        if not 0.0 < given < math.inf:
+            raise ValueError(f'--max-load must be finite and greater than 0, not {given}')
+        return given
+    thresholds = (preload.threshold_a, -preload.threshold_b)
+    farthest = max((load for load in thresholds if load < math.inf), default=0.0) or 1.0
+    spacing = _BEYOND * farthest / _LOADS
+    decade = 10.0 ** math.floor(math.log10(spacing))
+    return _LOADS * next(n * decade for n in _NEAT if n * decade >= spacing)
+
+
+def _document(answer: _Answer) -> dict[str, Any]:
+    known, setting = answer.preload.stiffness, answer.setting
+    split = answer.preload.split(answer.loads)
+    return {
+        'ring_teeth': answer.mechanism.ring_teeth,
+        'satellite_teeth': answer.mechanism.satellite_teeth,
+        'branches': answer.names,
+        'stiffness': {
+            'branch_a': known.branch_a,
+            'branch_b': known.branch_b,
+            'shaft': known.shaft,
+            'inside': known.inside,
+            'without_a': known.without_a,
+            'without_b': known.without_b,
+        },
+        'backlash': answer.backlash,
+        **_figures(answer.ring_turn, answer.preload),
+        'setting': {
+            'tooth': setting.tooth,
+            'ring_hole': setting.ring_hole,
+            'chassis_hole': setting.chassis_hole,
+            **_figures(answer.pinned_turn, answer.pinned),
+        },
+        'split': {
+            'load': answer.loads,
+            **{name: values.tolist() for name, values in split._asdict().items()},
+        },
+    }
+
+
+def _figures(turn: float, preload: Preload) -> dict[str, float]:
+    return {
+        'ring_turn': turn,
+        'preload': preload.torque,
+        'play': preload.play,
+        'limit': preload.limit,
+        'threshold_a': preload.threshold_a,
+        'threshold_b': preload.threshold_b,
+    }
+
+
+def _print(answer: _Answer, console: Console) -> None:
+    console.print(facts(_facts(answer)))
+    console.print()
+    console.print(_table(answer))
+    console.print()
+    a, b = answer.names
+    console.print(
+        f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load '
+        f'counts positive in the sense in which ring gear {a} is turned against ring gear {b}.',
+        style='dim',
+        soft_wrap=True,
+    )
+
+
+def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
+    preload, (a, b) = answer.preload, answer.names
+    known, pair = preload.stiffness, answer.mechanism
+    yield 'teeth', f'{pair.ring_teeth} on the ring gears, {pair.satellite_teeth} on the satellites'
+    parts = (
+        (f'branch {a}', known.branch_a),
+        (f'branch {b}', known.branch_b),
+        ('shaft', known.shaft),
+    )
+    yield 'stiffness', ', '.join(f'{name} {_stiffness(value)}' for name, value in parts)
+    yield 'ring turn', f'{arc(answer.ring_turn)} = {answer.ring_turn:.6g} rad'
+    if answer.backlash:
+        yield 'backlash', f'{arc(answer.backlash)} at the output before the turn'
+    if preload.torque:
+        yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load'
+        yield 'both mesh', f'while |load| < {preload.limit:.4g} N·m: {_stiffness(known.inside)}'
+        yield f'branch {a}', _leaving(preload.threshold_a, b, known.without_a)
+        yield f'branch {b}', _leaving(preload.threshold_b, a, known.without_b)
+    else:
+        yield 'preload', f'none; a play of {arc(preload.play)} is left'
+        yield f'branch {a}', f'carries negative loads alone: {_stiffness(known.without_b)}'
+        yield f'branch {b}', f'carries positive loads alone: {_stiffness(known.without_a)}'
+    pinned = answer.pinned
+    if answer.pinned_turn == answer.ring_turn:
+        yield 'pin', str(answer.setting)
+    else:
+        yield 'nearest', str(answer.setting)
+        yield '', f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
+
+
+def _leaving(threshold: float, other: str, left: float) -> str:
+    if math.isinf(threshold):
+        return 'never leaves mesh'
+    return f'leaves mesh at {threshold:+.4g} N·m; branch {other} alone: {_stiffness(left)}'
+
+
+def _stiffness(value: float) -> str:
+    return 'rigid' if math.isinf(value) else f'{value:.4g} N·m/rad'
+
+
+def _table(answer: _Answer) -> Table:
+    preload, (a, b) = answer.preload, answer.names
+    table = numbers('load\nN·m', f'branch {a}\nN·m', f'branch {b}\nN·m', 'output turns\n″')
+    table.add_column()
+    remarks = {}
+    if preload.torque:
+        remarks[preload.threshold_a] = f'branch {a} leaves mesh'
+        remarks[preload.threshold_b] = f'branch {b} leaves mesh'
+    decimals = min(max(0, 3 - math.floor(math.log10(answer.max_load))), _DECIMALS)
+    split = preload.split(answer.loads)
+    for load, *torques, turn in zip(answer.loads, *split, strict=True):
+        cells = (round(torque, decimals) + 0.0 for torque in (load, *torques))
+        table.add_row(
+            *(f'{cell:.{decimals}f}' for cell in cells),
+            f'{arc_seconds(turn):.1f}',
+            remarks.get(load, ''),
+        )
+    return table

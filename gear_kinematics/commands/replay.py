@@ -1,0 +1,57 @@
+"""`gearkin replay`: a bag's rotor topic, published in its own time."""
+
+import argparse
+import math
+import sys
+from pathlib import Path
+
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.fleet import find_topics
+
+HELP = "publish a bag's rotor topic in its own time"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument('--rate', type=float, default=1.0, help='bag time per real time')
+    parser.add_argument('--loop', action='store_true', help='until stopped')
+    parser.add_argument('--start-offset', type=float, default=0.0, metavar='S')
+    parser.add_argument('--duration', type=float, default=math.inf, metavar='S')
+    parser.add_argument(
+        '--topics', nargs='+', metavar='NAME', help='(default: the rotor topic, as rotor_state)'
+    )
+    parser.add_argument(
+        '--clock', type=float, nargs='?', const=40.0, default=0.0, metavar='HZ', help='on /clock'
+    )
+    parser.add_argument(
+        '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
+    )
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Publish, and say how punctually."""
+    # Needs ROS, which most commands do without.
+    from gear_kinematics.replay import play, stopped_by_signals  # noqa: PLC0415
+
+    with Bag(options.bag) as bag, stopped_by_signals() as stopped:
+        if options.topics:
+            topics = {topic: topic for topic in options.topics}
+        else:
+            topics = {find_topics(bag, outputs=False).rotor: 'rotor_state'}
+        if not options.no_wait:
+            print(f'waiting for a subscriber on {", ".join(topics.values())}', file=sys.stderr)
+        played = play(
+            bag,
+            topics,
+            rate=options.rate,
+            loop=options.loop,
+            start_offset=options.start_offset,
+            duration=options.duration,
+            clock=options.clock,
+            stopped=stopped,
+            wait=0.0 if options.no_wait else math.inf,
+        )
+    print(f'{played.messages} messages, at most {1e3 * played.worst_delay:.1f} ms late')
+    return ExitCode.DONE

@@ -1,0 +1,24 @@
+"""`gearkin urdf`: the URDF on stdout."""
+
+import argparse
+
+from gear_kinematics import parameters
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import add_config, config_path
+from gear_kinematics.description import urdf
+from gear_kinematics.kinematics import Mechanism
+
+HELP = 'the URDF on stdout'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    add_config(parser)
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Print the URDF."""
+    config = parameters.load(config_path(options))
+    names = {name: config[name] for name in ('module', 'output_joint', 'frame_prefix')}
+    print(urdf(Mechanism.from_mapping(config), **names), end='')
+    return ExitCode.DONE

@@ -1,0 +1,124 @@
+"""`gearkin validate`: whether the recorded outputs are what the rotor topic calls for."""
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+
+from gear_kinematics import parameters
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import add_config, add_topics, config_path
+from gear_kinematics.commands.output import (
+    Console,
+    closed_pipe_ignored,
+    complain,
+    message_progress,
+    progress,
+    write,
+)
+from gear_kinematics.fleet import (
+    Task,
+    find_bags,
+    validate_bag,
+    validate_on_cluster,
+    validate_on_this_machine,
+)
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.rendering import render, to_html, to_json, to_junit
+from gear_kinematics.report import BagReport, Verdict
+from gear_kinematics.validation import Tolerances
+
+HELP = 'recorded outputs against recomputed ones'
+_EXIT_CODES = {
+    Verdict.PASS: ExitCode.DONE,
+    Verdict.FAIL: ExitCode.FAILED,
+    Verdict.UNUSABLE: ExitCode.UNUSABLE,
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Say which arguments the command takes."""
+    add_config(parser)
+    add_topics(parser)
+    parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
+    parser.add_argument('--tolerance-angle', type=float, default=1e-9, metavar='RAD')
+    parser.add_argument('--tolerance-position', type=float, default=1e-9, metavar='M')
+    parser.add_argument(
+        '--allow-offset', action='store_true', help='accept a constant offset, as homing leaves it'
+    )
+    way = parser.add_mutually_exclusive_group()
+    way.add_argument(
+        '--live', action='store_true', help='play the rotor topic through the node, validate that'
+    )
+    way.add_argument('--jobs', type=_positive, default=1, metavar='N', help='processes')
+    way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
+    for form in ('json', 'junit', 'html'):
+        parser.add_argument(
+            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
+        )
+
+
+def _positive(text: str) -> int:
+    if (number := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f'must be at least 1, not {number}')
+    return number
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Validate every bag; the worst verdict counts."""
+    tolerances = Tolerances(options.tolerance_angle, options.tolerance_position)
+    if not (tolerances.angle >= 0.0 and tolerances.position >= 0.0):
+        raise ValueError('a tolerance must not be negative')
+    forms = {'json': to_json, 'junit': to_junit, 'html': to_html}
+    targets = {form: target for form in forms if (target := getattr(options, form))}
+    on_stdout = [f'--{form}' for form, target in targets.items() if target == '-']
+    if len(on_stdout) > 1:
+        raise ValueError(f'only one report can go to stdout, not {" and ".join(on_stdout)}')
+    tasks = []
+    for bag in find_bags(options.bags):
+        config = config_path(options, bag)
+        loaded = parameters.load(config)
+        Mechanism.from_mapping(loaded)  # what is wrong with it is no fault of the bag
+        tasks.append(
+            Task(
+                bag,
+                loaded,
+                str(config),
+                tolerances,
+                options.allow_offset,
+                options.rotor_topic,
+                options.output_topic,
+                options.poses_topic,
+            )
+        )
+    order = {str(task.bag): number for number, task in enumerate(tasks)}
+    reports = sorted(_reports(options, tasks), key=lambda report: order[report.bag])
+    for report in reports:
+        if report.error:
+            complain(report.error)
+    if not on_stdout:
+        with closed_pipe_ignored():
+            render(reports, Console())
+    for form, target in targets.items():
+        write(target, forms[form](reports))
+    return max(_EXIT_CODES[report.verdict] for report in reports)
+
+
+def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[BagReport]:
+    if options.scheduler or options.jobs > 1:
+        reports = (
+            validate_on_cluster(tasks, options.scheduler)
+            if options.scheduler
+            else validate_on_this_machine(tasks, options.jobs)
+        )
+        with progress('bags') as bars:
+            yield from bars.track(reports, total=len(tasks), description='bags')
+        return
+    for task in tasks:
+        with message_progress(task.bag.name) as told:
+            yield (_validate_live if options.live else validate_bag)(task, told)
+
+
+def _validate_live(task: Task, progress: Callable[[int, int | None], None]) -> BagReport:
+    # Needs ROS, which the validation of a recording does without.
+    from gear_kinematics.replay import live_messages  # noqa: PLC0415
+
+    return validate_bag(task, progress, live_messages)

@@ -1,0 +1,272 @@
+"""The preload of two branches braced against each other: statics, lossless.
+
+The ring gear of one branch is turned against that of the other until the backlash is closed, and
+on by dψ_net; the shaft between the two arms winds up:
+
+    T0 = (zk/zs) dψ_net / (1/kA + 1/kB + 1/ks)        N·m in both branches without a load
+
+kA, kB are the torsional stiffnesses of the branches as seen at their arms, ks that of the shaft
+between the arms, N·m/rad. An external torque M acts at arm B, which is the output. It counts
+positive in the sense in which branch A pushes the output, which is the sense in which ring A is
+turned against ring B. With kAe = kA ks/(kA + ks),
+
+    T_A = T0 - kAe M/(kAe + kB)         T_B = T0 + kB M/(kAe + kB)        T_B - T_A = M
+
+until a branch leaves mesh, A at M = T0 (1 + kB/kAe), B at M = -T0 (1 + kAe/kB). From there on it
+carries nothing and the other carries M alone, up to where its other flanks touch. A stiffness may
+be infinite, which is why the formulas below are written with compliances,
+
+    cA = 1/kAe = 1/kA + 1/ks        cB = 1/kB        kAe/(kAe + kB) = cB/(cA + cB)
+"""
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gear_kinematics.kinematics.errors import MechanismError
+from gear_kinematics.kinematics.mechanism import Branch, Mechanism
+from gear_kinematics.kinematics.vernier import angle_between, turns
+
+STEEL_SHEAR_MODULUS = 79.3e9
+"""G of steel, Pa."""
+
+
+def shaft_stiffness(
+    diameter: float, length: float, shear_modulus: float = STEEL_SHEAR_MODULUS
+) -> float:
+    """ks = G J/L with J = π d⁴/32: the torsional stiffness of a full round shaft, N·m/rad.
+
+    Args:
+        diameter: d, m.
+        length: L, m, between the arms.
+        shear_modulus: G, Pa.
+
+    Raises:
+        MechanismError: if one of them is not finite or not greater than 0.
+    """
+    given = {'diameter': diameter, 'length': length, 'shear modulus': shear_modulus}
+    if faults := [
+        f'{name} must be finite and greater than 0, not {value!r}'
+        for name, value in given.items()
+        if not 0.0 < value < math.inf
+    ]:
+        raise MechanismError(faults)
+    return shear_modulus * math.pi * diameter**4 / 32.0 / length
+
+
+def braced(mechanism: Mechanism) -> tuple[Branch, Branch]:
+    """Branches A and B.
+
+    Raises:
+        MechanismError: unless there are just these two.
+    """
+    if len(mechanism.branches) != 2:  # noqa: PLR2004, A and B
+        count = len(mechanism.branches)
+        raise MechanismError([f'two branches are braced against each other, not {count}'])
+    branch_a, branch_b = mechanism.branches
+    return branch_a, branch_b
+
+
+def ring_phase(mechanism: Mechanism) -> float:
+    """ψ_B - ψ_A = [(zk - zs)(α_B - α_A) mod 2π] / zk: the turn of ring B that its cam calls for.
+
+    Meshing on branch k asks for zk (φ2 + α_k - ψ_k) - zs (φ2 + α_k - φ5 - s_k) ≡ 0 (mod 2π), with
+    ψ_k the turn of its ring gear, and s_k that of the teeth of its satellite, the same on both.
+
+    Returns:
+        rad, within half a tooth pitch π/zk either way: every tooth pitch more does as well.
+
+    Raises:
+        MechanismError: unless there are two branches.
+    """
+    cam_a, cam_b = (turns(branch.cam_phase) for branch in braced(mechanism))
+    teeth = mechanism.ring_teeth - mechanism.satellite_teeth
+    return angle_between(teeth * cam_a, teeth * cam_b) / mechanism.ring_teeth
+
+
+@dataclass(frozen=True, slots=True)
+class Stiffness:
+    """Torsional stiffnesses, N·m/rad at the output; `math.inf` is rigid.
+
+    Raises:
+        MechanismError: if one is not greater than 0, or if all are infinite.
+    """
+
+    branch_a: float
+    """kA, from the stator and a locked rotor to arm A."""
+    branch_b: float
+    """kB, likewise to arm B, which is the output."""
+    shaft: float
+    """ks, between the arms."""
+
+    def __post_init__(self) -> None:
+        """List what is wrong."""
+        given = {'branch a': self.branch_a, 'branch b': self.branch_b, 'shaft': self.shaft}
+        faults = [
+            f'the stiffness of {name} must be greater than 0, not {value!r}'
+            for name, value in given.items()
+            if not value > 0.0
+        ]
+        if not faults and not 0.0 < self.compliance < math.inf:
+            faults = ['branches and shaft can neither all be rigid nor give way without end']
+        if faults:
+            raise MechanismError(faults)
+
+    @property
+    def compliance_a(self) -> float:
+        """cA = 1/kAe = 1/kA + 1/ks: of branch A and the shaft as seen from arm B, rad/(N·m)."""
+        return 1.0 / self.branch_a + 1.0 / self.shaft
+
+    @property
+    def compliance_b(self) -> float:
+        """cB = 1/kB, rad/(N·m)."""
+        return 1.0 / self.branch_b
+
+    @property
+    def compliance(self) -> float:
+        """1/kA + 1/kB + 1/ks: of the whole loop that the preload winds up, rad/(N·m)."""
+        return self.compliance_a + self.compliance_b
+
+    @property
+    def inside(self) -> float:
+        """kAe + kB: at the output while both branches are in mesh, N·m/rad."""
+        return self.without_a + self.without_b
+
+    @property
+    def without_a(self) -> float:
+        """kB: at the output when branch A is out of mesh, N·m/rad."""
+        return self.branch_b
+
+    @property
+    def without_b(self) -> float:
+        """kAe: at the output when branch B is out of mesh, N·m/rad."""
+        return 1.0 / self.compliance_a if self.compliance_a else math.inf
+
+
+class TorqueSplit(NamedTuple):
+    """What an external torque does; arrays of its shape."""
+
+    branch_a: NDArray[np.float64]
+    """T_A, N·m, at least 0; 0 when the branch is out of mesh."""
+    branch_b: NDArray[np.float64]
+    """T_B, N·m, at least 0."""
+    output_turn: NDArray[np.float64]
+    """Turn of arm B from where it is without load, or from the middle of its play, rad."""
+
+
+@dataclass(frozen=True, slots=True)
+class Preload:
+    """Two branches braced against each other.
+
+    Raises:
+        MechanismError: if `interference` is not finite.
+    """
+
+    stiffness: Stiffness
+    interference: float
+    """(zk/zs) dψ_net, rad: what the arms are wound up by; if negative, the play that is left."""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no angle."""
+        if not math.isfinite(self.interference):
+            raise MechanismError([f'an interference must be finite, not {self.interference!r}'])
+
+    @classmethod
+    def from_ring_turn(
+        cls, mechanism: Mechanism, stiffness: Stiffness, ring_turn: float, backlash: float = 0.0
+    ) -> Self:
+        """What turning the rings against each other gives.
+
+        dψ_net = |dψ| - (zs/zk) backlash.
+
+        Args:
+            mechanism: for zk/zs.
+            stiffness: of branches and shaft.
+            ring_turn: dψ, rad, of one ring gear against the other; either way.
+            backlash: play of the output at a ring turn of 0, rad.
+        """
+        ratio = mechanism.ring_teeth / mechanism.satellite_teeth
+        return cls(stiffness, ratio * abs(ring_turn) - _not_negative('backlash', backlash))
+
+    @classmethod
+    def from_torque(cls, stiffness: Stiffness, torque: float) -> Self:
+        """The preload of a wanted T0, N·m, not negative."""
+        return cls(stiffness, _not_negative('preload', torque) * stiffness.compliance)
+
+    @classmethod
+    def from_limit(cls, stiffness: Stiffness, limit: float) -> Self:
+        """The least preload with both branches in mesh while |M| < `limit`, N·m, not negative."""
+        softer = max(stiffness.compliance_a, stiffness.compliance_b)
+        return cls(stiffness, _not_negative('threshold', limit) * softer)
+
+    def ring_turn(self, mechanism: Mechanism, backlash: float = 0.0) -> float:
+        """Dψ = (zs/zk)(interference + backlash), rad: the inverse of `from_ring_turn`."""
+        ratio = mechanism.satellite_teeth / mechanism.ring_teeth
+        return ratio * (self.interference + _not_negative('backlash', backlash))
+
+    @property
+    def torque(self) -> float:
+        """T0, N·m: in both branches without a load; 0 if there is play."""
+        return self._wound_up / self.stiffness.compliance
+
+    @property
+    def play(self) -> float:
+        """By how much the output turns freely, rad; 0 if there is preload."""
+        return max(-self.interference, 0.0)
+
+    @property
+    def threshold_a(self) -> float:
+        """M at which branch A leaves mesh, N·m: T0 (1 + kB/kAe) = T0 (cA + cB)/cB."""
+        return self._load_at(self.stiffness.compliance_b)
+
+    @property
+    def threshold_b(self) -> float:
+        """M at which branch B leaves mesh, N·m: -T0 (1 + kAe/kB) = -T0 (cA + cB)/cA."""
+        return -self._load_at(self.stiffness.compliance_a)
+
+    @property
+    def limit(self) -> float:
+        """Both branches are in mesh while |M| < this, N·m: T0 (kAe + kB)/max(kAe, kB)."""
+        return min(self.threshold_a, -self.threshold_b)
+
+    def split(self, load: ArrayLike) -> TorqueSplit:
+        """Split an external torque between the branches.
+
+        T_A is the greatest of T0 - kAe M/(kAe + kB), -M and 0, which are its values with both in
+        mesh, without B and without A; likewise T_B of T0 + kB M/(kAe + kB), M and 0.
+
+        Args:
+            load: M at arm B, N·m; any shape.
+        """
+        M = np.asarray(load, dtype=np.float64)
+        cA, cB, both = (
+            self.stiffness.compliance_a,
+            self.stiffness.compliance_b,
+            self.stiffness.compliance,
+        )
+        branch_a = np.maximum(np.maximum(self.torque - cB / both * M, -M), 0.0)
+        branch_b = np.maximum(np.maximum(self.torque + cA / both * M, M), 0.0)
+        elastic = np.where(
+            self.threshold_b <= M, cB * (branch_b - self.torque), cA * (self.torque - branch_a)
+        )
+        free = np.sign(M) * self.play / 2.0
+        return TorqueSplit(branch_a + 0.0, branch_b + 0.0, elastic + free + 0.0)  # no -0.0
+
+    @property
+    def _wound_up(self) -> float:
+        return max(self.interference, 0.0)
+
+    def _load_at(self, compliance: float) -> float:
+        """The load that winds a path up by the interference."""
+        if self._wound_up == 0.0:
+            return 0.0
+        return self._wound_up / compliance if compliance else math.inf
+
+
+def _not_negative(name: str, value: float) -> float:
+    if not 0.0 <= value < math.inf:
+        raise MechanismError([f'{name} must be finite and not negative, not {value!r}'])
+    return value

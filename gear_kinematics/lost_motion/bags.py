@@ -1,0 +1,188 @@
+"""Recordings as bags: the rotor's states, and where there is one the output's encoder."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.bag import Bag, BagError, DamagedBagError
+from gear_kinematics.fleet import find_topics
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
+from gear_kinematics.lost_motion.transmission import Motion
+from gear_kinematics.message_batches import JointStates, decode_joint_states
+from gear_kinematics.messages import JOINT_STATE
+from gear_kinematics.rotor_input import InputSettings, RotorInput, RotorSamples
+from gear_kinematics.transmission_error import ErrorSample, TransmissionError
+
+Array = NDArray[np.float64]
+
+ENCODER = 'output_encoder'
+"""The topic of the output's encoder."""
+_BATCH = 8192  # messages
+
+
+def read_bag(
+    path: Path,
+    parameters: Mapping[str, Any],
+    travel: float,
+    max_gap: int,
+    rotor_topic: str | None = None,
+    encoder_topic: str | None = None,
+    counts: int | None = None,
+    output_counts: int | None = None,
+    progress: Callable[[int, int | None], None] | None = None,
+) -> Recording:
+    """Read a bag.
+
+    Args:
+        path: of the bag.
+        parameters: of the node, as `parameters.load` gives them.
+        travel: rad of the output after a reversal, until the new direction counts.
+        max_gap: ns between rotor states, beyond which no output angle is compared with them.
+        rotor_topic: of the rotor's states; None: by type and name.
+        encoder_topic: of the output's encoder; None: by type and name, if there is one.
+        counts: steps in a turn of the rotor's encoder.
+        output_counts: steps in a turn of the output's encoder.
+        progress: called with the messages of each batch, and of the whole bag if that is known.
+
+    Raises:
+        BagError: if the bag cannot be read, or has no such topics.
+        MechanismError: if the parameters describe no mechanism.
+        MotionError: if no output angle can be compared.
+    """
+    mechanism = Mechanism.from_mapping(parameters)
+    with Bag(path) as bag:
+        encoder = _find_encoder(bag, encoder_topic)
+        rotor = rotor_topic or find_topics(bag, outputs=False).rotor
+        if bag.topics.get(rotor) != JOINT_STATE:
+            raise BagError(f'{path}: no topic {rotor} of type {JOINT_STATE} in it')
+        messages, received, error = _messages(bag, rotor, encoder, progress)
+    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    samples = rotor_input.accept_batch(messages[rotor], received)
+    if not len(samples.stamp):
+        raise BagError(f'{path}: no usable rotor states on {rotor}')
+    remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
+    turns, angle = closed_form(mechanism).output_angle(samples.turns, samples.angle, np)
+    ratio = float(mechanism.gear_ratio)
+    positions = samples.turns * TURN + samples.angle
+    rotor_step = step_of(counts, positions) / abs(ratio)
+    motion = None
+    columns = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
+    errors: list[ErrorSample] = []
+    if encoder:
+        states = decode_joint_states(messages[encoder], _joint(messages[encoder], parameters))
+        comparison = TransmissionError(max_gap=max_gap, travel=travel)
+        errors = _compare(comparison, samples.stamp, turns, angle, states)
+        readings = states.values[:, 0][np.isfinite(states.values[:, 0])]
+        motion = Motion.from_samples(
+            errors, comparison.unmatched, rotor_step, step_of(output_counts, readings)
+        )
+        columns.append(f'output {encoder}, rad')
+    loading = _loading(samples, ratio, turns, angle, errors, rotor_step, motion)
+    if loading:
+        columns.append(f'torque: effort of {rotor} × {ratio:g}, N·m')
+    elif not motion:
+        raise BagError(f'{path}: {rotor} has no effort, and there is no {ENCODER}')
+    return Recording(
+        path.name,
+        tuple(columns),
+        len(samples.stamp),
+        loading,
+        motion,
+        tuple(remarks),
+        error,
+    )
+
+
+def _find_encoder(bag: Bag, given: str | None) -> str | None:
+    states = [topic for topic, kind in bag.topics.items() if kind == JOINT_STATE]
+    if given:
+        if given not in states:
+            raise BagError(f'{bag.path}: no topic {given} of type {JOINT_STATE} in it')
+        return given
+    found = [topic for topic in states if topic.rpartition('/')[2] == ENCODER]
+    if len(found) > 1:
+        raise BagError(f'{bag.path}: which topic is {ENCODER}? {", ".join(sorted(found))}')
+    return found[0] if found else None
+
+
+def _messages(
+    bag: Bag,
+    rotor: str,
+    encoder: str | None,
+    progress: Callable[[int, int | None], None] | None,
+) -> tuple[dict[str, list[bytes]], list[int], str | None]:
+    """The messages by topic, when those of the rotor were received, and what damage ended it."""
+    messages: dict[str, list[bytes]] = {rotor: []}
+    if encoder:
+        messages[encoder] = []
+    received: list[int] = []
+    error = None
+    count = 0
+    try:
+        for count, (topic, stamp, data) in enumerate(bag.messages(messages), start=1):
+            messages[topic].append(data)
+            if topic == rotor:
+                received.append(stamp)
+            if progress and count % _BATCH == 0:
+                progress(_BATCH, bag.message_count)
+    except DamagedBagError as damage:
+        error = str(damage)
+    if progress:
+        progress(count % _BATCH, bag.message_count)
+    return messages, received, error
+
+
+def _joint(messages: list[bytes], parameters: Mapping[str, Any]) -> str:
+    """The output's joint in the encoder's messages; '' for the only one, whatever its name."""
+    name = str(parameters['output_joint'])
+    return name if decode_joint_states(messages[:1], name).joint_found.any() else ''
+
+
+def _compare(
+    comparison: TransmissionError, stamps: Array, turns: Array, angle: Array, states: JointStates
+) -> list[ErrorSample]:
+    """Feed both streams by stamp, as a node gets them."""
+    usable = ~states.malformed & states.present[:, 0]
+    ideal = zip(stamps.tolist(), turns.tolist(), angle.tolist(), strict=True)
+    samples: list[ErrorSample] = []
+    waiting = next(ideal, None)
+    measured = zip(states.stamp[usable].tolist(), states.values[usable, 0].tolist(), strict=True)
+    for stamp, position in measured:
+        while waiting and waiting[0] <= stamp:
+            samples += comparison.add_ideal(waiting[0], int(waiting[1]), waiting[2])
+            waiting = next(ideal, None)
+        samples += comparison.add_measured(stamp, position)
+    while waiting:
+        samples += comparison.add_ideal(waiting[0], int(waiting[1]), waiting[2])
+        waiting = next(ideal, None)
+    return samples
+
+
+def _loading(
+    samples: RotorSamples,
+    ratio: float,
+    turns: Array,
+    angle: Array,
+    errors: list[ErrorSample],
+    rotor_step: float,
+    motion: Motion | None,
+) -> Loading | None:
+    """Torque and wind-up: of the gear where the output was measured, else of all of it."""
+    known = np.isfinite(samples.effort)
+    if not known.any():
+        return None
+    torque = ratio * samples.effort[known]
+    if motion is None:
+        wound = (turns - turns[0])[known] * TURN + angle[known]
+        return Loading(torque, wound, rotor_step, measured=False)
+    start = samples.stamp[0]
+    stamps = np.array([error.stamp for error in errors]) - start
+    torque = np.interp(stamps, samples.stamp[known] - start, torque)
+    step = float(np.hypot(motion.rotor_step, motion.output_step))
+    return Loading(torque, -motion.error, step, measured=True)

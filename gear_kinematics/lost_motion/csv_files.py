@@ -1,0 +1,218 @@
+"""Recordings as CSV files: one row a sample, one column a quantity, names in the first row."""
+
+import csv
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
+from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
+from gear_kinematics.lost_motion.transmission import Motion
+from gear_kinematics.transmission_error import TransmissionError
+
+Array = NDArray[np.float64]
+
+UNITS: Mapping[str, float] = {'rad': 1.0, 'deg': math.radians(1.0), 'rev': TURN}
+"""rad in units of angle."""
+_NAMES: Mapping[str, tuple[str, ...]] = {
+    'angle': ('position', 'angle', 'deflection', 'twist', 'motor_position'),
+    'torque': ('torque', 'effort', 'measured_torque', 'motor_torque'),
+    'rotor': ('rotor_position', 'rotor_angle', 'rotor'),
+    'output': ('output_position', 'output_angle', 'output_encoder', 'output'),
+}
+"""Columns to look for, in any case, with or without a unit behind the name."""
+_PAIRS = (('angle', 'torque'), ('rotor', 'output'))
+_UNIT = re.compile(r'[\s_]*[\[(]?(rad|deg|rev)[\])]?$')
+_TORQUE_UNIT = re.compile(r'[\s_]*[\[(]?n[·*.]?m[\])]?$')
+_MOTEUS = {'position', 'torque', 'q_current'}
+"""Registers of moteus motor controllers, which give positions in revolutions."""
+
+
+class CsvError(ValueError):
+    """A CSV file that cannot be used; the text is one line that names it and the cause."""
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Names of columns, and what they hold; None: by the names in the file."""
+
+    angle: str | None = None
+    torque: str | None = None
+    rotor: str | None = None
+    output: str | None = None
+    unit: str | None = None
+    """Of all angles: a key of UNITS."""
+    on_rotor: bool = False
+    """Whether angle and torque are the rotor's, not those at the output."""
+
+
+def read_csv(
+    path: Path,
+    mechanism: Mechanism,
+    columns: Columns,
+    travel: float,
+    counts: int | None = None,
+    output_counts: int | None = None,
+) -> Recording:
+    """Read a CSV file.
+
+    Args:
+        path: of the file.
+        mechanism: whose ratio takes the rotor to the output.
+        columns: which to read.
+        travel: rad of the output after a reversal, until the new direction counts.
+        counts: steps in a turn of what the angle or rotor column shows.
+        output_counts: steps in a turn of the output's encoder.
+
+    Raises:
+        CsvError: if it cannot be read, or has no such columns.
+    """
+    header, rows = _table(path)
+    found = _find(path, header, columns)
+    values = _numbers(path, header, rows, list(found.values()))
+    finite = np.all(np.isfinite(values), axis=1)
+    data = dict(zip(found, values[finite].T, strict=True))
+    left_out = int(np.count_nonzero(~finite))
+    remarks = (f'{left_out} rows were left out: not finite',) if left_out else ()
+    unit, why = _unit(header, columns, found)
+    for role in ('angle', 'rotor', 'output'):
+        if role in data:
+            data[role] *= UNITS[unit]
+    loading = motion = None
+    if 'torque' in data:
+        loading = _loading(mechanism, data, counts, on_rotor=columns.on_rotor)
+    if 'rotor' in data:
+        motion = _motion(mechanism, data, travel, counts, output_counts)
+    return Recording(
+        path.name,
+        tuple(_described(found, unit, why, on_rotor=columns.on_rotor)),
+        len(finite),
+        loading,
+        motion,
+        remarks,
+    )
+
+
+def _table(path: Path) -> tuple[list[str], list[list[str]]]:
+    try:
+        text = path.read_text('utf-8-sig')
+    except (OSError, UnicodeDecodeError) as error:
+        cause = getattr(error, 'strerror', None) or 'not text in UTF-8'
+        raise CsvError(f'{path}: {cause}') from error
+    first = text.partition('\n')[0]
+    delimiter = max(',;\t', key=first.count)
+    try:
+        rows = list(csv.reader(text.splitlines(), delimiter=delimiter))
+    except csv.Error as error:
+        raise CsvError(f'{path}: {error}') from error
+    if len(rows) < 2:  # noqa: PLR2004, names and a sample
+        raise CsvError(f'{path}: no samples in it')
+    header = [name.strip() for name in rows[0]]
+    twice = [name for name, count in Counter(header).items() if count > 1]
+    if twice:
+        raise CsvError(f'{path}: the column {twice[0]!r} is there twice')
+    return header, rows[1:]
+
+
+def _find(path: Path, header: Sequence[str], columns: Columns) -> dict[str, str]:
+    """The columns to read, by what they hold."""
+    given = {role: name for role in _NAMES if (name := getattr(columns, role))}
+    for name in given.values():
+        if name not in header:
+            raise CsvError(f'{path}: no column {name!r}; there are {", ".join(header)}')
+    plain = {_plain(name): name for name in reversed(header)}
+    found = {
+        role: name
+        for role, names in _NAMES.items()
+        if (name := given.get(role) or next((plain[n] for n in names if n in plain), None))
+    }
+    pairs = [pair for pair in _PAIRS if found.keys() >= {*pair}]
+    if not pairs:
+        raise CsvError(
+            f'{path}: neither an angle and a torque nor a rotor and an output among the columns '
+            f'{", ".join(header)}; name them with --angle-column, --torque-column, '
+            '--rotor-column, --output-column'
+        )
+    return {role: found[role] for pair in pairs for role in pair}
+
+
+def _plain(name: str) -> str:
+    """A name without its unit, in the form of the names to look for."""
+    return _TORQUE_UNIT.sub('', _UNIT.sub('', name.lower())).strip().replace(' ', '_')
+
+
+def _numbers(
+    path: Path, header: Sequence[str], rows: Sequence[Sequence[str]], names: Sequence[str]
+) -> Array:
+    places = [header.index(name) for name in names]
+    values = np.empty((len(rows), len(names)))
+    for k, row in enumerate(rows):
+        try:
+            values[k] = [float(row[place]) for place in places] if row else math.nan
+        except (ValueError, IndexError) as error:
+            cause = 'too few columns' if isinstance(error, IndexError) else str(error)
+            raise CsvError(f'{path}, line {k + 2}: {cause}') from error
+    return values
+
+
+def _unit(header: Sequence[str], columns: Columns, found: Mapping[str, str]) -> tuple[str, str]:
+    """The unit of the angles, and how it is known."""
+    if columns.unit:
+        return columns.unit, 'as given'
+    for role in ('angle', 'rotor'):
+        if role in found and (suffix := _UNIT.search(found[role].lower())):
+            return suffix[1], 'by its name'
+    if {name.lower() for name in header} >= _MOTEUS:
+        return 'rev', 'as moteus controllers record it'
+    return 'rad', 'assumed'
+
+
+def _described(found: Mapping[str, str], unit: str, why: str, *, on_rotor: bool) -> Iterable[str]:
+    side = 'of the rotor' if on_rotor else 'at the output'
+    if 'torque' in found:
+        yield f'angle {found["angle"]} {side}, {unit} ({why})'
+        yield f'torque {found["torque"]} {side}, N·m'
+    if 'rotor' in found:
+        yield f'rotor {found["rotor"]}, output {found["output"]}, {unit} ({why})'
+
+
+def _loading(
+    mechanism: Mechanism, data: Mapping[str, Array], counts: int | None, *, on_rotor: bool
+) -> Loading:
+    angle, torque = data['angle'], data['torque']
+    step = step_of(counts, angle)
+    if on_rotor:
+        ratio = float(mechanism.gear_ratio)
+        angle, torque, step = angle / ratio, torque * ratio, step / abs(ratio)
+    return Loading(torque, angle, step, measured=False)
+
+
+def _motion(
+    mechanism: Mechanism,
+    data: Mapping[str, Array],
+    travel: float,
+    counts: int | None,
+    output_counts: int | None,
+) -> Motion:
+    """Compare rotor and output row by row: what is in a row was sampled at once."""
+    comparison = TransmissionError(max_gap=1, travel=travel)
+    turns, angle = closed_form(mechanism).output_angle(*split_turns(data['rotor']), np)
+    samples = []
+    rows = zip(turns.tolist(), angle.tolist(), data['output'].tolist(), strict=True)
+    for row, (whole, rest, output) in enumerate(rows):
+        samples += comparison.add_ideal(row, int(whole), rest)
+        samples += comparison.add_measured(row, output)
+    return Motion.from_samples(
+        samples,
+        comparison.unmatched,
+        step_of(counts, data['rotor']) / abs(float(mechanism.gear_ratio)),
+        step_of(output_counts, data['output']),
+    )

@@ -1,0 +1,98 @@
+"""What a recording tells about lost motion: figures, and the curves that they are read from."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.lost_motion import hysteresis, transmission
+from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
+from gear_kinematics.lost_motion.ramps import RampError, Ramps, find_ramps
+from gear_kinematics.lost_motion.recording import Recording
+from gear_kinematics.lost_motion.transmission import TransmissionFigures
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class HysteresisReport:
+    """Figures of torque ramps, by amplitude from small to large."""
+
+    settings: Settings
+    rated_by: Literal['given', 'largest ramps']
+    """What the rated torque is."""
+    measured: bool
+    """Whether an encoder saw the output; else the figures are inferred from the motor's."""
+    figures: tuple[Figures, ...]
+    ramps: tuple[Ramps, ...]
+    """Their curves."""
+
+    @property
+    def smallest(self) -> Figures:
+        """Of the smallest ramps: those of the play."""
+        return self.figures[0]
+
+    @property
+    def largest(self) -> Figures:
+        """Of the largest ramps: those of the gear under load."""
+        return self.figures[-1]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LostMotionReport:
+    """The whole finding about one recording."""
+
+    recording: Recording
+    hysteresis: HysteresisReport | None = None
+    transmission: TransmissionFigures | None = None
+    remarks: tuple[str, ...] = ()
+    """Sentences about the recording."""
+
+
+def measure(
+    recording: Recording,
+    mechanism: Mechanism,
+    rated_torque: float | None = None,
+    corners: tuple[float, ...] | None = None,
+) -> LostMotionReport:
+    """Measure what a recording shows.
+
+    Args:
+        recording: of torque ramps, or of both encoders, or of both.
+        mechanism: whose orders to look for.
+        rated_torque: N·m at the output; None: the amplitude of the largest ramps.
+        corners: N·m, rising, between ranges of stiffness; None: shares of the rated torque.
+
+    Raises:
+        RampError, MotionError: if it shows nothing.
+    """
+    remarks = list(recording.remarks)
+    found = None
+    if recording.motion:
+        found = transmission.figures(recording.motion, mechanism)
+    ramps: HysteresisReport | None = None
+    if recording.loading:
+        try:
+            ramps = _hysteresis(recording, rated_torque, corners)
+        except RampError as error:
+            if not found:
+                raise
+            remarks.append(str(error))
+    return LostMotionReport(recording, ramps, found, tuple(remarks))
+
+
+def _hysteresis(
+    recording: Recording, rated_torque: float | None, corners: tuple[float, ...] | None
+) -> HysteresisReport:
+    loading = recording.loading
+    if loading is None:
+        raise RampError('no torque in it')
+    ramps = find_ramps(loading.torque, loading.angle)
+    rated = ramps[-1].amplitude if rated_torque is None else rated_torque
+    if corners is None:
+        corners = tuple(share * rated for share in STIFFNESS_SHARES)
+    settings = Settings(rated, corners, loading.angle_step)
+    return HysteresisReport(
+        settings,
+        'largest ramps' if rated_torque is None else 'given',
+        loading.measured,
+        hysteresis.figures(ramps, settings),
+        ramps,
+    )

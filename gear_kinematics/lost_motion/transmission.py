@@ -1,0 +1,295 @@
+"""The transmission error of a recording over the output angle: both ways, orders, lost motion.
+
+An order is a number of cycles in a turn of the output.
+"""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
+from gear_kinematics.transmission_error import ErrorSample
+
+Array = NDArray[np.float64]
+
+_LEVELS = 200
+"""Angles at which two runs over the same range are compared."""
+_LONG = 0.5
+"""Share of the longest run from which on a run counts as one more like it."""
+_CYCLES = 2.0
+"""Least cycles of an order in a run."""
+_SAMPLES = 4.0
+"""Least samples in a cycle."""
+_BINS = 8.0
+"""Parts of the spectrum's shortest cycle."""
+_BLOCK = 16_384
+"""Samples that are fitted at a time."""
+
+
+class MotionError(ValueError):
+    """A recording of both encoders that holds nothing to measure by."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Motion:
+    """The transmission error as it was recorded, (n,) each, in the order of time."""
+
+    angle: Array
+    """Ideal output angle, rad, from the first turn on."""
+    error: Array
+    """Measured less ideal, rad."""
+    direction: NDArray[np.int8]
+    """1, -1, or 0 where it is not known."""
+    unmatched: Mapping[str, int]
+    """Measured angles without an error, by cause."""
+    rotor_step: float
+    """rad at the output, between readings of the rotor's encoder; 0 where it is not known."""
+    output_step: float
+    """rad, of the output's encoder."""
+
+    @classmethod
+    def from_samples(
+        cls,
+        samples: Sequence[ErrorSample],
+        unmatched: Mapping[str, int],
+        rotor_step: float,
+        output_step: float,
+    ) -> 'Motion':
+        """Gather samples.
+
+        Raises:
+            MotionError: if there are none.
+        """
+        if not samples:
+            causes = ', '.join(f'{cause} {count}' for cause, count in unmatched.items())
+            raise MotionError(f'no output angle could be matched with the rotor: {causes}')
+        first = samples[0].turns
+        return cls(
+            np.array([(s.turns - first) * TURN + s.ideal for s in samples]),
+            np.array([s.error for s in samples]),
+            np.array([s.direction for s in samples], np.int8),
+            dict(unmatched),
+            rotor_step,
+            output_step,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A marked order of the spectrum."""
+
+    name: str
+    cycles: Fraction
+    """In a turn of the output."""
+    forward: Estimate | None
+    """Amplitude, rad; None where the motion is too short or the samples too far apart."""
+    backward: Estimate | None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Spectrum:
+    """Amplitudes over orders, (n,) each, of one way."""
+
+    orders: Array
+    amplitude: Array
+    """rad."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TransmissionFigures:
+    """What the recording of both encoders tells."""
+
+    samples: int
+    travel: float
+    """rad, from the least to the greatest output angle."""
+    offset: float
+    """rad, the mean error: where the encoders' zeros are."""
+    forward: Estimate | None
+    """Transmission accuracy, rad: peak to peak without a reversal, on the way forward."""
+    backward: Estimate | None
+    lost_motion: Estimate | None
+    """rad, on reversals: error on the way back less that on the way there; None without any."""
+    orders: tuple[Order, ...]
+    spectra: tuple[Spectrum | None, Spectrum | None]
+    """Forward and backward."""
+
+
+class _Run:
+    """Samples in one direction."""
+
+    def __init__(self, angle: Array, error: Array) -> None:
+        order = np.argsort(angle, kind='stable')
+        self.angle, self.error = angle[order], error[order]
+        self.low, self.high = float(self.angle[0]), float(self.angle[-1])
+
+    @property
+    def turns(self) -> float:
+        """Of the output."""
+        return (self.high - self.low) / TURN
+
+    @property
+    def spacing(self) -> float:
+        """The angle within which nearly all samples have their next, in turns of the output."""
+        return float(np.quantile(np.diff(self.angle), 0.99)) / TURN
+
+
+def marked_orders(mechanism: Mechanism) -> dict[str, Fraction]:
+    """The orders to look for, by name, in cycles in a turn of the output.
+
+    The rotor turns |i| times, the satellite |i| + 1 times against its cam: so often its teeth and
+    the Oldham coupling go round. Teeth mesh zk times in a turn of the rotor.
+    """
+    rotor = abs(mechanism.gear_ratio)
+    base = {
+        'output': Fraction(1),
+        'rotor': rotor,
+        'satellite': rotor + 1,
+        'teeth': mechanism.ring_teeth * rotor,
+    }
+    return {
+        f'{name} × {multiple}': multiple * cycles
+        for name, cycles in base.items()
+        for multiple in (1, 2)
+    }
+
+
+def figures(motion: Motion, mechanism: Mechanism) -> TransmissionFigures:
+    """Measure a recording.
+
+    Raises:
+        MotionError: if the output does not follow the rotor.
+    """
+    _check(motion)
+    runs = list(_runs(motion))
+    ways = [[run for sign, run in runs if sign == way] for way in (1, -1)]
+    reading = math.hypot(resolution(motion.rotor_step), resolution(motion.output_step))
+    both = Component(math.sqrt(2.0) * reading)
+    forward, backward = (_long(way) for way in ways)
+    return TransmissionFigures(
+        samples=len(motion.error),
+        travel=float(np.ptp(motion.angle)),
+        offset=float(np.mean(motion.error)),
+        forward=_accuracy(forward, both),
+        backward=_accuracy(backward, both),
+        lost_motion=_lost_motion(runs, both),
+        orders=tuple(_orders(mechanism, forward, backward, Component(reading))),
+        spectra=(_spectrum(mechanism, forward), _spectrum(mechanism, backward)),
+    )
+
+
+def _check(motion: Motion) -> None:
+    """Make sure that the output follows the rotor: else errors within the turn mean nothing."""
+    if float(np.ptp(motion.error)) < 0.5 * TURN:
+        return
+    raise MotionError(
+        'the measured output angle does not follow the rotor: the errors go round the whole turn. '
+        'Is it the ratio, or does an encoder count backwards?'
+    )
+
+
+def _runs(motion: Motion) -> Iterable[tuple[int, _Run]]:
+    """The runs between reversals, each with its direction."""
+    known = np.flatnonzero(motion.direction)
+    signs = motion.direction[known]
+    for rows in np.split(known, np.flatnonzero(np.diff(signs)) + 1):
+        if len(rows) > 1:
+            yield int(motion.direction[rows[0]]), _Run(motion.angle[rows], motion.error[rows])
+
+
+def _long(runs: Sequence[_Run]) -> list[_Run]:
+    longest = max((run.turns for run in runs), default=0.0)
+    return [run for run in runs if run.turns >= _LONG * longest]
+
+
+def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:
+    values = [float(np.ptp(run.error)) for run in runs]
+    return Estimate.of_mean(values, reading) if values else None
+
+
+def _lost_motion(runs: Sequence[tuple[int, _Run]], reading: Component) -> Estimate | None:
+    """Compare runs there and back, each with one other, where they go over the same angles."""
+    values = []
+    for (sign, there), (_, back) in list(pairwise(runs))[::2]:
+        low, high = max(there.low, back.low), min(there.high, back.high)
+        if low < high:
+            at = np.linspace(low, high, _LEVELS)
+            there_error, back_error = (
+                np.interp(at, run.angle, run.error) for run in (there, back)
+            )
+            values.append(sign * float(np.mean(back_error - there_error)))
+    return Estimate.of_mean(values, reading) if values else None
+
+
+# Orders
+
+
+def _orders(
+    mechanism: Mechanism, forward: Sequence[_Run], backward: Sequence[_Run], reading: Component
+) -> Iterable[Order]:
+    marked = marked_orders(mechanism)
+    ways = [_amplitudes(runs, marked, reading) for runs in (forward, backward)]
+    for name, cycles in marked.items():
+        yield Order(name, cycles, *(way.get(name) for way in ways))
+
+
+def _amplitudes(
+    runs: Sequence[_Run], marked: Mapping[str, Fraction], reading: Component
+) -> dict[str, Estimate]:
+    """Amplitudes of those orders that all runs can tell from each other."""
+    if not runs:
+        return {}
+    shortest, coarsest = min(run.turns for run in runs), max(run.spacing for run in runs)
+    told: list[str] = []
+    last = 0.0
+    for name, cycles in sorted(marked.items(), key=lambda item: item[1]):
+        order = float(cycles)
+        apart = (order - last) * shortest >= 1.0
+        if apart and order * shortest >= _CYCLES and order * coarsest * _SAMPLES <= 1.0:
+            told.append(name)
+            last = order
+    if not told:
+        return {}
+    fits = [_fit(run, [float(marked[name]) for name in told]) for run in runs]
+    return {
+        name: Estimate.of_mean([fit[k] for fit in fits], reading) for k, name in enumerate(told)
+    }
+
+
+def _fit(run: _Run, orders: Sequence[float]) -> list[float]:
+    """Amplitudes of a sum of sines, by least squares; the samples need not be even."""
+    size = 2 * len(orders) + 1
+    normal, right = np.zeros((size, size)), np.zeros(size)
+    for start in range(0, len(run.angle), _BLOCK):
+        rows = slice(start, start + _BLOCK)
+        phase = np.multiply.outer(run.angle[rows], orders)
+        design = np.concatenate([np.ones((len(phase), 1)), np.cos(phase), np.sin(phase)], axis=1)
+        normal += design.T @ design
+        right += design.T @ run.error[rows]
+    solution = np.linalg.lstsq(normal, right, rcond=None)[0][1:]
+    cosines, sines = solution.reshape(2, -1)
+    return [math.hypot(cosine, sine) for cosine, sine in zip(cosines, sines, strict=True)]
+
+
+def _spectrum(mechanism: Mechanism, runs: Sequence[_Run]) -> Spectrum | None:
+    """Amplitudes over all orders that the longest run resolves, through a Hann window."""
+    run = max(runs, key=lambda run: run.turns, default=None)
+    if run is None:
+        return None
+    highest = min(2.5 * float(mechanism.ring_teeth * abs(mechanism.gear_ratio)), 0.5 / run.spacing)
+    if highest * run.turns < _CYCLES:
+        return None
+    count = math.ceil(_BINS * highest * run.turns)
+    at = run.low + (np.arange(count) + 0.5) * (run.high - run.low) / count
+    error = np.interp(at, run.angle, run.error)
+    window = np.hanning(count)
+    amplitude = 2.0 * np.abs(np.fft.rfft((error - error.mean()) * window)) / window.sum()
+    orders = np.arange(len(amplitude)) / run.turns
+    shown = orders <= highest
+    return Spectrum(orders[shown], amplitude[shown])

@@ -1,0 +1,127 @@
+"""Uncertainties by the Guide to the Expression of Uncertainty in Measurement (JCGM 100:2008)."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Self
+
+import numpy as np
+
+COVERAGE = 0.95
+"""Of expanded uncertainties: the share of such intervals that hold the value."""
+_NORMAL = 1.959963984540054
+"""What the quantile of Student's distribution tends to with the degrees of freedom."""
+_MANY = 10_000
+
+
+@dataclass(frozen=True, slots=True)
+class Component:
+    """One source of uncertainty."""
+
+    standard: float
+    """The standard uncertainty that it gives the value."""
+    degrees_of_freedom: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A measured quantity."""
+
+    value: float
+    standard: float | None
+    """Its standard uncertainty, in its unit; None where nothing was repeated."""
+    degrees_of_freedom: float
+    """Effective, of the standard uncertainty."""
+    repeats: int
+
+    @classmethod
+    def of_mean(cls, values: Sequence[float], *others: Component) -> Self:
+        """Estimate a quantity from its repeats, and from what these cannot show.
+
+        Args:
+            values: at least one.
+            others: what is the same in every repeat, such as the resolution of the encoder.
+        """
+        return cls.of_sum([(1.0, values)], *others)
+
+    @classmethod
+    def of_sum(cls, terms: Sequence[tuple[float, Sequence[float]]], *others: Component) -> Self:
+        """Estimate a sum of quantities that were repeated each for itself.
+
+        The standard uncertainties of the means (GUM 4.2.3) and the other components are combined
+        (GUM 5.1.2), with effective degrees of freedom by Welch and Satterthwaite (GUM G.4.1).
+
+        Args:
+            terms: factors, and the values of the quantities, at least one of each.
+            others: of the sum.
+        """
+        value = sum(factor * float(np.mean(values)) for factor, values in terms)
+        repeats = min(len(values) for _, values in terms)
+        if repeats == 1:
+            return cls(value, None, 0.0, 1)
+        own = [
+            Component(
+                abs(factor) * float(np.std(values, ddof=1)) / math.sqrt(len(values)),
+                len(values) - 1,
+            )
+            for factor, values in terms
+        ]
+        variance = sum(part.standard**2 for part in (*own, *others))
+        spread = sum(part.standard**4 / part.degrees_of_freedom for part in (*own, *others))
+        degrees = variance**2 / spread if spread else math.inf
+        return cls(value, math.sqrt(variance), degrees, repeats)
+
+    @property
+    def uncertainty(self) -> float | None:
+        """Expanded to the coverage with Student's t (GUM G.3)."""
+        if self.standard is None:
+            return None
+        # Rounding must not take a whole degree away.
+        degrees = int(min(self.degrees_of_freedom, _MANY) + 1e-6)
+        return student_t(degrees) * self.standard
+
+    def inverse(self) -> 'Estimate':
+        """Estimate one over the quantity."""
+        value = 1.0 / self.value
+        standard = None if self.standard is None else value * value * self.standard
+        return Estimate(value, standard, self.degrees_of_freedom, self.repeats)
+
+
+def resolution(step: float) -> float:
+    """Standard uncertainty of a reading in steps (GUM F.2.2.1), in their unit."""
+    return step / math.sqrt(12.0)
+
+
+@cache
+def student_t(degrees: int) -> float:
+    """Quantile t of Student's distribution: the coverage lies within ±t.
+
+    Args:
+        degrees: of freedom, at least 1; those beyond 10 000 are infinitely many.
+    """
+    if degrees >= _MANY:
+        return _NORMAL
+    low, high = 0.0, 0.5 * math.pi
+    while True:
+        middle = 0.5 * (low + high)
+        if middle in {low, high}:
+            return math.sqrt(degrees) * math.tan(middle)
+        if _share_within(middle, degrees) < COVERAGE:
+            low = middle
+        else:
+            high = middle
+
+
+def _share_within(angle: float, degrees: int) -> float:
+    """Share of the distribution within ±t, with t = sqrt(degrees) tan(angle).
+
+    Abramowitz and Stegun, Handbook of Mathematical Functions, eqs. 26.7.3 and 26.7.4.
+    """
+    sine, cosine = math.sin(angle), math.cos(angle)
+    odd = degrees % 2
+    total, term = 0.0, cosine if odd else 1.0
+    for k in range(2 + odd, degrees + 1, 2):
+        total += term
+        term *= cosine * cosine * (k - 1) / k
+    return 2.0 / math.pi * (angle + sine * total) if odd else sine * total

@@ -1,0 +1,122 @@
+"""Where torque ramps turn back, and the angle over the torque."""
+
+import math
+
+import numpy as np
+import pytest
+from gear_recordings import Gear, creep, ramps
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gear_kinematics.lost_motion.ramps import RampError, _isotonic, find_ramps
+
+GEAR = Gear(play=0.01, stiffness=200.0, friction=1.0)
+
+
+@given(st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=25))
+def test_isotonic_fit_is_that_of_the_min_max_formula(values):
+    means, counts = _isotonic(np.array(values))
+    assert np.all(np.diff(means) > 0.0)
+    # R. E. Barlow et al., Statistical Inference under Order Restrictions (1972), p. 19.
+    n = len(values)
+    expected = [
+        max(
+            min(math.fsum(values[i:j]) / (j - i) for j in range(k + 1, n + 1))
+            for i in range(k + 1)
+        )
+        for k in range(n)
+    ]
+    np.testing.assert_allclose(np.repeat(means, counts), expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize('noise', [0.0, 0.05, 0.3])
+def test_ramps_are_told_apart_by_their_amplitude(noise):
+    torque = ramps((4.0, 300), (4.0, 300), (4.0, 300), (40.0, 900), (40.0, 900))
+    angle = creep(GEAR, torque)
+    noisy = torque + noise * np.random.default_rng(1).standard_normal(len(torque))
+    small, large = find_ramps(noisy, angle)
+    assert (len(small.loops), len(large.loops)) == (3, 2)
+    assert small.amplitude == pytest.approx(4.0, abs=0.02 + 0.3 * noise)
+    assert large.amplitude == pytest.approx(40.0, abs=0.05 + noise)
+    for ramp in (small, large):
+        for loop in ramp.loops:
+            assert loop.rise.rising
+            assert not loop.fall.rising
+            assert loop.reaches(0.0)
+            assert np.all(np.diff(loop.rise.torque) > 0.0)
+            assert np.all(np.diff(loop.fall.torque) < 0.0)
+    # Loadings to the peaks: the first comes from nowhere, the first large one from a small one.
+    starts = [[round(branch.start / 4.0) for branch in pull] for pull in small.pulls]
+    assert starts == [[0, 1], [-1, 1], [-1, 1]]
+    starts = [[round(branch.start / 4.0) for branch in pull] for pull in large.pulls]
+    assert starts == [[-1, 10], [-10, 10]]
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_first_side_does_not_matter(sign):
+    torque = sign * ramps((5.0, 200), (5.0, 200))
+    (found,) = find_ramps(torque, sign * creep(GEAR, sign * torque))
+    assert len(found.loops) == 2
+    assert found.loops[0].width(0.0) == pytest.approx(0.01 + 2 * 1.0 / 200.0, abs=1e-5)
+
+
+def test_halt_at_zero_and_at_the_peaks_changes_nothing():
+    torque = ramps((5.0, 200), (5.0, 200))
+    halted = np.concatenate(
+        [np.repeat(value, 60 if abs(value) in {0.0, 5.0} else 1) for value in torque]
+    )
+    widths = [
+        [
+            loop.width(t)
+            for t in (-1.0, 0.0, 2.0)
+            for loop in find_ramps(t_, creep(GEAR, t_))[0].loops
+        ]
+        for t_ in (torque, halted)
+    ]
+    np.testing.assert_allclose(widths[0], widths[1], rtol=0, atol=1e-5)
+
+
+def test_noise_that_crosses_zero_is_no_ramp():
+    torque = ramps((10.0, 500), (10.0, 500))
+    noisy = torque.copy()
+    burst = np.abs(torque) < 0.5
+    noisy[burst] += 3.0 * np.random.default_rng(2).standard_normal(np.count_nonzero(burst))
+    (found,) = find_ramps(noisy, creep(GEAR, torque))
+    assert len(found.loops) == 2
+
+
+@pytest.mark.parametrize(
+    'torque',
+    [
+        np.zeros(1000),
+        np.linspace(0.0, 5.0, 1000),
+        np.abs(ramps((5.0, 200), (5.0, 200))),
+        ramps((5.0, 5)),
+        np.zeros(0),
+        np.zeros(3),
+    ],
+    ids=['none', 'one way', 'one side', 'too few samples', 'nothing', 'hardly anything'],
+)
+def test_what_is_no_ramp_is_refused(torque):
+    with pytest.raises(RampError, match='no torque ramp'):
+        find_ramps(torque, np.zeros(len(torque)))
+
+
+@pytest.mark.parametrize('noise', [0.02, 0.3])
+def test_noise_of_the_torque_is_taken_off_without_a_bias(noise):
+    torque = ramps((4.0, 450), (4.0, 450))
+    angle = torque / 300.0  # a spring and nothing else
+    errors = []
+    for seed in range(20):
+        noisy = torque + noise * np.random.default_rng(seed).standard_normal(len(torque))
+        (found,) = find_ramps(noisy, angle)
+        at = np.linspace(-3.5, 3.5, 15)
+        errors += [
+            300.0 * branch.angle_at(at) - at
+            for loop in found.loops
+            for branch in (loop.fall, loop.rise)
+            if abs(branch.end) > 3.5
+        ]
+    errors = np.array(errors)
+    assert np.abs(errors.mean()) < 0.02 * noise
+    assert errors.std() < 1.2 * 0.01 * 4.0  # a hundredth of the amplitude
