@@ -27,7 +27,7 @@ setup(
     maintainer_email='maintainers@gear-kinematics.invalid',
     license='Apache-2.0',
     packages=find_packages(exclude=['test', 'test.*']),
-    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.rendering': ['page.css', 'page.js']},
+    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.rendering': ['*.css', '*.js']},
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),

@@ -7,6 +7,8 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from gear_kinematics.kinematics import Mechanism
+
 
 class Verdict(StrEnum):
     """The outcome for a bag, from best to worst."""
@@ -158,6 +160,8 @@ class BagReport:
     findings: tuple[str, ...] = ()
     """Sentences: a constant offset, another mechanism, what the input's health means."""
     series: Series | None = None
+    mechanism: Mechanism | None = None
+    """What the outputs were recomputed for."""
 
     @property
     def passed(self) -> bool:

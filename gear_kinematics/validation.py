@@ -157,6 +157,7 @@ class Validator:
             topics=topics,
             findings=(*self._findings, *self._diagnoses(), *_health_findings(rotor)),
             series=self._series.series(),
+            mechanism=self._mechanism,
         )
 
     def _take(self, batch: '_Batch') -> None:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report import (
     BagReport,
     FieldReport,
@@ -84,6 +85,7 @@ PASSING = BagReport(
     rotor=ROTOR,
     topics=(OUTPUT, POSES),
     series=series(),
+    mechanism=Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))),
 )
 
 FAILING = replace(

@@ -61,7 +61,7 @@ def test_browser_is_told_to_run_these_scripts_and_to_load_nothing(fleet):
     directives = dict(part.strip().split(' ', 1) for part in policy.split(';'))
     assert directives['default-src'] == "'none'"
     scripts = re.findall(r'<script>(.*?)</script>', fleet, re.DOTALL)
-    assert len(scripts) == 2
+    assert len(scripts) == 3
     digests = [base64.b64encode(hashlib.sha256(s.encode()).digest()).decode() for s in scripts]
     assert directives['script-src'].split() == [f"'sha256-{digest}'" for digest in digests]
 
@@ -72,7 +72,7 @@ def test_names_are_no_markup(fleet):
     assert not tree.xpath("//@*[starts-with(name(), 'on')]")
     plotted = sum(report.series is not None for report in samples.ALL)
     kinds = [script.get('type') for script in tree.iter('script')]
-    assert kinds == ['application/json'] * plotted + [None, None]
+    assert kinds == ['application/json'] * plotted + [None, None, None]
     text = tree.text_content()
     # Bag (in summary and heading), config, ratio, error, finding, fault, names of topics ...
     assert text.count(samples.HOSTILE) > 10

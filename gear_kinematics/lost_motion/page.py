@@ -26,7 +26,7 @@ def to_html(reports: Sequence[LostMotionReport]) -> str:
         RuntimeError: if plotly is not installed.
     """
     names = ', '.join(map(wording.name, reports))
-    return page(f'lost motion: {names}', ''.join(_body(reports)), plots=True)
+    return page(f'lost motion: {names}', ''.join(_body(reports)), scripts=['page.js'])
 
 
 def _body(reports: Sequence[LostMotionReport]) -> Iterator[str]:

@@ -8,6 +8,7 @@ from typing import Any
 
 from gear_kinematics.rendering import wording
 from gear_kinematics.rendering.page import definitions, page, table
+from gear_kinematics.rendering.motion import Drawings, turned
 from gear_kinematics.rendering.page import figure as write_figure
 from gear_kinematics.rendering.wording import OUTCOME
 from gear_kinematics.report import BagReport, Series, Verdict
@@ -18,6 +19,17 @@ _TICKS = 4
 """At most, to each side of zero."""
 _LEAST = 1e-300
 """Next to it are numbers that nothing can be divided by."""
+_CURSOR = {
+    'type': 'line',
+    'meta': 'text',
+    'line': {'dash': 'solid'},
+    'x0': 0,
+    'x1': 0,
+    'yref': 'paper',
+    'y0': 0,
+    'y1': 1,
+}
+"""The last of the shapes, which motion.js moves."""
 
 
 def to_html(reports: Sequence[BagReport]) -> str:
@@ -27,7 +39,8 @@ def to_html(reports: Sequence[BagReport]) -> str:
         RuntimeError: if there is something to plot, and plotly is not installed.
     """
     title = f'{OUTCOME[wording.worst_verdict(reports)]}: {_title(reports)}'
-    return page(title, ''.join(_body(reports)), plots=any(map(_plotted, reports)))
+    scripts = ['page.js', 'motion.js'] if any(map(_plotted, reports)) else []
+    return page(title, ''.join(_body(reports)), scripts=scripts)
 
 
 # Page
@@ -44,16 +57,17 @@ def _body(reports: Sequence[BagReport]) -> Iterator[str]:
     if len(reports) > 1:
         links = [f'#bag-{k}' for k in range(len(reports))]
         yield f'<section id="top">{table(wording.summary_table(reports), links)}</section>\n'
+    drawings = Drawings()
     for k, report in enumerate(reports):
         yield f'<section id="bag-{k}">\n'
-        yield from _section(report, f'figure-{k}')
+        yield from _section(report, f'figure-{k}', drawings)
         if len(reports) > 1:
             yield '<p><a href="#top">to the summary</a></p>\n'
         yield '</section>\n'
-    yield '</main>\n'
+    yield f'</main>\n{drawings.shapes()}'
 
 
-def _section(report: BagReport, name: str) -> Iterator[str]:
+def _section(report: BagReport, name: str, drawings: Drawings) -> Iterator[str]:
     yield f'<h2>{_badge(report.verdict)} {escape(wording.bag_name(report))}</h2>\n'
     yield definitions(wording.head(report))
     remarks = wording.remarks(report)
@@ -66,8 +80,12 @@ def _section(report: BagReport, name: str) -> Iterator[str]:
         yield definitions(wording.rotor_table(report.rotor))
     yield table(wording.gap_table(report))
     if _plotted(report):
-        yield '<h3>Angles and errors over time</h3>\n'
-        yield from write_figure(name, figure(report))
+        plots = figure(report)
+        yield '<h3>Mechanism, angles and errors over time</h3>\n<div class="moving">\n'
+        if report.mechanism and report.series:
+            yield from drawings.moving(report.mechanism, name, report.series)
+        yield from write_figure(name, plots)
+        yield '</div>\n'
 
 
 def _badge(verdict: Verdict) -> str:
@@ -101,11 +119,15 @@ def figure(report: BagReport) -> dict[str, Any]:
         layout[f'yaxis{k + 1}'] = {**row.axis, 'domain': domain}
         row.trace['yaxis'] = f'y{k + 1}'
         layout['shapes'] += [_level(level, f'y{k + 1}') for level in row.tolerances]
-    return {
+    plots: dict[str, Any] = {
         'time': [_rounded(value) for value in series.time],
         'data': [row.trace for row in rows],
         'layout': layout,
     }
+    if report.mechanism:
+        plots['turned'] = turned(report.mechanism, series.rotor_angle)
+        layout['shapes'].append(_CURSOR)
+    return plots
 
 
 @dataclass(frozen=True, slots=True)

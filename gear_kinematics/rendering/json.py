@@ -32,7 +32,7 @@ def dumps(document: Any) -> str:
 
 def _bag(report: BagReport) -> dict[str, Any]:
     content = asdict(report)
-    del content['series']
+    del content['series'], content['mechanism']
     content['topics'] = [_topic(topic) for topic in report.topics]
     return content
 

@@ -5,7 +5,8 @@
   const figures = new Map();
 
   function draw(element) {
-    const {time, data, layout} = figures.get(element);
+    const figure = figures.get(element);
+    const {time, data, layout} = figure;
     const grid = {gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--faint')};
     const themed = {
       ...layout,
@@ -20,7 +21,7 @@
       showlegend: layout.showlegend ?? false,
       shapes: layout.shapes.map(({meta = 'fail', ...shape}) => ({
         ...shape,
-        line: {color: colour('--' + meta), dash: 'dash', width: 1},
+        line: {color: colour('--' + meta), dash: 'dash', width: 1, ...shape.line},
         label: {...shape.label, font: {color: colour('--' + meta), size: 11}},
       })),
     };
@@ -36,6 +37,7 @@
     const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];
     const config = {responsive: true, displaylogo: false, modeBarButtons: buttons};
     Plotly.react(element, traces, themed, config);
+    element.dispatchEvent(new CustomEvent('drawn', {bubbles: true, detail: figure}));
   }
 
   const seen = new IntersectionObserver(entries => {

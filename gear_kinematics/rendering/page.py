@@ -11,25 +11,25 @@ from typing import Any
 from gear_kinematics.rendering.wording import Cell, Table
 
 
-def page(title: str, body: str, *, plots: bool) -> str:
-    """Write a page that holds all it needs, with plotly.js where there is something to plot.
+def page(title: str, body: str, *, scripts: Sequence[str] = ()) -> str:
+    """Write a page that holds all it needs, with plotly.js where there are scripts.
 
     Args:
         title: as text.
         body: as HTML, from functions such as those below.
-        plots: whether there are figures in it.
+        scripts: their names beside this module, `page.js` where there are figures.
 
     Raises:
-        RuntimeError: if there are, and plotly is not installed.
+        RuntimeError: if there are some, and plotly is not installed.
     """
-    scripts = [_plotly_js(), _resource('page.js')] if plots else []
+    sources = [_plotly_js(), *map(_resource, scripts)] if scripts else []
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{_policy(scripts)}">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{_policy(sources)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<title>{escape(title)}</title>\n'
         f'<style>\n{_resource("page.css")}</style>\n</head>\n<body>\n{body}'
-        + ''.join(f'<script>{script}</script>\n' for script in scripts)
+        + ''.join(f'<script>{script}</script>\n' for script in sources)
         + '</body>\n</html>\n'
     )
 
@@ -81,7 +81,7 @@ def figure(name: str, plots: dict[str, Any], kind: str = '') -> Iterator[str]:
 
     Args:
         name: of the element.
-        plots: for plotly, without colours.
+        plots: for plotly, without colours; what else is in it is for other scripts.
         kind: what the style sheet knows it by, besides.
     """
     data = json.dumps(plots, allow_nan=False, separators=(',', ':'))
