@@ -44,17 +44,18 @@ class Pose(NamedTuple):
         return turned + self.centre[..., np.newaxis, :]
 
 
-def bodies(mechanism: Mechanism, branch: int = 0) -> dict[str, Outlines]:
+def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Outlines]:
     """Shape the bodies of a branch.
 
     Args:
         mechanism: the mechanism.
+        module: of the teeth, m.
         branch: index of the branch.
 
     Returns:
         The outlines of each of `BODIES`, in this order.
     """
-    ring, satellite = _gears(mechanism)
+    ring, satellite = _gears(mechanism, module)
     root = float(np.min(np.hypot(*satellite.T)))
     e, alpha = mechanism.eccentricity, mechanism.branches[branch].cam_phase
     sizes = _Sizes.within(root, e)
@@ -153,9 +154,10 @@ class _Sizes(NamedTuple):
         )
 
 
-def _gears(mechanism: Mechanism) -> tuple[Array, Array]:
-    """Ring gear and satellite: the circles that roll on each other."""
-    return _circle(mechanism.ring_rolling_radius), _circle(mechanism.satellite_rolling_radius)
+def _gears(mechanism: Mechanism, module: float) -> tuple[Array, Array]:
+    """Ring gear and satellite: their pitch circles, as far apart as they are."""
+    satellite = 0.5 * module * mechanism.satellite_teeth
+    return _circle(satellite + mechanism.eccentricity), _circle(satellite)
 
 
 def _jaw(sizes: _Sizes) -> list[tuple[float, float]]:

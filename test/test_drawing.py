@@ -9,6 +9,7 @@ from properties import numbers_of
 
 from gear_kinematics.drawing import BODIES, bodies, poses
 
+MODULE = 0.0005  # m
 ANGLES = [0.0, 0.7, -2.5, 40.0, 1234.5]
 
 
@@ -49,7 +50,7 @@ def test_bodies_are_where_the_motion_says(mechanism, rotor_angle):
 def test_poses_take_arrays_and_whole_turns(actuator):
     angles = np.array([[0.1, 2.0, 3.0], [-3.0, 0.0, 1.0]])
     many = poses(actuator, angles, 1, rotor_turns=[5, -7, 10**9])
-    outline = bodies(actuator, 1)['satellite'][0]
+    outline = bodies(actuator, MODULE, 1)['satellite'][0]
     assert many['satellite'].place(outline).shape == (2, 3, len(outline), 2)
     for i, j in np.ndindex(2, 3):
         one = poses(actuator, angles[i, j], 1, rotor_turns=[5, -7, 10**9][j])
@@ -67,7 +68,7 @@ def test_place_turns_anticlockwise_and_then_moves(actuator):
 
 def test_borders_are_anticlockwise_and_holes_in_them_are_not(mechanism):
     for k in range(len(mechanism.branches)):
-        for border, *holes in bodies(mechanism, k).values():
+        for border, *holes in bodies(mechanism, MODULE, k).values():
             assert area(border) > 0.0
             assert holes
             assert all(area(hole) < 0.0 for hole in holes)
@@ -78,7 +79,7 @@ def test_parts_fit_each_other(actuator, rotor_angle):
     """Cam in the bore, keys of the coupling in the slots of satellite and arm, all in the gear."""
     e = actuator.eccentricity
     for k in range(2):
-        shapes, placed = bodies(actuator, k), poses(actuator, rotor_angle, k)
+        shapes, placed = bodies(actuator, MODULE, k), poses(actuator, rotor_angle, k)
 
         def at(body, hole=0, shapes=shapes, placed=placed):
             return placed[body].place(shapes[body][hole])
