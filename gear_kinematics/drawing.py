@@ -68,7 +68,7 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
             _circle(sizes.cam),
             slot,
             _turned(slot, math.pi),
-            _circle(0.3 * (root - sizes.rim), 0.5 * (sizes.rim + root)),
+            _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root)),
         ),
         'rotor': _pierced(
             _circle(sizes.cam, -e * math.sin(alpha), e * math.cos(alpha)), _circle(sizes.shaft)
@@ -135,10 +135,10 @@ class _Sizes(NamedTuple):
     def within(cls, root: float, e: float) -> '_Sizes':
         """Share the radius inside the teeth out; each slide takes the eccentricity of it."""
         room = max(root - 3.0 * e, _LEAST_ROOM * root)
-        cam = 0.30 * room
+        cam = 0.29 * room
         bore = cam + e + 0.03 * room
-        coupling = bore + 0.20 * room
-        tongue = coupling + e + 0.14 * room
+        coupling = bore + 0.17 * room
+        tongue = coupling + e + 0.12 * room
         slot = tongue + e + 0.02 * room
         return cls(
             shaft=0.18 * room,
@@ -148,8 +148,8 @@ class _Sizes(NamedTuple):
             jaw=coupling + e + 0.02 * room,
             tongue=tongue,
             slot=slot,
-            rim_bore=slot + 0.05 * room,
-            rim=slot + 0.15 * room,
+            rim_bore=slot + 0.03 * room,
+            rim=slot + 0.11 * room,
             key=0.07 * room,
         )
 
