@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gear_kinematics import teeth
 from gear_kinematics.kinematics import Mechanism, solve, split_turns
 
 Array = NDArray[np.float64]
@@ -55,9 +56,11 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
     Returns:
         The outlines of each of `BODIES`, in this order.
     """
-    ring, satellite = _gears(mechanism, module)
+    of_branch = mechanism.branches[branch]
+    ring, satellite = teeth.outlines(mechanism, module)
+    ring = _turned(ring, teeth.ring_phase(mechanism, of_branch))
     root = float(np.min(np.hypot(*satellite.T)))
-    e, alpha = mechanism.eccentricity, mechanism.branches[branch].cam_phase
+    e, alpha = mechanism.eccentricity, of_branch.cam_phase
     sizes = _Sizes.within(root, e)
     slot = _rectangle(0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key)
     keys = [(sizes.tongue, -sizes.key), (sizes.tongue, sizes.key)]
@@ -152,12 +155,6 @@ class _Sizes(NamedTuple):
             rim=slot + 0.11 * room,
             key=0.07 * room,
         )
-
-
-def _gears(mechanism: Mechanism, module: float) -> tuple[Array, Array]:
-    """Ring gear and satellite: their pitch circles, as far apart as they are."""
-    satellite = 0.5 * module * mechanism.satellite_teeth
-    return _circle(satellite + mechanism.eccentricity), _circle(satellite)
 
 
 def _jaw(sizes: _Sizes) -> list[tuple[float, float]]:
