@@ -54,6 +54,12 @@ def mechanism(options: argparse.Namespace) -> Mechanism:
     return Mechanism.from_mapping(config)
 
 
+def module(options: argparse.Namespace) -> float:
+    """The module of the teeth that was asked for, m."""
+    given: float | None = options.module
+    return parameters.load(config_path(options))['module'] if given is None else given
+
+
 def add_ring_turn(ways: argparse._ActionsContainer) -> None:
     """Take a turn of the ring gear, in rad or in degrees."""
     ways.add_argument('--angle', type=float, metavar='RAD', help='turn of the ring gear')

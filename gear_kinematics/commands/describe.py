@@ -1,4 +1,4 @@
-"""`gearkin describe`: what follows from the mechanism alone."""
+"""`gearkin describe`: what follows from the mechanism and the module of its teeth."""
 
 import argparse
 import json
@@ -8,34 +8,41 @@ from rich.console import Console
 from rich.table import Table
 
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_mechanism, mechanism
+from gear_kinematics.commands.arguments import add_mechanism, mechanism, module
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
+from gear_kinematics.teeth import InterferenceError, tooth_pair
 
-HELP = 'what a tooth pair implies: ratio, mobility, vernier'
+Fact = tuple[str, Any, str]
+"""Name, value (None: there is none) and unit."""
+HELP = 'what a tooth pair implies: ratio, mobility, vernier, interference of the teeth'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Say which arguments the command takes."""
     add_mechanism(parser)
-    parser.add_argument('--eccentricity', type=float, metavar='M')
+    for name in ('eccentricity', 'module'):
+        parser.add_argument(f'--{name}', type=float, metavar='M')
     parser.add_argument('--json', action='store_true', help='for programs')
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Print the facts."""
-    facts = _facts(mechanism(options))
+    described = mechanism(options)
+    facts = [*_facts(described), *_tooth_facts(described, module(options))]
     if options.json:
         print(json.dumps({name: value for name, value, _ in facts}, indent=2))
         return ExitCode.DONE
     table = Table('', 'value', 'unit', box=None, show_header=False)
     for name, value, unit in facts:
+        if value is None:
+            continue
         table.add_row(name.replace('_', ' '), str(value), unit)
     Console().print(table)
     return ExitCode.DONE
 
 
-def _facts(mechanism: Mechanism) -> list[tuple[str, Any, str]]:
-    """Name, value and unit of what follows from the mechanism alone."""
+def _facts(mechanism: Mechanism) -> list[Fact]:
+    """What follows from the mechanism alone."""
     zk = mechanism.ring_teeth
     return [
         ('ring_teeth', zk, ''),
@@ -53,4 +60,23 @@ def _facts(mechanism: Mechanism) -> list[tuple[str, Any, str]]:
         ('vernier_distinct_positions', vernier.distinct_positions(zk), ''),
         ('vernier_ring_body_positions', vernier.ring_body_positions(zk), ''),
         ('vernier_step', vernier.step(zk), 'rad'),
+    ]
+
+
+def _tooth_facts(mechanism: Mechanism, module: float) -> list[Fact]:
+    """What follows for involute teeth of a module."""
+    try:
+        pair, interference = tooth_pair(mechanism, module), None
+    except InterferenceError as error:
+        pair, interference = None, str(error)
+    return [
+        ('module', module, 'm'),
+        ('working_pressure_angle', pair and pair.working_pressure_angle, 'rad'),
+        ('ring_profile_shift', pair and pair.ring_profile_shift, 'modules'),
+        ('addendum', pair and pair.addendum, 'modules'),
+        ('satellite_tip_radius', pair and pair.satellite_tip_radius, 'm'),
+        ('ring_tip_radius', pair and pair.ring_tip_radius, 'm'),
+        ('tip_clearance', pair and pair.tip_clearance, 'rad'),
+        ('contact_ratio', pair and pair.contact_ratio, ''),
+        ('interference', interference, ''),
     ]

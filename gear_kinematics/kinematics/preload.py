@@ -82,7 +82,12 @@ def ring_phase(mechanism: Mechanism) -> float:
     Raises:
         MechanismError: unless there are two branches.
     """
-    cam_a, cam_b = (turns(branch.cam_phase) for branch in braced(mechanism))
+    return ring_turn_between(mechanism, *(branch.cam_phase for branch in braced(mechanism)))
+
+
+def ring_turn_between(mechanism: Mechanism, cam_phase_a: float, cam_phase_b: float) -> float:
+    """The same as `ring_phase` for any two cam phases α (rad), one of which may be 0."""
+    cam_a, cam_b = turns(cam_phase_a), turns(cam_phase_b)
     teeth = mechanism.ring_teeth - mechanism.satellite_teeth
     return angle_between(teeth * cam_a, teeth * cam_b) / mechanism.ring_teeth
 

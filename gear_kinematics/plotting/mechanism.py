@@ -1,0 +1,180 @@
+"""The mechanism itself: the bodies of a branch, and magnified how their centres are linked."""
+
+import math
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.drawing import Array, Pose, bodies, poses
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.rotor_turns import RotorPosition
+from gear_kinematics.plotting.figures import FAINT, INK, closed, render, shape
+
+_COLOURS = {
+    'stator': ('#d0d7de', '#57606a'),
+    'satellite': ('#80ccff', '#0550ae'),
+    'rotor': ('#ff8182', '#a40e26'),
+    'oldham': ('#eac54f', '#7d4e00'),
+    'output_shaft': ('#4ac26b', '#116329'),
+}
+"""Of the face of a body, and of its outline."""
+_NAMES = {
+    'stator': 'ring gear',
+    'satellite': 'satellite',
+    'rotor': "rotor's cam",
+    'oldham': 'Oldham coupling',
+    'output_shaft': 'arm',
+}
+_MARGIN = 1.02
+_DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
+_LABEL = 11.0  # points from what it labels
+_MM = 1e3  # in a metre
+_CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
+
+
+class Bodies:
+    """The bodies of a branch on axes, to scale, which `show` moves."""
+
+    def __init__(self, axes: Any, mechanism: Mechanism, module: float, branch: int) -> None:
+        """Draw them where they are at φ2 = 0."""
+        self._mechanism, self._branch = mechanism, branch
+        self._outlines = bodies(mechanism, module, branch)
+        self.patches = {}
+        for body, outlines in self._outlines.items():
+            face, edge = _COLOURS[body]
+            patch = shape(outlines, facecolor=face, edgecolor=edge, linewidth=0.6)
+            self.patches[body] = axes.add_patch(patch)
+        border = _MARGIN * float(np.max(self._outlines['stator'][0]))
+        _square(axes, border)
+        self.show(RotorPosition(0, 0.0))
+
+    def show(self, rotor: RotorPosition) -> None:
+        """Move them to where they are at a position of the rotor."""
+        placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
+        for body, patch in self.patches.items():
+            patch.set_path(closed(placed[body].place(part) for part in self._outlines[body]))
+
+
+class Centres:
+    """The centres of a branch's bodies on axes, in units of e, which `show` moves.
+
+    O4 is where the slot of the satellite, the x axis of its frame, meets that of the arm, the y
+    axis of the output shaft's frame: on the circle whose diameter is O1-O3.
+    """
+
+    def __init__(self, axes: Any, mechanism: Mechanism, branch: int) -> None:
+        """Draw them where they are at φ2 = 0."""
+        self._mechanism, self._branch = mechanism, branch
+        axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
+        edge = {body: colours[1] for body, colours in _COLOURS.items()}
+        [self.circle] = axes.plot([], [], ':', color=edge['oldham'], linewidth=0.8)
+        self.lines = {}
+        for name, body, width in (
+            ('satellite slot', 'satellite', 0.8),
+            ('arm slot', 'output_shaft', 0.8),
+            ('e', 'rotor', 2.4),
+            ('x', 'satellite', 2.4),
+            ('y', 'output_shaft', 2.4),
+        ):
+            [self.lines[name]] = axes.plot([], [], color=edge[body], linewidth=width)
+        axes.plot(0.0, 0.0, 'o', color=INK, markersize=5.0)
+        self.points = {
+            body: axes.plot([], [], 'o', color=edge[body], markersize=5.0, zorder=3)[0]
+            for body in ('satellite', 'oldham')
+        }
+        _square(axes, _DETAIL)
+        self.show(RotorPosition(0, 0.0))
+
+    def show(self, rotor: RotorPosition) -> None:
+        """Move them to where they are at a position of the rotor."""
+        placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
+        e = self._mechanism.eccentricity
+        o1 = np.zeros(2)
+        o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
+        for name, start, end in (('e', o1, o3), ('x', o3, o4), ('y', o1, o4)):
+            self.lines[name].set_data(*np.transpose([start, end]))
+        for name, body, along in (
+            ('satellite slot', 'satellite', (_DETAIL, 0.0)),
+            ('arm slot', 'output_shaft', (0.0, _DETAIL)),
+        ):
+            slot = placed[body].place(np.array([along, np.negative(along)]) * e) / e
+            self.lines[name].set_data(*slot.T)
+        for body, point in (('satellite', o3), ('oldham', o4)):
+            self.points[body].set_data(*point[:, np.newaxis])
+        around = 0.5 * (complex(*o3) + abs(complex(*o3)) * _CIRCLE)
+        self.circle.set_data(around.real, around.imag)
+
+
+def scheme(
+    mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition, branch: int = 0
+) -> bytes:
+    """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
+
+    Args:
+        mechanism: the mechanism.
+        module: of the teeth, m.
+        path: of the file that is to be.
+        rotor: its position φ2.
+        branch: index of the branch.
+    """
+    draw = partial(_draw_scheme, mechanism, module, rotor, branch)
+    return render(path, (7.4, 4.4), draw)
+
+
+def _draw_scheme(
+    mechanism: Mechanism, module: float, rotor: RotorPosition, branch: int, figure: Any
+) -> None:
+    left, right = figure.subplots(1, 2)
+    drawn = Bodies(left, mechanism, module, branch)
+    drawn.show(rotor)
+    centres = Centres(right, mechanism, branch)
+    centres.show(rotor)
+    placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
+    _label_centres(right, mechanism, placed)
+    figure.legend(drawn.patches.values(), _NAMES.values(), loc='outside lower center', ncols=5)
+    angles = (math.degrees(placed[body].angle) for body in ('rotor', 'output_shaft'))
+    rotor_angle, output_angle = (f'{angle:.4g}°'.replace('-', '−') for angle in angles)
+    left.set_title(
+        f'branch {mechanism.branches[branch].name}, '
+        f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}, '
+        f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
+        fontsize=9,
+    )
+    right.set_title(f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm', fontsize=9)
+
+
+def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> None:
+    e = mechanism.eccentricity
+    o1 = np.zeros(2)
+    o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
+    # Those of O3 and O4 to either side along the slot, even where both are in one place.
+    x_axis = placed['satellite'].place(np.array([(1.0, 0.0)]))[0] - placed['satellite'].centre
+    aside = math.copysign(0.7, (o4 - o3) @ x_axis) * x_axis
+    middle = 0.5 * o3
+    for text, body, at, direction in (
+        ('$O_1$', '', o1, -o3 - o4),
+        ('$O_3$', 'satellite', o3, o3 - middle - aside),
+        ('$O_4$', 'oldham', o4, o4 - middle + aside),
+        ('$e$', 'rotor', middle, middle - o4),
+        ('$x$', 'satellite', 0.5 * (o3 + o4), o3 + o4),
+        ('$y$', 'output_shaft', 0.5 * o4, o4 - o3),
+    ):
+        axes.annotate(
+            text,
+            at,
+            xytext=_LABEL * direction / max(float(np.hypot(*direction)), 1e-3),
+            textcoords='offset points',
+            ha='center',
+            va='center',
+            color=_COLOURS[body][1] if body else INK,
+            fontsize=11,
+        )
+
+
+def _square(axes: Any, half: float) -> None:
+    axes.set_aspect('equal')
+    axes.set_axis_off()
+    axes.set_xlim(-half, half)
+    axes.set_ylim(-half, half)

@@ -1,0 +1,138 @@
+"""The motion of couplings and output: roses, slides, and angles over time."""
+
+import math
+from functools import partial
+from itertools import cycle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.drawing import Array
+from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.plotting.figures import FAINT, INK, SERIES, render
+from gear_kinematics.trajectory import Trajectory
+
+MOST_PETALS = 1000
+"""Beyond, a rose is a disc."""
+_PETAL_POINTS = 48
+_MM = 1e3  # in a metre
+
+
+def roses(mechanism: Mechanism, path: Path, trajectory: Trajectory | None = None) -> bytes:
+    """Plot the paths of the centres of the Oldham couplings, branch by branch.
+
+    Args:
+        mechanism: the mechanism.
+        path: of the file that is to be.
+        trajectory: of the rotor; the part of the roses that is run through in it stands out.
+
+    Raises:
+        ValueError: if there are more than `MOST_PETALS`, or `path` has the suffix of no format.
+    """
+    width = 3.4 * len(mechanism.branches)
+    whole = rose(mechanism)
+    moved = None if trajectory is None else trajectory.state(mechanism).oldham_centre
+    return render(path, (width, 3.8), partial(_draw_roses, mechanism, whole, moved))
+
+
+def rose(mechanism: Mechanism) -> Array:
+    """The whole paths of the centres of the couplings, O4, (n, B, 2), in m (eqs. 21, 22).
+
+    Raises:
+        ValueError: if they have more than `MOST_PETALS`.
+    """
+    if mechanism.oldham_petals > MOST_PETALS:
+        raise ValueError(
+            f'a picture has room for {MOST_PETALS} petals, not for {mechanism.oldham_petals}'
+        )
+    turns = abs(mechanism.gear_ratio.numerator)  # of the rotor, until all bodies are back
+    angle = np.linspace(0.0, TURN * turns, mechanism.oldham_petals * _PETAL_POINTS + 1)
+    return np.asarray(solve(mechanism, angle).oldham_centre)
+
+
+def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle: bool) -> bytes:
+    """Plot the slides of the couplings on satellites and arm, and the sliding speeds.
+
+    Args:
+        mechanism: the mechanism.
+        path: of the file that is to be.
+        trajectory: of the rotor.
+        by_angle: over the rotor angle, not over time.
+    """
+    return render(path, (7.0, 5.0), partial(_draw_slides, mechanism, trajectory, by_angle))
+
+
+def output(mechanism: Mechanism, path: Path, trajectory: Trajectory) -> bytes:
+    """Plot angle and rate of the output shaft over time.
+
+    Args:
+        mechanism: the mechanism.
+        path: of the file that is to be.
+        trajectory: of the rotor.
+    """
+    return render(path, (7.0, 4.5), partial(_draw_output, mechanism, trajectory))
+
+
+def _draw_roses(mechanism: Mechanism, whole: Array, moved: Array | None, figure: Any) -> None:
+    e = _MM * mechanism.eccentricity
+    plots = figure.subplots(1, len(mechanism.branches), squeeze=False, sharey=True)[0]
+    around = np.linspace(0.0, TURN, 361)
+    for k, (axes, colour) in enumerate(zip(plots, cycle(SERIES))):
+        axes.set_title(
+            f'branch {mechanism.branches[k].name}: {mechanism.oldham_petals} petals', fontsize=9
+        )
+        axes.plot(e * np.cos(around), e * np.sin(around), '--', color=FAINT, linewidth=0.6)
+        x, y = _MM * whole[:, k].T
+        axes.plot(x, y, color=colour if moved is None else FAINT, linewidth=0.6)
+        if moved is not None:
+            x, y = _MM * moved[:, k].T
+            axes.plot(x, y, color=colour, linewidth=1.0)
+        axes.set_aspect('equal')
+        axes.set_xlabel('x, mm')
+    plots[0].set_ylabel('y, mm')
+
+
+def _draw_slides(
+    mechanism: Mechanism, trajectory: Trajectory, by_angle: bool, figure: Any
+) -> None:
+    state = trajectory.state(mechanism)
+    x = trajectory.time
+    label = 'time, s'
+    if by_angle:
+        x = np.degrees(trajectory.turns * TURN + trajectory.angle)
+        label = f'rotor angle, °, at {trajectory.velocity[0]:.4g} rad/s'
+    positions, speeds = figure.subplots(2, 1, sharex=True)
+    for k, colour in zip(range(len(mechanism.branches)), cycle(SERIES)):
+        name = mechanism.branches[k].name
+        for where, dashes, slide, speed in (
+            ('on the satellite', '-', state.satellite_slide, state.satellite_slide_velocity),
+            ('on the arm', '--', state.arm_slide, state.arm_slide_velocity),
+        ):
+            style = {'color': colour, 'linestyle': dashes, 'label': f'{name}, {where}'}
+            positions.plot(x, _MM * slide[:, k], **style)
+            speeds.plot(x, _MM * speed[:, k], **style)
+    positions.set_ylabel('slide, mm')
+    speeds.set_ylabel('sliding speed, mm/s')
+    speeds.set_xlabel(label)
+    for axes in (positions, speeds):
+        axes.grid(visible=True)
+        axes.margins(x=0.0)
+    if by_angle:
+        speeds.set_xticks(np.arange(x[0], x[-1] + 1.0, 45.0))
+    handles, names = positions.get_legend_handles_labels()
+    figure.legend(handles, names, loc='outside upper center', ncols=4)
+
+
+def _draw_output(mechanism: Mechanism, trajectory: Trajectory, figure: Any) -> None:
+    state = trajectory.state(mechanism)
+    angle, rate = figure.subplots(2, 1, sharex=True)
+    angle.plot(trajectory.time, np.degrees(state.output_angle), color=SERIES[0])
+    angle.set_ylabel('output angle, °')
+    rate.plot(trajectory.time, np.degrees(state.output_velocity), color=SERIES[0])
+    rate.set_ylabel('output rate, °/s')
+    rate.set_xlabel('time, s')
+    for axes in (angle, rate):
+        axes.grid(visible=True)
+        axes.margins(x=0.0)
