@@ -162,6 +162,8 @@ class BagReport:
     series: Series | None = None
     mechanism: Mechanism | None = None
     """What the outputs were recomputed for."""
+    module: float = 0.0
+    """Of its teeth, m, for the drawing."""
 
     @property
     def passed(self) -> bool:

@@ -158,6 +158,7 @@ class Validator:
             findings=(*self._findings, *self._diagnoses(), *_health_findings(rotor)),
             series=self._series.series(),
             mechanism=self._mechanism,
+            module=self._parameters['module'],
         )
 
     def _take(self, batch: '_Batch') -> None:

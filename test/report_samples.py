@@ -86,6 +86,7 @@ PASSING = BagReport(
     topics=(OUTPUT, POSES),
     series=series(),
     mechanism=Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))),
+    module=0.0005,
 )
 
 FAILING = replace(

@@ -22,9 +22,10 @@ TIMES = [0.25 * k for k in range(41)]
 ANGLES = [0.3 * k**2 - 2.0 * k for k in range(38)] + [1e4, -1e7, 2.0**40]
 """Of the rotor, rad: there and back, half turns in a step, and far away."""
 MECHANISMS = (
-    Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))),
-    Mechanism(11, 8, 0.004, (Branch('a', 0.4), Branch('b', 2.9), Branch('c', -1.3))),
+    (Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))), 0.0005),
+    (Mechanism(11, 8, 0.004, (Branch('a', 0.4), Branch('b', 2.9), Branch('c', -1.3))), 0.0025),
 )
+"""Each with the module of its teeth."""
 
 
 @pytest.fixture(scope='module')
@@ -41,7 +42,10 @@ def browser():
 @pytest.fixture(scope='module')
 def tab(browser, tmp_path_factory):
     series = Series(TIMES, ANGLES, [0.0] * 41, [0.0] * 41, [0.0] * 41)
-    reports = [replace(samples.PASSING, series=series, mechanism=m) for m in MECHANISMS]
+    reports = [
+        replace(samples.PASSING, series=series, mechanism=mechanism, module=module)
+        for mechanism, module in MECHANISMS
+    ]
     path = tmp_path_factory.mktemp('page') / 'report.html'
     path.write_text(to_html(reports), 'utf-8')
     tab = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
@@ -57,12 +61,13 @@ def tab(browser, tmp_path_factory):
 
 @pytest.fixture(params=[0, 1], ids=['80-76', '11-8'])
 def report(tab, request):
-    """Give the mechanism of one of the bags, and what is shown of that bag."""
+    """Give a mechanism with its module, and the section of the page that is about its bag."""
     yield MECHANISMS[request.param], tab.locator(f'#bag-{request.param}')
     assert tab.seen == []
 
 
 def select(section, sample):
+    section.locator('.figure').scroll_into_view_if_needed()  # that is when it is drawn
     section.locator('input').fill(str(sample))
     expect(section.locator('output')).to_have_text(f'{TIMES[sample]:.4f} s')
 
@@ -73,13 +78,14 @@ def middles(section, selector):
     return np.array([[b['x'] + b['width'] / 2, -b['y'] - b['height'] / 2] for b in boxes])
 
 
-def assert_is_where_it_should_be(mechanism, section, sample):
+def assert_is_where_it_should_be(drawn_mechanism, section, sample):
+    mechanism, module = drawn_mechanism
     phases = tuple((branch.cam_phase, 0.0) for branch in mechanism.branches)
     numbers = oracle.Numbers(
         mechanism.ring_teeth, mechanism.satellite_teeth, mechanism.eccentricity, phases
     )
     motion = oracle.expected_motion(numbers, oracle.rotor_angle_of(ANGLES[sample]))
-    rim = max(np.max(outline[:, 0]) for outline in bodies(mechanism)['stator'])
+    rim = max(np.max(outline[:, 0]) for outline in bodies(mechanism, module)['stator'])
     drawn = section.locator('.stator').first.bounding_box()['width']
     axes = middles(section, '.output_shaft.centre')
     for body in ('satellite', 'oldham'):
@@ -132,6 +138,7 @@ def test_cursor_in_the_plots_moves_the_mechanism(tab, report):
         expect(section.locator('output')).to_have_text(f'{TIMES[sample]:.4f} s')
         expect(section.locator('input')).to_have_value(str(sample))
         assert_is_where_it_should_be(*report, sample)
+    tab.mouse.move(0, 0)
 
 
 def test_it_plays_until_it_is_paused(tab, report):
@@ -151,7 +158,7 @@ def test_it_plays_until_it_is_paused(tab, report):
     assert section.locator('output').text_content() == there
 
 
-def test_it_plays_to_the_end_and_from_the_start_again(tab, report):
+def test_it_plays_to_the_end_and_from_the_start_again(report):
     _, section = report
     select(section, 38)
     section.locator('select').select_option('100')

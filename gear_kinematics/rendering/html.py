@@ -7,8 +7,8 @@ from html import escape
 from typing import Any
 
 from gear_kinematics.rendering import wording
-from gear_kinematics.rendering.page import definitions, page, table
 from gear_kinematics.rendering.motion import Drawings, turned
+from gear_kinematics.rendering.page import definitions, page, table
 from gear_kinematics.rendering.page import figure as write_figure
 from gear_kinematics.rendering.wording import OUTCOME
 from gear_kinematics.report import BagReport, Series, Verdict
@@ -83,7 +83,7 @@ def _section(report: BagReport, name: str, drawings: Drawings) -> Iterator[str]:
         plots = figure(report)
         yield '<h3>Mechanism, angles and errors over time</h3>\n<div class="moving">\n'
         if report.mechanism and report.series:
-            yield from drawings.moving(report.mechanism, name, report.series)
+            yield from drawings.moving(report.mechanism, report.module, name, report.series)
         yield from write_figure(name, plots)
         yield '</div>\n'
 

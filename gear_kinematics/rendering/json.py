@@ -32,7 +32,8 @@ def dumps(document: Any) -> str:
 
 def _bag(report: BagReport) -> dict[str, Any]:
     content = asdict(report)
-    del content['series'], content['mechanism']
+    for drawn in ('series', 'mechanism', 'module'):
+        del content[drawn]
     content['topics'] = [_topic(topic) for topic in report.topics]
     return content
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,9 +32,7 @@ _FOLLOWED = TURN  # rad/s of the rotor, which the eye can follow
 Array = NDArray[np.float64]
 
 
-def turned(
-    mechanism: Mechanism, rotor_angle: Sequence[float]
-) -> dict[str, list[float | None]]:
+def turned(mechanism: Mechanism, rotor_angle: Sequence[float]) -> dict[str, list[float | None]]:
     """Give how far rotor and output shaft have turned, for motion.js.
 
     Args:
@@ -70,20 +69,24 @@ class Drawings:
         """Start with none."""
         self._names: dict[str, str] = {}  # of the shapes, by their paths
 
-    def moving(self, mechanism: Mechanism, figure: str, series: Series) -> Iterator[str]:
+    def moving(
+        self, mechanism: Mechanism, module: float, figure: str, series: Series
+    ) -> Iterator[str]:
         """Write a mechanism branch by branch, with a slider for the time and a play button.
 
         Args:
             mechanism: to be drawn.
+            module: of its teeth, m.
             figure: name of the plots that it goes with; their data has what `turned` gives.
             series: what the plots are of.
         """
-        shapes = [bodies(mechanism, k) for k in range(len(mechanism.branches))]
+        shapes = [bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
         reach = max(float(np.max(np.abs(outline))) for outline in shapes[0]['stator'])
         scale = _RADIUS / reach
         yield (
             f'<div class="motion" data-figure="{figure}" '
-            f'style="--e: {scale * mechanism.eccentricity:.3f}px">\n<div class="branches">\n'
+            f'style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
+            f'{_controls(series)}<div class="branches">\n'
         )
         for branch, outlines in zip(mechanism.branches, shapes, strict=True):
             yield (
@@ -96,7 +99,7 @@ class Drawings:
             for body in ('output_shaft', 'satellite', 'oldham'):
                 yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
-        yield f'</div>\n{_controls(series)}</div>\n'
+        yield '</div>\n</div>\n'
 
     def shapes(self) -> str:
         """Write the shapes of all that was drawn, to stand anywhere in the page."""
@@ -109,7 +112,8 @@ class Drawings:
 
 
 def _closed(points: Array) -> str:
-    return f'M{" ".join(f"{x:.1f},{y:.1f}" for x, y in points.tolist())}Z'
+    distinct = (point for point, _ in groupby(f'{x:.1f},{y:.1f}' for x, y in points.tolist()))
+    return f'M{" ".join(distinct)}Z'
 
 
 def _controls(series: Series) -> str:
@@ -131,6 +135,4 @@ def _easy_speed(series: Series) -> float:
     elapsed, moved = np.diff(series.time), np.abs(np.diff(_finite(series.rotor_angle)))
     forward = elapsed > 0.0
     fastest = float(np.fmax.reduce(moved[forward] / elapsed[forward], initial=0.0))
-    return max(
-        (speed for speed in _SPEEDS if speed * fastest <= _FOLLOWED), default=min(_SPEEDS)
-    )
+    return max((speed for speed in _SPEEDS if speed * fastest <= _FOLLOWED), default=min(_SPEEDS))
