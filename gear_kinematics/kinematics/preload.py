@@ -185,7 +185,7 @@ class Preload:
     ) -> Self:
         """What turning the rings against each other gives.
 
-        dψ_net = |dψ| - (zs/zk) backlash.
+        dψ_net = abs(dψ) - (zs/zk) backlash.
 
         Args:
             mechanism: for zk/zs.
@@ -203,7 +203,7 @@ class Preload:
 
     @classmethod
     def from_limit(cls, stiffness: Stiffness, limit: float) -> Self:
-        """The least preload with both branches in mesh while |M| < `limit`, N·m, not negative."""
+        """The least preload with both branches in mesh while abs(M) < `limit`, N·m, not negative."""
         softer = max(stiffness.compliance_a, stiffness.compliance_b)
         return cls(stiffness, _not_negative('threshold', limit) * softer)
 
@@ -234,7 +234,7 @@ class Preload:
 
     @property
     def limit(self) -> float:
-        """Both branches are in mesh while |M| < this, N·m: T0 (kAe + kB)/max(kAe, kB)."""
+        """Both branches are in mesh while abs(M) < this, N·m: T0 (kAe + kB)/max(kAe, kB)."""
         return min(self.threshold_a, -self.threshold_b)
 
     def split(self, load: ArrayLike) -> TorqueSplit:

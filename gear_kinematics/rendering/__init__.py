@@ -1,4 +1,4 @@
-"""A validation's report for people and programs: pure functions over `BagReport`s."""
+"""A validation's report for people and programs: pure functions of reports."""
 
 from gear_kinematics.rendering.html import to_html
 from gear_kinematics.rendering.json import to_json

@@ -1,0 +1,71 @@
+"""What Sphinx makes of these pages and of those above this folder: `make docs`.
+
+The sources are the whole project, so that links lead to the same place here and where the
+Markdown is read as it is.
+"""
+
+import re
+from pathlib import Path
+from typing import Any
+
+from docutils import nodes
+from sphinx import addnodes
+from sphinx.application import Sphinx
+from sphinx.ext.napoleon import Config as NapoleonConfig
+from sphinx.ext.napoleon import GoogleDocstring
+
+from gear_kinematics import cli
+
+_FIGURES = ('scheme', 'roses', 'slides')
+_ARRAY = re.compile(r'ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]')
+
+project = 'gear_kinematics'
+root_doc = 'docs/index'
+include_patterns = ['*.md', '*.rst', 'bags/*.md', 'benchmark/*.md', 'docs/*.md']
+extensions = ['myst_parser', 'sphinx.ext.autodoc']
+default_role = 'code'
+highlight_language = 'none'
+smartquotes = False
+autodoc_member_order = 'bysource'
+autodoc_default_options = {'members': True}
+add_module_names = False
+maximum_signature_line_length = 90
+python_use_unqualified_type_names = True
+myst_heading_anchors = 3
+html_theme = 'furo'
+html_title = project
+html_copy_source = False
+html_show_copyright = False
+
+
+def setup(app: Sphinx) -> None:
+    """Have docstrings read as they are written here, and figures made."""
+    app.connect('autodoc-process-docstring', _read_sections)
+    app.connect('doctree-resolved', _name_arrays)
+    app.connect('builder-inited', _make_figures)
+
+
+def _read_sections(
+    app: Sphinx, what: str, name: str, obj: object, options: Any, lines: list[str]
+) -> None:
+    """Read Google's sections, but not attributes, whose words before a colon are no type here."""
+    if what not in {'attribute', 'property'}:
+        docstring = GoogleDocstring(lines, NapoleonConfig(), app, what, name, obj, options)
+        lines[:] = docstring.lines()
+
+
+def _name_arrays(app: Sphinx, document: nodes.document, name: str) -> None:
+    """Write numpy's alias, which it spells out, as it stands in the sources."""
+    del app, name
+    for kind in (addnodes.desc_parameter, addnodes.desc_annotation, addnodes.desc_returns):
+        for node in list(document.findall(kind)):
+            text, count = _ARRAY.subn(r'NDArray[\1]', node.astext())
+            if count:
+                node.children = [nodes.Text(text)]
+
+
+def _make_figures(app: Sphinx) -> None:
+    folder = Path(app.confdir, 'figures')
+    folder.mkdir(exist_ok=True)
+    for figure in _FIGURES:
+        cli.main(['plot', figure, str(folder / f'{figure}.svg')])
