@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.drawing import Array, Pose, bodies, poses
+from gear_kinematics.drawing import Pose, bodies, poses
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.figures import FAINT, INK, closed, render, shape
 
-_COLOURS = {
+COLOURS = {
     'stator': ('#d0d7de', '#57606a'),
     'satellite': ('#80ccff', '#0550ae'),
     'rotor': ('#ff8182', '#a40e26'),
@@ -28,6 +28,7 @@ _NAMES = {
     'output_shaft': 'arm',
 }
 _MARGIN = 1.02
+_OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
 _LABEL = 11.0  # points from what it labels
 _MM = 1e3  # in a metre
@@ -43,8 +44,8 @@ class Bodies:
         self._outlines = bodies(mechanism, module, branch)
         self.patches = {}
         for body, outlines in self._outlines.items():
-            face, edge = _COLOURS[body]
-            patch = shape(outlines, facecolor=face, edgecolor=edge, linewidth=0.6)
+            face, edge = COLOURS[body]
+            patch = shape(outlines, facecolor=face, edgecolor=edge, linewidth=_OUTLINE)
             self.patches[body] = axes.add_patch(patch)
         border = _MARGIN * float(np.max(self._outlines['stator'][0]))
         _square(axes, border)
@@ -68,7 +69,7 @@ class Centres:
         """Draw them where they are at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
-        edge = {body: colours[1] for body, colours in _COLOURS.items()}
+        edge = {body: colours[1] for body, colours in COLOURS.items()}
         [self.circle] = axes.plot([], [], ':', color=edge['oldham'], linewidth=0.8)
         self.lines = {}
         for name, body, width in (
@@ -168,7 +169,7 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
             textcoords='offset points',
             ha='center',
             va='center',
-            color=_COLOURS[body][1] if body else INK,
+            color=COLOURS[body][1] if body else INK,
             fontsize=11,
         )
 
