@@ -96,9 +96,8 @@ class Trajectory(NamedTuple):
             count = math.floor(duration / interval) + 1
         time = self.time[0] + interval * np.arange(count)
         position = np.interp(time, self.time, self.turns * TURN + self.angle)
-        return type(self)(
-            time, *split_turns(position), velocity=np.interp(time, self.time, self.velocity)
-        )
+        turns, angle = split_turns(position)
+        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
 
 
 def read_trajectory(
