@@ -9,11 +9,13 @@ from io import TextIOWrapper
 from gear_kinematics.commands import (
     Command,
     ExitCode,
+    animate,
     compute,
     demo,
     describe,
     index,
     lost_motion,
+    plot,
     preload,
     replay,
     urdf,
@@ -30,6 +32,8 @@ COMMANDS: dict[str, Command] = {
     'index': index,
     'preload': preload,
     'lost-motion': lost_motion,
+    'plot': plot,
+    'animate': animate,
     'urdf': urdf,
 }
 

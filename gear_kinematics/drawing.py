@@ -2,12 +2,13 @@
 
 Whatever draws the mechanism, with matplotlib or in a page, takes shapes and poses from here. The
 gears are to scale; cam, coupling and arm are shaped so that they fit inside the satellite and
-that their slides can be seen.
+that their slides can be seen. Where these are too long for that, with very few teeth, coupling and
+arm are left out.
 """
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,7 +27,7 @@ BODIES = ('stator', 'satellite', 'rotor', 'oldham', 'output_shaft')
 _ARC = math.radians(3.0)  # between the points of a circle, about
 _RING_BORDER = 1.07  # of the ring gear, times the root circle of its teeth
 _LEAST_ROOM = 0.3
-"""Of the satellite's radius: what cam, coupling and arm take where the slides leave them less."""
+"""Of the satellite's radius, which the slides have to leave for coupling and arm."""
 
 
 class Pose(NamedTuple):
@@ -54,33 +55,29 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
         branch: index of the branch.
 
     Returns:
-        The outlines of each of `BODIES`, in this order.
+        The outlines of `BODIES`, in this order.
     """
     of_branch = mechanism.branches[branch]
     ring, satellite = teeth.outlines(mechanism, module)
     ring = _turned(ring, teeth.ring_phase(mechanism, of_branch))
     root = float(np.min(np.hypot(*satellite.T)))
     e, alpha = mechanism.eccentricity, of_branch.cam_phase
+    cam = -e * math.sin(alpha), e * math.cos(alpha)  # e u(α)
+    shapes = {'stator': _pierced(_circle(_RING_BORDER * float(np.max(np.hypot(*ring.T)))), ring)}
     sizes = _Sizes.within(root, e)
+    if not sizes:
+        shapes['satellite'] = _pierced(satellite, _circle(0.5 * root))
+        shapes['rotor'] = _pierced(_circle(0.5 * root, *cam))
+        return shapes
     slot = _rectangle(0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key)
-    keys = [(sizes.tongue, -sizes.key), (sizes.tongue, sizes.key)]
-    return {
-        'stator': _pierced(_circle(_RING_BORDER * float(np.max(np.hypot(*ring.T)))), ring),
-        'satellite': _pierced(
-            satellite,
-            _circle(sizes.cam),
-            slot,
-            _turned(slot, math.pi),
-            _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root)),
-        ),
-        'rotor': _pierced(
-            _circle(sizes.cam, -e * math.sin(alpha), e * math.cos(alpha)), _circle(sizes.shaft)
-        ),
-        'oldham': _pierced(_tabbed_circle(sizes.coupling, keys, 4), _circle(sizes.coupling_bore)),
-        'output_shaft': _pierced(
-            _circle(sizes.rim),
-            _turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi),
-        ),
+    mark = _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root))
+    key = [(sizes.tongue, -sizes.key), (sizes.tongue, sizes.key)]
+    jaws = _turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi)
+    return shapes | {
+        'satellite': _pierced(satellite, _circle(sizes.cam), slot, _turned(slot, math.pi), mark),
+        'rotor': _pierced(_circle(sizes.cam, *cam), _circle(sizes.shaft)),
+        'oldham': _pierced(_tabbed_circle(sizes.coupling, key, 4), _circle(sizes.coupling_bore)),
+        'output_shaft': _pierced(_circle(sizes.rim), jaws),
     }
 
 
@@ -135,9 +132,11 @@ class _Sizes(NamedTuple):
     """Half the width of the keys."""
 
     @classmethod
-    def within(cls, root: float, e: float) -> '_Sizes':
-        """Share the radius inside the teeth out; each slide takes the eccentricity of it."""
-        room = max(root - 3.0 * e, _LEAST_ROOM * root)
+    def within(cls, root: float, e: float) -> Self | None:
+        """Share the radius inside the teeth out; the slides take the eccentricity three times."""
+        room = root - 3.0 * e
+        if room < _LEAST_ROOM * root:
+            return None
         cam = 0.29 * room
         bore = cam + e + 0.03 * room
         coupling = bore + 0.17 * room

@@ -126,8 +126,8 @@ class ToothPair:
 
     def __str__(self) -> str:
         return (
-            f'with addendum {self.addendum:g} m tip clearance {self.tip_clearance:.3g} rad, '
-            f'contact ratio {self.contact_ratio:.3f}'
+            f'an addendum of {self.addendum:g} modules gives a tip clearance of '
+            f'{self.tip_clearance:.3g} rad and a contact ratio of {self.contact_ratio:.3f}'
         )
 
     @property

@@ -1,5 +1,6 @@
 """The rotor's motion over time, as recorded or at a constant speed."""
 
+import math
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -16,6 +17,9 @@ from gear_kinematics.rotor_input import InputSettings, RotorInput
 
 Array = NDArray[np.float64]
 
+MOST_TURNS = 1000
+"""Of the rotor at a constant speed; more are a blur."""
+_PER_TURN = 360  # samples
 _BATCH = 8192  # messages
 
 
@@ -32,32 +36,68 @@ class Trajectory(NamedTuple):
     """rad/s."""
 
     @classmethod
-    def at_constant_speed(cls, speed: float, duration: float, count: int) -> Self:
-        """Turn from φ2 = 0.
+    def at_constant_speed(
+        cls, speed: float, *, turns: int = 1, duration: float | None = None
+    ) -> Self:
+        """Turn from φ2 = 0, with samples close enough for smooth curves.
 
         Args:
             speed: rad/s.
-            duration: s.
-            count: of samples, the last one at the end.
+            turns: of the rotor, for as long as they take.
+            duration: s, instead.
+
+        Raises:
+            ValueError: if the rotor stands still, or turns more often than `MOST_TURNS`.
         """
-        time = np.linspace(0.0, duration, count)
-        return cls(time, *split_turns(speed * time), np.full(count, speed))
+        if not (speed and math.isfinite(speed)):
+            raise ValueError(f'a speed is finite and not 0, not {speed:g} rad/s')
+        if duration is None:
+            duration = turns * TURN / abs(speed)
+        length = abs(speed) * duration / TURN
+        if length > MOST_TURNS:
+            raise ValueError(f'{length:g} turns of the rotor are more than {MOST_TURNS}')
+        time = np.linspace(0.0, duration, math.ceil(_PER_TURN * length) + 1)
+        return cls(time, *split_turns(speed * time), np.full(len(time), speed))
 
     def state(self, mechanism: Mechanism) -> MotionState:
         """The motion of all bodies, (n, ...)."""
         return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
 
-    def between(self, start: float, end: float) -> Self:
-        """The samples in a part of the time, s."""
-        inside = (self.time >= start) & (self.time <= end)
-        return self._make(column[inside] for column in self)
+    @property
+    def longest_step(self) -> float:
+        """The most that the rotor turns from sample to sample, turns."""
+        position = self.turns + self.angle / TURN
+        return float(np.max(np.abs(np.diff(position)), initial=0.0))
 
-    def at(self, time: Array) -> Self:
-        """Interpolate linearly."""
+    def between(self, start: float, end: float) -> Self:
+        """The samples in a part of the time, s.
+
+        Raises:
+            ValueError: if there is none.
+        """
+        inside = (self.time >= start) & (self.time <= end)
+        if not inside.any():
+            there = f'they are from 0 s to {self.time[-1]:g} s'
+            raise ValueError(f'no states of the rotor from {start:g} s to {end:g} s; {there}')
+        return type(self)(*(column[inside] for column in self))
+
+    def every(self, interval: float, *, closed: bool = False) -> Self:
+        """Interpolate at even intervals.
+
+        Args:
+            interval: s, or a little more or less if it has to go into the whole time.
+            closed: leave out the end, because it is the beginning again.
+        """
+        duration = self.time[-1] - self.time[0]
+        if closed:
+            count = max(1, round(duration / interval))
+            interval = duration / count
+        else:
+            count = math.floor(duration / interval) + 1
+        time = self.time[0] + interval * np.arange(count)
         position = np.interp(time, self.time, self.turns * TURN + self.angle)
-        return type(self)(
-            time, *split_turns(position), np.interp(time, self.time, self.velocity)
-        )
+        turns, angle = split_turns(position)
+        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
 
 
 def read_trajectory(
@@ -96,8 +136,8 @@ def read_trajectory(
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
     if len(used) < 2:  # noqa: PLR2004, what a motion takes
         raise BagError(f'{path}: {topic} has no states of the rotor at two times')
-    stamp, turns, angle, velocity, _ = (column[used] for column in samples)
-    time = (stamp - stamp[0]) / SECOND
+    stamps, turns, angle, velocity, _ = (column[used] for column in samples)
+    time = (stamps - stamps[0]) / SECOND
     positions = (turns - turns[0]) * TURN + angle
     velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
     return Trajectory(time, turns, angle, velocity)

