@@ -12,7 +12,7 @@ LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
 	_ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help demo test lint types format soak fuzz lock clean
+.PHONY: help demo test lint types docs format soak fuzz lock clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
@@ -20,7 +20,7 @@ help: ## Show this list
 demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and validate it
 	$(BIN)/gearkin demo
 
-test: lint types ## Run every check: ruff, mypy, pytest with coverage
+test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase
 	$(BIN)/coverage run -m pytest
 	$(BIN)/coverage combine --quiet
@@ -32,6 +32,9 @@ lint: $(VENV)/test.stamp ## Check style and format
 
 types: $(VENV)/test.stamp ## Check types
 	$(BIN)/mypy
+
+docs: $(VENV)/test.stamp ## Build the documentation into build/docs
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going --conf-dir docs . build/docs
 
 format: $(VENV)/test.stamp ## Rewrite the sources in the house format
 	$(BIN)/ruff format
@@ -51,7 +54,7 @@ lock: ## Pin the newest versions (needs uv)
 
 clean: ## Remove everything that was generated
 	rm -rf $(VENV) .coverage* .hypothesis .mypy_cache .pytest_cache .ruff_cache \
-		build dist install log *.egg-info
+		build dist docs/figures install log *.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml

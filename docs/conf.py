@@ -11,6 +11,7 @@ from typing import Any
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
+from sphinx.errors import ExtensionError
 from sphinx.ext.napoleon import Config as NapoleonConfig
 from sphinx.ext.napoleon import GoogleDocstring
 
@@ -34,6 +35,8 @@ python_use_unqualified_type_names = True
 myst_heading_anchors = 3
 html_theme = 'furo'
 html_title = project
+html_static_path = ['style.css']
+html_css_files = ['style.css']
 html_copy_source = False
 html_show_copyright = False
 
@@ -68,4 +71,5 @@ def _make_figures(app: Sphinx) -> None:
     folder = Path(app.confdir, 'figures')
     folder.mkdir(exist_ok=True)
     for figure in _FIGURES:
-        cli.main(['plot', figure, str(folder / f'{figure}.svg')])
+        if cli.main(['plot', figure, str(folder / f'{figure}.svg')]):
+            raise ExtensionError(f'gearkin could not plot {figure}')

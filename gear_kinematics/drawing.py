@@ -21,7 +21,15 @@ Outlines = tuple[Array, ...]
 """Closed polygons (n, 2), m, in the frame of their body: a border, anticlockwise, and then the
 holes in it, clockwise, so that either rule of filling does."""
 
-BODIES = ('stator', 'satellite', 'rotor', 'oldham', 'output_shaft')
+NAMES = {
+    'stator': 'ring gear',
+    'satellite': 'satellite',
+    'rotor': "rotor's cam",
+    'oldham': 'Oldham coupling',
+    'output_shaft': 'arm',
+}
+"""What people call the bodies that are drawn."""
+BODIES = tuple(NAMES)
 """The bodies of a branch from back to front, as the links of the URDF are called."""
 
 _ARC = math.radians(3.0)  # between the points of a circle, about

@@ -86,7 +86,7 @@ def assert_is_where_it_should_be(drawn_mechanism, section, sample):
     )
     motion = oracle.expected_motion(numbers, oracle.rotor_angle_of(ANGLES[sample]))
     rim = max(np.max(outline[:, 0]) for outline in bodies(mechanism, module)['stator'])
-    drawn = section.locator('.stator').first.bounding_box()['width']
+    drawn = section.locator('use.stator').first.bounding_box()['width']
     axes = middles(section, '.output_shaft.centre')
     for body in ('satellite', 'oldham'):
         centres = (middles(section, f'.{body}.centre') - axes) * 2 * rim / drawn
@@ -94,7 +94,7 @@ def assert_is_where_it_should_be(drawn_mechanism, section, sample):
         assert len(centres) == len(expected)
         for centre, point in zip(centres, expected, strict=True):
             assert oracle.point_error(centre, point, 1.0) < PIXEL * 2 * rim / drawn
-    turns = section.locator('.satellite:not(.centre)').evaluate_all(
+    turns = section.locator('use.satellite').evaluate_all(
         'all => all.map(one => [one.getScreenCTM().a, -one.getScreenCTM().b])'
     )
     assert len(turns) == len(mechanism.branches)

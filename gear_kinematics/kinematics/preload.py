@@ -203,7 +203,7 @@ class Preload:
 
     @classmethod
     def from_limit(cls, stiffness: Stiffness, limit: float) -> Self:
-        """The least preload with both branches in mesh while abs(M) < `limit`, N·m, not negative."""
+        """The least preload with both branches in mesh while abs(M) < `limit`, N·m, ≥ 0."""
         softer = max(stiffness.compliance_a, stiffness.compliance_b)
         return cls(stiffness, _not_negative('threshold', limit) * softer)
 

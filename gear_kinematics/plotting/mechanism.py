@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.drawing import Pose, bodies, poses
+from gear_kinematics.drawing import NAMES, Pose, bodies, poses
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.figures import FAINT, INK, closed, render, shape
@@ -20,13 +20,6 @@ COLOURS = {
     'output_shaft': ('#4ac26b', '#116329'),
 }
 """Of the face of a body, and of its outline."""
-_NAMES = {
-    'stator': 'ring gear',
-    'satellite': 'satellite',
-    'rotor': "rotor's cam",
-    'oldham': 'Oldham coupling',
-    'output_shaft': 'arm',
-}
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
@@ -134,7 +127,7 @@ def _draw_scheme(
     centres.show(rotor)
     placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
     _label_centres(right, mechanism, placed)
-    names = [_NAMES[body] for body in drawn.patches]
+    names = [NAMES[body] for body in drawn.patches]
     figure.legend(drawn.patches.values(), names, loc='outside lower center', ncols=5)
     rotor_angle, output_angle = (
         f'{math.degrees(placed[body].angle) + 0.0:.4g}°'.replace('-', '−')

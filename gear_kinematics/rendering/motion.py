@@ -7,7 +7,7 @@ from itertools import groupby
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.drawing import Outlines, bodies
+from gear_kinematics.drawing import NAMES, Outlines, bodies
 from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report import Series
@@ -99,7 +99,8 @@ class Drawings:
             for body in ('output_shaft', 'satellite', 'oldham'):
                 yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
-        yield '</div>\n</div>\n'
+        legend = ''.join(f'<li class="{body}">{NAMES[body]}</li>' for body in shapes[0])
+        yield f'</div>\n<ul class="legend">{legend}</ul>\n</div>\n'
 
     def shapes(self) -> str:
         """Write the shapes of all that was drawn, to stand anywhere in the page."""
