@@ -54,8 +54,8 @@ setup(
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],
         'dask': ['dask[distributed]'],
-        # `--plot`
-        'plot': ['matplotlib>=3.6'],
+        # `gearkin plot`, `gearkin animate` and `--plot`
+        'plot': ['matplotlib>=3.6', 'pillow'],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 MOST_TURNS = 1000
 """Of the rotor at a constant speed; more are a blur."""
 _PER_TURN = 360  # samples
+_ROUNDING = 1e-9  # by which intervals may miss the end
 _BATCH = 8192  # messages
 
 
@@ -93,7 +94,7 @@ class Trajectory(NamedTuple):
             count = max(1, round(duration / interval))
             interval = duration / count
         else:
-            count = math.floor(duration / interval) + 1
+            count = math.floor(duration / interval * (1.0 + _ROUNDING)) + 1
         time = self.time[0] + interval * np.arange(count)
         position = np.interp(time, self.time, self.turns * TURN + self.angle)
         turns, angle = split_turns(position)

@@ -8,6 +8,7 @@ import pytest
 from properties import numbers_of
 
 from gear_kinematics.drawing import BODIES, bodies, poses
+from gear_kinematics.kinematics import Branch, Mechanism
 
 MODULE = 0.0005  # m
 ANGLES = [0.0, 0.7, -2.5, 40.0, 1234.5]
@@ -70,8 +71,15 @@ def test_borders_are_anticlockwise_and_holes_in_them_are_not(mechanism):
     for k in range(len(mechanism.branches)):
         for border, *holes in bodies(mechanism, MODULE, k).values():
             assert area(border) > 0.0
-            assert holes
-            assert all(area(hole) < 0.0 for hole in holes)
+            assert all(-area(border) < area(hole) < 0.0 for hole in holes)
+
+
+def test_coupling_and_arm_are_drawn_where_the_slides_leave_them_room(actuator):
+    assert tuple(bodies(actuator, MODULE)) == BODIES
+    few_teeth = Mechanism(12, 9, 0.001, (Branch('a'),))
+    assert tuple(bodies(few_teeth, MODULE)) == ('stator', 'satellite', 'rotor')
+    for border, *holes in bodies(few_teeth, MODULE).values():
+        assert all(-area(border) < area(hole) < 0.0 for hole in holes)
 
 
 @pytest.mark.parametrize('rotor_angle', ANGLES)

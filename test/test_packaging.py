@@ -24,6 +24,7 @@ DEADLINE = 60.0
 
 # Where rosdep calls a Python package other than Python does.
 ROSDEP_KEYS = {
+    'PIL': 'python3-pil',
     'backports': 'python3-rosbags-pip',  # rosbags brings it, and lz4
     'lz4': 'python3-rosbags-pip',
     'matplotlib': 'python3-matplotlib',
@@ -34,7 +35,7 @@ ROSDEP_KEYS = {
 }
 # Extras, which rosdep does not know, and what Python itself has from 3.14 on.
 WITHOUT_KEY = {'compression', 'distributed', 'plotly'}
-PYPI_NAMES = {'yaml': 'pyyaml', 'backports': 'backports.zstd'}
+PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 
 
 def program(name: str) -> str:

@@ -25,7 +25,7 @@ HELP = 'the mechanism moving, as a GIF or an MP4'
 _SPEED = 2.0 * TURN  # rad/s: fast enough to see the output turn, slow enough to see the rotor
 _BOUNDS = {'width': (100, 1920), 'fps': (1, 50)}
 _MOST_FRAMES = 2000
-_SEEN = 0.25  # turns of the rotor from frame to frame; half a turn could be either way
+_UNSEEN = 0.5  # turns of the rotor from frame to frame, which could be either way
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,8 +77,8 @@ def run(options: argparse.Namespace) -> ExitCode:
     write_file(options.out, content)
     print(f'{options.out}: {count} frames, {options.fps} in a second')
     step = frames.longest_step
-    if step > _SEEN:
-        rate = options.rate * _SEEN / step
+    if step > _UNSEEN:
+        rate = 0.5 * options.rate * _UNSEEN / step
         print(f'The rotor turns {step:.2g} times from frame to frame; --rate {rate:.1g} shows it')
     return ExitCode.DONE
 

@@ -23,7 +23,8 @@ COLOURS = {
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
-_LABEL = 11.0  # points from what it labels
+_LABEL = 15.0  # points from what it labels
+_SHORT = 0.2  # eccentricities: no label has room beside it
 _MM = 1e3  # in a metre
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 
@@ -146,24 +147,26 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
     e = mechanism.eccentricity
     o1 = np.zeros(2)
     o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
-    # So that they keep apart where two centres are in one place, too.
-    along = placed['satellite'].place(np.array([(1.0, 0.0)]))[0] - placed['satellite'].centre
-    aside = math.copysign(0.7, (o4 - o3) @ along) * along
-    inwards = math.copysign(1.0, o3[0] * o4[1] - o3[1] * o4[0]) * np.array([-o3[1], o3[0]])
-    arm = placed['output_shaft'].place(np.array([(-1.0, 0.0)]))[0]
-    middle = 0.5 * o3
-    for text, body, at, direction in (
-        ('$O_1$', '', o1, -o3 - o4 - 0.8 * inwards),
-        ('$O_3$', 'satellite', o3, o3 - middle - aside),
-        ('$O_4$', 'oldham', o4, o4 - middle + aside),
-        ('$e$', 'rotor', middle, -inwards),
-        ('$x$', 'satellite', 0.5 * (o3 + o4), o3 + o4),
-        ('$y$', 'output_shaft', 0.5 * o4, math.copysign(1.0, arm @ inwards) * arm),
+    # O1, O4 and O3 are a triangle with its right angle at O4; each label is outside of it, also
+    # where two of them are in one place.
+    along, upright = placed['output_shaft'].place(np.eye(2))
+    x, y = (o4 - o3) @ along, o4 @ upright
+    side, up = math.copysign(1.0, x) * along, math.copysign(1.0, y) * upright
+    inwards = abs(x) * up + abs(y) * side  # from O1-O3
+    for text, body, at, direction, length in (
+        ('$O_1$', '', o1, 0.8 * side - up, 1.0),
+        ('$O_3$', 'satellite', o3, up - 1.2 * side, 1.0),
+        ('$O_4$', 'oldham', o4, up + 1.2 * side, 1.0),
+        ('$e$', 'rotor', 0.5 * o3, -inwards, 1.0),
+        ('$x$', 'satellite', 0.5 * (o3 + o4), up, abs(x)),
+        ('$y$', 'output_shaft', 0.5 * o4, side, abs(y)),
     ):
+        if length < _SHORT:
+            continue
         axes.annotate(
             text,
             at,
-            xytext=_LABEL * direction / max(float(np.hypot(*direction)), 1e-3),
+            xytext=_LABEL * direction / np.hypot(*direction),
             textcoords='offset points',
             ha='center',
             va='center',
