@@ -16,6 +16,7 @@ from gear_kinematics.report import Series
 
 sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
 expect = sync_api.expect
+expect.set_options(timeout=30_000.0)  # a machine can be busy
 
 PIXEL = 1.0
 TIMES = [0.25 * k for k in range(41)]

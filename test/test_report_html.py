@@ -15,6 +15,7 @@ import report_samples as samples
 from lxml import html
 from plotly.offline import get_plotlyjs
 
+from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.rendering import to_html
 from gear_kinematics.rendering.html import SymmetricLog, figure
 from gear_kinematics.report import Series
@@ -223,3 +224,65 @@ def test_other_forms_of_the_report_need_no_plotly():
         check=True,
     )
     assert done.stdout == 'the HTML report needs the Python package plotly\n'
+
+
+# The mechanism
+
+MECHANISM = Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi)))
+
+
+def moving(angles, period=0.001, mechanism=MECHANISM):
+    count = len(angles)
+    time = [period * k for k in range(count)]
+    series = Series(time, angles, [0.0] * count, [0.0] * count, [0.0] * count)
+    return replace(samples.PASSING, series=series, mechanism=mechanism)
+
+
+def test_figure_says_how_far_rotor_and_output_have_turned():
+    turned = figure(moving([math.tau, 20.25 * math.tau, -18.0 * math.tau]))['turned']
+    # The whole turns of the first sample are left out: of the rotor one, of the output none.
+    assert turned['rotor'] == pytest.approx([0.0, 19.25 * 360, -19.0 * 360], abs=1e-3)
+    assert turned['output'] == pytest.approx(
+        [-360 / 19, -20.25 / 19 * 360, 18 / 19 * 360], abs=1e-3
+    )
+
+
+def test_turns_do_not_lose_digits():
+    far = 19e9 * math.tau  # of which float64 has 1.5e-5 rad
+    turned = figure(moving([far, far + 1.0]))['turned']
+    assert turned['rotor'][1] - turned['rotor'][0] == pytest.approx(180 / math.pi, abs=1e-2)
+    assert turned['output'][1] - turned['output'][0] == pytest.approx(
+        -180 / 19 / math.pi, abs=1e-2
+    )
+    assert all(abs(value) < 360 for values in turned.values() for value in values)
+
+
+def test_angles_that_are_no_numbers_are_none():
+    assert figure(samples.NOT_FINITE)['turned'] == {'rotor': [0.0, None], 'output': [0.0, None]}
+
+
+@pytest.mark.parametrize(
+    ('angles', 'speed'), [([0.0, 0.3], '1/100'), ([0.0, 1e-4], '10 ×'), ([0.0], '100 ×')]
+)
+def test_it_plays_at_a_speed_that_can_be_followed(angles, speed):
+    tree = parse(without_plotly(to_html([moving(angles)])))
+    assert [option.text for option in tree.xpath('//option[@selected]')] == [speed]
+
+
+def test_every_shape_is_in_the_page_once_and_used():
+    other = replace(MECHANISM, branches=(*MECHANISM.branches, Branch('c', cam_phase=math.pi)))
+    tree = parse(
+        without_plotly(to_html([moving([0.0]), moving([1.0]), moving([0.0], mechanism=other)]))
+    )
+    names = tree.xpath('//path/@id')
+    # A ring gear and a satellite, a coupling, an arm, and two cams.
+    assert len(names) == len(set(names)) == 6
+    uses = tree.xpath('//use/@href')
+    assert {f'#{name}' for name in names} == set(uses)
+    assert len(uses) == 5 * (2 + 2 + 3)
+    assert tree.xpath('//figcaption/text()') == [f'branch {name}' for name in 'abababc']
+
+
+def test_nothing_moves_without_a_mechanism():
+    page = without_plotly(to_html([replace(samples.PASSING, mechanism=None)]))
+    assert not parse(page).xpath("//*[@class='motion'] | //svg")

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,8 +112,7 @@ class Drawings:
 
 
 def _closed(points: Array) -> str:
-    distinct = (point for point, _ in groupby(f'{x:.1f},{y:.1f}' for x, y in points.tolist()))
-    return f'M{" ".join(distinct)}Z'
+    return f'M{" ".join(f"{x:.1f},{y:.1f}" for x, y in points.tolist())}Z'
 
 
 def _controls(series: Series) -> str:
