@@ -283,6 +283,7 @@ def test_every_form_is_written_beside_the_plain_lines(bags, schema, tmp_path):
     assert [suite.get('failures') != '0' for suite in suites] == [False, True]
     page = files['html'].read_text('utf-8')
     assert page.endswith('</html>\n')
+    assert page.count('class="motion"') == 2
     assert 'wrong' in page
 
 
