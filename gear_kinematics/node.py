@@ -52,9 +52,10 @@ from std_srvs.srv import Trigger
 from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import InputMonitor
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state_messages import STATE_TOPICS, StateMessages
 
 _MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
@@ -98,6 +99,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
             for topic, name in STATE_TOPICS.items()
         }
+        self._listened_to: list[str] = []  # what nobody listens to is not computed
         self._diagnostics = self._create_output(
             DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
         )
@@ -145,9 +147,18 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
-                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event)
+                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event),
+                matched=lambda _: self._note_listeners(),
             ),
         )
+
+    def _note_listeners(self) -> None:
+        """Note which outputs have listeners."""
+        self._listened_to = [
+            topic
+            for topic, publisher in self._outputs.items()
+            if publisher.get_subscription_count()
+        ]
 
     def _listen(self) -> Subscription:
         """Subscribe to the driver: reliably, unless there is a driver that only does best effort.
@@ -206,13 +217,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn(f'rotor_state rejected: {rejection}')
             return
-        # What nobody listens to is not computed.
-        topics = [
-            topic
-            for topic, publisher in self._outputs.items()
-            if publisher.get_subscription_count()
-        ]
-        for topic, message in self._messages.encode(sample, topics):
+        for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
         self._monitor.published += 1
 

@@ -31,7 +31,7 @@ class StateMessages:
         """Lay the messages out."""
         self._form = closed_form(mechanism)
         self._ratio = float(mechanism.gear_ratio)
-        self._axial_positions = [branch.axial_position for branch in mechanism.branches]
+        self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
         self._output_states = {
             (velocity, effort): JointStateTemplate(
                 [frame_prefix + output_joint], velocity=velocity, effort=effort
@@ -77,12 +77,12 @@ class StateMessages:
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
     ) -> bytes:
         # Every body but the rotor has the angle φ5; within the turn its quaternion has w >= 0.
-        quaternion = (0.0, 0.0, math.sin(0.5 * output_angle), math.cos(0.5 * output_angle))
+        sine, cosine = math.sin(0.5 * output_angle), math.cos(0.5 * output_angle)
+        centres = [branch.satellite for branch in branches]
+        centres += [branch.oldham for branch in branches]
         numbers: list[float] = []
-        for branch, z in zip(branches, self._axial_positions, strict=True):
-            numbers += (branch.satellite.real, branch.satellite.imag, z, *quaternion)
-        for branch, z in zip(branches, self._axial_positions, strict=True):
-            numbers += (branch.oldham.real, branch.oldham.imag, z, *quaternion)
+        for centre, z in zip(centres, self._axial_positions, strict=True):
+            numbers += (centre.real, centre.imag, z, 0.0, 0.0, sine, cosine)
         return self._body_poses.encode(sample.stamp, numbers)
 
     def _joint_state(

@@ -184,6 +184,7 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
 
     monkeypatch.setattr(Publisher, 'publish', publish)
     monkeypatch.setattr(Publisher, 'get_subscription_count', lambda _: 1)
+    node._note_listeners()
     node._on_rotor_state(rotor_bytes(1, position=[1.0]))
     assert {'/refused/body_poses', '/refused/mechanism_joint_states'} <= set(published)
     node._report()
