@@ -1,4 +1,4 @@
-"""The messages that the node publishes for a rotor sample, as bytes ready to be sent."""
+"""The messages that the node publishes for its samples, as bytes ready to be sent."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,6 +14,7 @@ from gear_kinematics.messages import (
     PoseArrayTemplate,
 )
 from gear_kinematics.rotor_input import RotorSample
+from gear_kinematics.transmission_error import ErrorSample
 
 OUTPUT_STATE, BODY_POSES, JOINT_STATES = 'output_state', 'body_poses', 'mechanism_joint_states'
 STATE_TOPICS: Mapping[str, str] = {
@@ -63,6 +64,10 @@ class StateMessages:
                 yield topic, self._poses(sample, output_rest, branches)
             else:
                 yield topic, self._joint_state(sample, output_angle, branches)
+
+    def transmission_error(self, sample: ErrorSample) -> bytes:
+        """Give the message for a transmission error: the position of the output's joint."""
+        return self._output_states[False, False].encode(sample.stamp, (sample.error,))
 
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
         arrays = [(output_angle,)]
