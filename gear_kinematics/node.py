@@ -66,7 +66,8 @@ _DEPTH = 2000  # messages: what a driver at several kHz sends while the node is 
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
 _SPIN_TIMEOUT = 3600.0  # s; without any, the EventsExecutor of some releases does nothing
-_STOP_TIMEOUT = 1.0  # s, to answer what was received, and as long for listeners to get it
+_STOP_TIMEOUT = 1.0  # s, to answer what was received
+_DELIVERY_TIMEOUT = 0.1  # s, for listeners to get it; those behind Fast DDS tell every 3 s only
 _UNUSABLE = 2  # exit code: parameters or arguments that cannot be used
 
 
@@ -382,7 +383,7 @@ def main(args: list[str] | None = None) -> int:
     with suppress(ExternalShutdownException), _stopped(executor, signals) as stopped:
         while not stopped.done():
             executor.spin_until_future_complete(stopped, timeout_sec=_SPIN_TIMEOUT)
-        node.wait_for_delivery(_STOP_TIMEOUT)
+        node.wait_for_delivery(_DELIVERY_TIMEOUT)
     executor.shutdown()
     node.destroy_node()
     rclpy.try_shutdown()
