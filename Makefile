@@ -12,7 +12,7 @@ LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
 	_ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help demo test lint types docs format soak fuzz lock clean
+.PHONY: help demo test lint types docs format pictures soak fuzz lock clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
@@ -39,6 +39,10 @@ docs: $(VENV)/test.stamp ## Build the documentation into build/docs
 format: $(VENV)/test.stamp ## Rewrite the sources in the house format
 	$(BIN)/ruff format
 	$(BIN)/ruff check --fix
+
+pictures: $(VENV)/test.stamp ## Draw the pictures of the README anew
+	$(BIN)/gearkin animate docs/mechanism.gif
+	$(BIN)/gearkin plot scheme docs/scheme.svg
 
 soak: $(VENV)/demo.stamp ## Run the node at 1 kHz for MINUTES (30)
 	$(BIN)/python benchmark/soak.py --minutes $(MINUTES)

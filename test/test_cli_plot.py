@@ -1,6 +1,7 @@
 """gearkin plot and gearkin animate as someone who makes a figure runs them."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -83,6 +84,15 @@ def test_animation_has_the_promised_frames(tmp_path, capsys):
     with Image.open(path) as image:
         assert (image.n_frames, image.size) == (13, (120, 80))
         assert image.info['duration'] in {20, 30}  # 25 ms, in whole hundredths
+
+
+def test_picture_of_the_readme_is_a_whole_turn_of_the_output():
+    """Ten frames to each of 19 turns of the rotor, and small enough for a first screen."""
+    root = Path(__file__).resolve().parents[1]
+    [name] = re.findall(r'\((docs/\S+\.gif)\)', (root / 'README.md').read_text('utf-8'))
+    assert (root / name).stat().st_size < 1.5e6
+    with Image.open(root / name) as image:
+        assert (image.n_frames, image.size, image.info['loop']) == (190, (420, 280), 0)
 
 
 def test_animation_of_a_bag_says_how_to_see_the_rotor(tmp_path, capsys):

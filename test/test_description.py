@@ -2,6 +2,7 @@
 
 import math
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 from typing import NamedTuple
 
 import numpy as np
@@ -211,3 +212,122 @@ def test_links_are_where_the_bodies_are(mechanism, rotor_angle):
 def test_links_are_where_the_bodies_are_with_prefix(actuator, rotor_angle):
     names = {'output_joint': 'shoulder', 'frame_prefix': 'left/'}
     assert_links_are_where_the_bodies_are(actuator, rotor_angle, names)
+
+
+def pinocchio():
+    return pytest.importorskip('pinocchio', reason='Pinocchio is not installed')
+
+
+def drawn_mechanism(generator, ring_teeth, satellite_teeth, count) -> Mechanism:
+    """Cams and branches anywhere."""
+    branches = tuple(
+        Branch('abc'[k], generator.uniform(-math.pi, math.pi), generator.uniform(-0.1, 0.1))
+        for k in range(count)
+    )
+    return Mechanism(ring_teeth, satellite_teeth, generator.uniform(0.0005, 0.005), branches)
+
+
+@pytest.mark.parametrize('prefix', ['', 'left/'])
+@pytest.mark.parametrize(
+    ('ring_teeth', 'satellite_teeth', 'count'), [(80, 76, 2), (80, 78, 1), (61, 58, 3), (7, 2, 2)]
+)
+def test_pinocchio_puts_the_links_where_the_bodies_are(ring_teeth, satellite_teeth, count, prefix):
+    """Kinematics that know nothing of the project, at random angles of many turns."""
+    pin = pinocchio()
+    generator = np.random.default_rng(ring_teeth)
+    mechanism = drawn_mechanism(generator, ring_teeth, satellite_teeth, count)
+    names = {'output_joint': 'shoulder', 'frame_prefix': prefix}
+    model = pin.buildModelFromXML(urdf(mechanism, module=MODULE, **names))
+    data = model.createData()
+    kinds = ('satellite', 'oldham')
+    bodies = [f'{prefix}{kind}_{branch.name}' for kind in kinds for branch in mechanism.branches]
+    links = [model.getFrameId(name, pin.FrameType.BODY) for name in bodies]
+    shaft = model.getFrameId(f'{prefix}output_shaft', pin.FrameType.BODY)
+    assert max(*links, shaft) < model.nframes  # what it does not find
+
+    # Some hundred turns, which the angles of the joints count, leave them 12 digits of a turn.
+    fastest = max(1.0, 1.0 + 1.0 / abs(mechanism.gear_ratio))
+    angles = generator.uniform(-2000.0, 2000.0, 400) / fastest
+    found, expected = np.zeros((2, len(angles), len(links), 3, 3))
+    for n, angle in enumerate(angles):
+        poses, states = messages_at(mechanism, float(angle), names)
+        positions = dict(zip(states.name, states.position, strict=True))
+        assert set(positions) == set(model.names[1:])
+        pin.framesForwardKinematics(model, data, configuration(model, positions))
+        # Position in units of e, and as everywhere the direction of the x axis; z as it is.
+        for k, (link, pose) in enumerate(zip(links, poses.poses, strict=True)):
+            place = data.oMf[link]
+            p, q = pose.position, pose.orientation
+            turn = pin.Quaternion(q.w, q.x, q.y, q.z).matrix()
+            found[n, k] = place.translation, place.rotation[:, 0], place.rotation[:, 2]
+            expected[n, k] = (p.x, p.y, p.z), turn[:, 0], turn[:, 2]
+            np.testing.assert_allclose(
+                place.rotation, data.oMf[shaft].rotation, rtol=0.0, atol=1e-12
+            )
+    scale = np.ones((3, 3))
+    scale[0, :2] = mechanism.eccentricity
+    np.testing.assert_allclose(found / scale, expected / scale, rtol=0.0, atol=1e-12)
+
+
+def configuration(model, positions: dict[str, float]) -> np.ndarray:
+    """Pinocchio's: continuous joints have cosine and sine of their angle."""
+    q = np.zeros(model.nq)
+    for name, position in positions.items():
+        joint = model.joints[model.getJointId(name)]
+        if joint.nq == 2:
+            q[joint.idx_q : joint.idx_q + 2] = math.cos(position), math.sin(position)
+        else:
+            q[joint.idx_q] = position
+    return q
+
+
+def test_urdfdom_has_nothing_to_complain_of(mechanism, capfd):
+    """The parser of robot_state_publisher and RViz; Pinocchio's too. It complains on stderr."""
+    pin = pinocchio()
+    branches = len(mechanism.branches)
+    model = pin.buildModelFromXML(urdf(mechanism, module=MODULE, **NAMES))
+    assert (model.njoints - 1, model.nframes) == (2 + 2 * branches, 2 * (3 + 2 * branches))
+    assert capfd.readouterr() == ('', '')
+
+
+@pytest.mark.parametrize(
+    ('element', 'attribute'),
+    [
+        ('joint/parent', 'link'),
+        ('joint', 'type'),
+        ('joint/limit', 'velocity'),
+        ('link/inertial/mass', 'value'),
+        ('link/inertial/inertia', 'ixy'),
+        ('link/visual/geometry/cylinder', 'length'),
+        ('link/visual/material', 'name'),
+    ],
+)
+def test_urdfdom_does_complain_of_what_is_missing(actuator, element, attribute, capfd):
+    pin = pinocchio()
+    robot = ET.fromstring(urdf(actuator, module=MODULE, **NAMES))  # noqa: S314, our own
+    del robot.find(element).attrib[attribute]
+    with suppress(ValueError):
+        pin.buildModelFromXML(ET.tostring(robot, encoding='unicode'))
+    assert capfd.readouterr().err.startswith('Error:')
+
+
+def test_links_are_of_steel_and_balanced(actuator):
+    """As Pinocchio reads them: cylinders about the axis, of the volumes that are shown."""
+    pin = pinocchio()
+    text = urdf(actuator, module=MODULE, **NAMES)
+    model = pin.buildModelFromXML(text)
+    robot = ET.fromstring(text)  # noqa: S314, our own
+    moving = [link for link in robot.iterfind('link') if link.get('name') != 'stator']
+    assert len(moving) == len(model.inertias) - 1
+    for link in moving:
+        cylinder = link.find('visual/geometry/cylinder')
+        radius, length = (float(cylinder.get(key)) for key in ('radius', 'length'))
+        frame = model.frames[model.getFrameId(link.get('name'), pin.FrameType.BODY)]
+        inertia = model.inertias[frame.parentJoint]
+        mass = 7850.0 * math.pi * radius**2 * length
+        across = mass * (radius**2 / 4.0 + length**2 / 12.0)
+        assert inertia.mass == pytest.approx(mass, rel=1e-12)
+        assert inertia.lever.tolist() == [0.0, 0.0, 0.0]
+        assert inertia.inertia == pytest.approx(
+            np.diag([across, across, mass * radius**2 / 2.0]), rel=1e-12
+        )

@@ -49,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--fps', type=int, default=20, help='frames in a second (default: %(default)s)'
     )
     parser.add_argument(
-        '--width', type=int, default=440, metavar='PX', help='(default: %(default)s)'
+        '--width', type=int, default=420, metavar='PX', help='(default: %(default)s)'
     )
     add_branch(parser)
 

@@ -16,7 +16,7 @@ from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
 from gear_kinematics.trajectory import Trajectory
 
-_DPI = 100
+_WIDTH = 4.0  # inches, whatever the pixels, so that lines and letters grow with them
 _HEIGHT = 2 / 3  # of the width: the mechanism, and at half its size beside it the centres
 _GROUND = '#ffffff'
 
@@ -53,12 +53,12 @@ def animate(
     if suffix not in writers:
         raise ValueError(f'{path}: the suffix of an animation is one of gif, mp4')
     write = writers[suffix]
-    size = width / _DPI, round(_HEIGHT * width) / _DPI
 
     def draw(figure: Any) -> bytes:
+        figure.set_dpi(width / _WIDTH)
         return write(figure, _moving(figure, mechanism, module, branch, frames, progress), fps)
 
-    return styled(size, draw)
+    return styled((_WIDTH, _HEIGHT * _WIDTH), draw)
 
 
 def _moving(
@@ -81,10 +81,10 @@ def _moving(
     for height, text in (
         (0.90, teeth),
         (0.82, ratio),
-        (0.16, 'centres, magnified'),
-        (0.08, f'{mechanism.oldham_petals} petals'),
+        (0.16, 'centres, magnified;'),
+        (0.08, f'path of $O_4$: {mechanism.oldham_petals} petals'),
     ):
-        figure.text(middle, height, text, ha='center', va='center', color=INK)
+        figure.text(middle, height, text, ha='center', va='center', color=INK, fontsize=8)
     artists = Bodies(left, mechanism, module, branch), Centres(right, mechanism, branch)
     for number, (turns, angle) in enumerate(zip(frames.turns, frames.angle, strict=True), start=1):
         for artist in artists:
@@ -101,7 +101,7 @@ def _gif(figure: Any, frames: Iterator[None], fps: int) -> bytes:
     def images() -> Iterator[Any]:
         for _ in frames:
             buffer = BytesIO()
-            figure.savefig(buffer, format='rgba', dpi=_DPI)
+            figure.savefig(buffer, format='rgba', dpi=figure.dpi)
             size = figure.canvas.get_width_height()
             image = Image.frombytes('RGBA', size, buffer.getvalue()).convert('RGB')
             yield image.quantize(palette=palette, dither=Image.Dither.NONE)
@@ -144,7 +144,7 @@ def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
     with TemporaryDirectory() as folder:
         path = Path(folder, 'animation.mp4')
         try:
-            with writer.saving(figure, path, _DPI):
+            with writer.saving(figure, path, figure.dpi):
                 for _ in frames:
                     writer.grab_frame()
         except (subprocess.SubprocessError, OSError) as error:
