@@ -40,9 +40,9 @@ format: $(VENV)/test.stamp ## Rewrite the sources in the house format
 	$(BIN)/ruff format
 	$(BIN)/ruff check --fix
 
-pictures: $(VENV)/test.stamp ## Draw the pictures of the README anew
+pictures: $(VENV)/test.stamp ## Draw the pictures of README and documentation anew
 	$(BIN)/gearkin animate docs/mechanism.gif
-	$(BIN)/gearkin plot scheme docs/scheme.svg
+	for figure in scheme roses slides; do $(BIN)/gearkin plot $$figure docs/$$figure.svg || exit; done
 
 soak: $(VENV)/demo.stamp ## Run the node at 1 kHz for MINUTES (30)
 	$(BIN)/python benchmark/soak.py --minutes $(MINUTES)
@@ -58,7 +58,7 @@ lock: ## Pin the newest versions (needs uv)
 
 clean: ## Remove everything that was generated
 	rm -rf $(VENV) .coverage* .hypothesis .mypy_cache .pytest_cache .ruff_cache \
-		build dist docs/figures install log *.egg-info
+		build dist install log *.egg-info
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml

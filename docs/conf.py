@@ -5,19 +5,14 @@ Markdown is read as it is.
 """
 
 import re
-from pathlib import Path
 from typing import Any
 
 from docutils import nodes
 from sphinx import addnodes
 from sphinx.application import Sphinx
-from sphinx.errors import ExtensionError
 from sphinx.ext.napoleon import Config as NapoleonConfig
 from sphinx.ext.napoleon import GoogleDocstring
 
-from gear_kinematics import cli
-
-_FIGURES = ('scheme', 'roses', 'slides')
 _ARRAY = re.compile(r'ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]')
 
 project = 'gear_kinematics'
@@ -42,10 +37,9 @@ html_show_copyright = False
 
 
 def setup(app: Sphinx) -> None:
-    """Have docstrings read as they are written here, and figures made."""
+    """Have docstrings read as they are written in this project."""
     app.connect('autodoc-process-docstring', _read_sections)
     app.connect('doctree-resolved', _name_arrays)
-    app.connect('builder-inited', _make_figures)
 
 
 def _read_sections(
@@ -65,11 +59,3 @@ def _name_arrays(app: Sphinx, document: nodes.document, name: str) -> None:
             text, count = _ARRAY.subn(r'NDArray[\1]', node.astext())
             if count:
                 node.children = [nodes.Text(text)]
-
-
-def _make_figures(app: Sphinx) -> None:
-    folder = Path(app.confdir, 'figures')
-    folder.mkdir(exist_ok=True)
-    for figure in _FIGURES:
-        if cli.main(['plot', figure, str(folder / f'{figure}.svg')]):
-            raise ExtensionError(f'gearkin could not plot {figure}')
