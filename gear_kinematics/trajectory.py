@@ -62,7 +62,8 @@ class Trajectory(NamedTuple):
 
     def state(self, mechanism: Mechanism) -> MotionState:
         """The motion of all bodies, (n, ...)."""
-        return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
+        with np.errstate(over='ignore'):  # nothing here shows accelerations
+            return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
 
     @property
     def longest_step(self) -> float:
@@ -140,5 +141,6 @@ def read_trajectory(
     stamps, turns, angle, velocity, _ = (column[used] for column in samples)
     time = (stamps - stamps[0]) / SECOND
     positions = (turns - turns[0]) * TURN + angle
-    velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
+    with np.errstate(over='ignore', invalid='ignore'):
+        velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
     return Trajectory(time, turns, angle, velocity)

@@ -65,6 +65,13 @@ def test_faulty_messages_are_passed_over():
     assert np.all(np.isfinite(positions(read)) & np.isfinite(read.velocity))
 
 
+def test_positions_beyond_all_measure_give_no_warning(tmp_path, actuator):
+    rotor = Samples([MS, MS + 1, 2 * MS], [0.0, 1e300, -1e300])
+    read = read_trajectory(write_recording(tmp_path / 'bag', rotor), config())
+    assert np.all(np.isfinite(positions(read)))
+    assert np.all(np.abs(read.state(actuator).oldham_centre) <= 0.0011)
+
+
 def test_bags_without_a_motion_are_refused(tmp_path):
     still = write_recording(tmp_path / 'still', Samples([MS, MS], [0.0, 1.0]))
     with pytest.raises(BagError, match='/rotor_state has no states of the rotor at two times'):

@@ -84,13 +84,10 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _frames(options: argparse.Namespace, cycle_turns: int) -> Trajectory:
-    if options.bag:
-        moved, closed = recording(options), False
-    else:
-        closed = options.duration is None
-        moved = Trajectory.at_constant_speed(
-            options.speed, turns=cycle_turns, duration=options.duration
-        )
+    closed = not (options.bag or options.duration)
+    moved = recording(options) or Trajectory.at_constant_speed(
+        options.speed, turns=cycle_turns, duration=options.duration
+    )
     interval = options.rate / options.fps
     count = math.ceil((moved.time[-1] - moved.time[0]) / interval)
     if count > _MOST_FRAMES:

@@ -104,19 +104,31 @@ def add_recording(
     """Take the rotor's motion from a bag, as one of the ways to give it."""
     ways.add_argument('--bag', type=Path, metavar='BAG', help="the rotor's motion as recorded")
     parser.add_argument('--rotor-topic', metavar='NAME', help='(default: by type and name)')
-    parser.add_argument(
-        '--start-offset', type=float, default=0.0, metavar='S', help='in the recording'
-    )
+    parser.add_argument('--start-offset', type=float, metavar='S', help='in the recording')
     if lasting:
         parser.add_argument('--duration', type=positive, metavar='S', help='(default: all of it)')
 
 
-def recording(options: argparse.Namespace) -> Trajectory:
-    """The rotor's motion in the bag from the offset on."""
+def recording(options: argparse.Namespace, *of_it: str) -> Trajectory | None:
+    """The rotor's motion in the bag from the offset on; None without a bag.
+
+    Args:
+        options: as given.
+        of_it: names of further options that are of use for a bag only.
+
+    Raises:
+        ValueError: if such options are given without a bag.
+    """
+    if not options.bag:
+        for name in ('rotor_topic', 'start_offset', *of_it):
+            if getattr(options, name) is not None:
+                raise ValueError(f'--{name.replace("_", "-")} is of use with --bag only')
+        return None
+    start = options.start_offset or 0.0
     duration = getattr(options, 'duration', None) or math.inf
     with message_progress(options.bag.name) as told:
         whole = read_trajectory(options.bag, node_parameters(options), options.rotor_topic, told)
-    return whole.between(options.start_offset, options.start_offset + duration)
+    return whole.between(start, start + duration)
 
 
 def add_ring_turn(ways: argparse._ActionsContainer) -> None:

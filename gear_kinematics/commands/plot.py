@@ -69,8 +69,7 @@ def _scheme(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
 
 
 def _rotor(options: argparse.Namespace) -> RotorPosition:
-    if options.bag:
-        moved = recording(options)
+    if moved := recording(options):
         return RotorPosition(int(moved.turns[0]), float(moved.angle[0]))
     degrees = _DEGREES if options.degrees is None else options.degrees
     angle = float(math.radians(degrees) if options.angle is None else options.angle)
@@ -80,7 +79,7 @@ def _rotor(options: argparse.Namespace) -> RotorPosition:
 
 
 def _roses(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
-    return plotting.roses(pair, path, recording(options) if options.bag else None)
+    return plotting.roses(pair, path, recording(options, 'duration'))
 
 
 def _slides(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
@@ -92,7 +91,7 @@ def _output(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
 
 
 def _moved(options: argparse.Namespace, turns: int) -> Trajectory:
-    if options.bag:
-        return recording(options)
+    if moved := recording(options):
+        return moved
     speed = _SPEED if options.speed is None else options.speed
     return Trajectory.at_constant_speed(speed, turns=turns, duration=options.duration)

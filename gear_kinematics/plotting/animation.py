@@ -19,6 +19,8 @@ from gear_kinematics.trajectory import Trajectory
 _WIDTH = 4.0  # inches, whatever the pixels, so that lines and letters grow with them
 _HEIGHT = 2 / 3  # of the width: the mechanism, and at half its size beside it the centres
 _GROUND = '#ffffff'
+_MOST_PIXELS = 1_000_000_000
+"""Of all frames of a GIF, which are in memory until the last is drawn."""
 
 
 def animate(
@@ -45,7 +47,7 @@ def animate(
         progress: called with each frame's number.
 
     Raises:
-        ValueError: if `path` has another suffix.
+        ValueError: if `path` has another suffix, or a GIF would take too much memory.
         RuntimeError: without matplotlib; for an MP4 without ffmpeg, or if it fails.
     """
     writers = {'.gif': _gif, '.mp4': _mp4}
@@ -53,6 +55,10 @@ def animate(
     if suffix not in writers:
         raise ValueError(f'{path}: the suffix of an animation is one of gif, mp4')
     write = writers[suffix]
+    if write is _gif and len(frames.time) * _HEIGHT * width**2 > _MOST_PIXELS:
+        raise ValueError(
+            f'{path}: too large for a GIF: {len(frames.time)} frames, {width} px wide'
+        )
 
     def draw(figure: Any) -> bytes:
         figure.set_dpi(width / _WIDTH)

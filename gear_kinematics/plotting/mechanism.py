@@ -153,13 +153,14 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
     x, y = (o4 - o3) @ along, o4 @ upright
     side, up = math.copysign(1.0, x) * along, math.copysign(1.0, y) * upright
     inwards = abs(x) * up + abs(y) * side  # from O1-O3
-    for text, body, at, direction, length in (
-        ('$O_1$', '', o1, 0.8 * side - up, 1.0),
-        ('$O_3$', 'satellite', o3, up - 1.2 * side, 1.0),
-        ('$O_4$', 'oldham', o4, up + 1.2 * side, 1.0),
-        ('$e$', 'rotor', 0.5 * o3, -inwards, 1.0),
-        ('$x$', 'satellite', 0.5 * (o3 + o4), up, abs(x)),
-        ('$y$', 'output_shaft', 0.5 * o4, side, abs(y)),
+    edge = {body: colours[1] for body, colours in COLOURS.items()}
+    for text, colour, at, direction, length in (
+        ('$O_1$', INK, o1, 0.8 * side - up, 1.0),
+        ('$O_3$', edge['satellite'], o3, up - 1.2 * side, 1.0),
+        ('$O_4$', edge['oldham'], o4, up + 1.2 * side, 1.0),
+        ('$e$', edge['rotor'], 0.5 * o3, -inwards, 1.0),
+        ('$x$', edge['satellite'], 0.5 * (o3 + o4), up, abs(x)),
+        ('$y$', edge['output_shaft'], 0.5 * o4, side, abs(y)),
     ):
         if length < _SHORT:
             continue
@@ -170,7 +171,7 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
             textcoords='offset points',
             ha='center',
             va='center',
-            color=COLOURS[body][1] if body else INK,
+            color=colour,
             fontsize=11,
         )
 

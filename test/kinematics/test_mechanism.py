@@ -235,6 +235,15 @@ def test_petals_are_the_tips_that_the_coupling_reaches():
             assert mechanism.oldham_petals == len(places)
 
 
+def test_a_cycle_is_the_fewest_turns_after_which_all_is_as_it_was():
+    """Of the rotor; counted for every pair of small tooth numbers, the output by its teeth."""
+    for ring_teeth in range(2, 30):
+        for satellite_teeth in range(1, ring_teeth):
+            teeth = ring_teeth - satellite_teeth
+            turns = next(n for n in range(1, 31) if n * teeth % satellite_teeth == 0)
+            assert Mechanism(ring_teeth, satellite_teeth, 1.0, (A,)).cycle_turns == turns
+
+
 @given(mechanisms(max_branches=1), st.floats(-10.0, 10.0), st.floats(-100.0, 100.0))
 def test_satellite_rolls_on_the_ring_gear_without_slip(mechanism, angle, velocity):
     """Where the rolling circles touch, the satellite's material stands still."""
