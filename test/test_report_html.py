@@ -262,7 +262,12 @@ def test_angles_that_are_no_numbers_are_none():
 
 
 @pytest.mark.parametrize(
-    ('angles', 'speed'), [([0.0, 0.3], '1/100'), ([0.0, 1e-4], '10 ×'), ([0.0], '100 ×')]
+    ('angles', 'speed'),
+    [
+        ([0.0, 0.3], '1/100 of real time'),
+        ([0.0, 1e-4], '10 × real time'),
+        ([0.0], '100 × real time'),
+    ],
 )
 def test_it_plays_at_a_speed_that_can_be_followed(angles, speed):
     tree = parse(without_plotly(to_html([moving(angles)])))

@@ -17,13 +17,13 @@ _VIEW = _RADIUS + 5.0
 _CENTRE = 7.0
 """Radius of the dots that mark centres."""
 _SPEEDS = {
-    1e-4: '1/10000',
-    1e-3: '1/1000',
-    1e-2: '1/100',
-    1e-1: '1/10',
+    1e-4: '1/10000 of real time',
+    1e-3: '1/1000 of real time',
+    1e-2: '1/100 of real time',
+    1e-1: '1/10 of real time',
     1.0: 'real time',
-    10.0: '10 ×',
-    100.0: '100 ×',
+    10.0: '10 × real time',
+    100.0: '100 × real time',
 }
 """What the recorded time can be multiplied by."""
 _FOLLOWED = TURN  # rad/s of the rotor, which the eye can follow
