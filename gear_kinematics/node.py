@@ -48,11 +48,13 @@ from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import InputMonitor
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.markers import Markers
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
 from gear_kinematics.state_messages import STATE_TOPICS, StateMessages
@@ -108,6 +110,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
+        if rate := self._value('markers_rate'):
+            self._marker_publisher = self._create_output(
+                MarkerArray, 'markers', QoSProfile(depth=10)
+            )
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self.create_timer(1.0 / rate, self._publish_markers, clock=steady)
         self._subscription = self._listen()
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
@@ -194,6 +202,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._input.settings = InputSettings.from_mapping(self._values())
         names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
         self._messages = StateMessages(self._mechanism, **names)
+        self._markers = Markers(
+            self._mechanism, module=self._value('module'), frame_prefix=names['frame_prefix']
+        )
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
         if description != self._description:
             self._description = description
@@ -215,6 +226,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for topic, message in self._messages.encode(sample, topics):
             self._publish(self._outputs[topic], message)
         self._monitor.published += 1
+
+    def _publish_markers(self) -> None:
+        if self._marker_publisher.get_subscription_count():
+            for message in self._markers.due(self._input.last, time.monotonic()):
+                self._publish(self._marker_publisher, message)
 
     def _publish(self, publisher: Publisher, message: Any) -> None:
         try:

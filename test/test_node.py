@@ -18,7 +18,8 @@ from gear_kinematics.node import GearStatePublisher, make_executor
 
 READ_ONLY = (
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
-    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'executor',
+    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
+    'executor',
 )  # fmt: skip
 INTEGER_BOUNDS = {
     'ring_teeth': (2, 100_000, 0),
@@ -33,6 +34,7 @@ BOUNDS = {
     'max_rotor_speed': (1e-3, 1e6),
     'max_rotor_acceleration': (1e-3, 1e9),
     'input_timeout': (1e-3, 1e6),
+    'markers_rate': (0.0, 1000.0),
     'a.cam_phase': (-2.0 * math.pi, 2.0 * math.pi),
     'b.axial_position': (-10.0, 10.0),
 }
@@ -68,7 +70,7 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 20
+    assert len(own) == 21
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
@@ -189,6 +191,23 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
     node._report()
     [status] = published['/diagnostics'].status
     assert 'not sent 1' in status.message
+    node.destroy_node()
+
+
+def test_markers_cost_nothing_before_somebody_looks(context, monkeypatch):
+    node = GearStatePublisher(context=context, namespace='unseen')
+    node._on_rotor_state(rotor_bytes(1, position=[1.0]))
+    monkeypatch.setattr('gear_kinematics.markers.Markers.due', None)
+    node._publish_markers()
+    node.destroy_node()
+
+
+def test_markers_can_be_switched_off(context):
+    overrides = [Parameter('markers_rate', value=0.0)]
+    node = GearStatePublisher(context=context, namespace='unmarked', parameter_overrides=overrides)
+    topics = {publisher.topic_name for publisher in node.publishers}
+    assert '/unmarked/output_state' in topics
+    assert '/unmarked/markers' not in topics
     node.destroy_node()
 
 

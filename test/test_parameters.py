@@ -30,8 +30,11 @@ CONTRACT = {
     'input_timeout': 1.0,
     'frame_prefix': '',
 }
-OUR_OWN = {'max_rotor_acceleration': 6500.0, 'executor': 'auto'}
-READ_ONLY = {'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'executor'}
+OUR_OWN = {'max_rotor_acceleration': 6500.0, 'markers_rate': 30.0, 'executor': 'auto'}
+READ_ONLY = {
+    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'markers_rate',
+    'executor',
+}  # fmt: skip
 LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
 
 
