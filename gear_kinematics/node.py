@@ -202,13 +202,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._input.settings = InputSettings.from_mapping(self._values())
         names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
         self._messages = StateMessages(self._mechanism, **names)
-        self._markers = Markers(
-            self._mechanism, module=self._value('module'), frame_prefix=names['frame_prefix']
-        )
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
         if description != self._description:
             self._description = description
             self._publish(self._description_publisher, description)
+            self._markers = Markers(
+                self._mechanism, module=self._value('module'), frame_prefix=names['frame_prefix']
+            )
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
