@@ -130,6 +130,6 @@ def test_viewers_take_the_prefix_of_the_parameters(tmp_path):
     )
     start = runpy.run_path(str(ROOT / 'launch/view.launch.py'))['start_viewers']
     _, rviz = start(context)
-    words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd]
+    words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd[1:]]
     assert words[words.index('-f') + 1] == 'left_stator'
     assert not rviz.condition.evaluate(context)
