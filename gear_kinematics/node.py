@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, NamedTuple
@@ -25,6 +25,7 @@ from rclpy.event_handler import (
     PublisherEventCallbacks,
     QoSMessageLostInfo,
     QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherMatchedInfo,
     QoSRequestedIncompatibleQoSInfo,
     SubscriptionEventCallbacks,
 )
@@ -111,11 +112,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
         if rate := self._value('markers_rate'):
-            self._marker_publisher = self._create_output(
-                MarkerArray, 'markers', QoSProfile(depth=10)
-            )
             steady = Clock(clock_type=ClockType.STEADY_TIME)
-            self.create_timer(1.0 / rate, self._publish_markers, clock=steady)
+            self._marker_timer = self.create_timer(
+                1.0 / rate, self._publish_markers, clock=steady, autostart=False
+            )
+            self._marker_publisher = self._create_output(
+                MarkerArray, 'markers', QoSProfile(depth=10), matched=self._on_viewers
+            )
         self._subscription = self._listen()
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
@@ -146,14 +149,21 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             descriptor.floating_point_range = [FloatingPointRange(**bounds)]
         self.declare_parameter(name, default, descriptor)
 
-    def _create_output(self, message_type: type, topic: str, qos: QoSProfile) -> Publisher:
+    def _create_output(
+        self,
+        message_type: type,
+        topic: str,
+        qos: QoSProfile,
+        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+    ) -> Publisher:
         return self.create_publisher(
             message_type,
             topic,
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
-                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event)
+                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event),
+                matched=matched,
             ),
         )
 
@@ -227,10 +237,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._publish(self._outputs[topic], message)
         self._monitor.published += 1
 
+    def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
+        """Let the timer of the markers run while somebody looks."""
+        if event.current_count:
+            self._marker_timer.reset()
+        else:
+            self._marker_timer.cancel()
+
     def _publish_markers(self) -> None:
-        if self._marker_publisher.get_subscription_count():
-            for message in self._markers.due(self._input.last, time.monotonic()):
-                self._publish(self._marker_publisher, message)
+        for message in self._markers.due(self._input.last, time.monotonic()):
+            self._publish(self._marker_publisher, message)
 
     def _publish(self, publisher: Publisher, message: Any) -> None:
         try:

@@ -135,15 +135,17 @@ def test_markers_of_any_mechanism_fit_into_messages():
     assert sum(map(len, markers.due(sample_at(1.0), 0.0))) < 2**20
 
 
-def test_node_shows_the_mechanism_to_who_looks(tmp_path, actuator):
+@pytest.mark.parametrize('executor', ['events', 'single_threaded'])
+def test_node_shows_the_mechanism_to_who_looks_now_or_later(executor, tmp_path, actuator):
     expected = {(marker.ns, marker.id): marker for marker in all_at(actuator, 0.7)}
-    with live_node(tmp_path) as live:
+    with live_node(tmp_path, '-p', f'executor:={executor}') as live:
         live.peer.connect()
-        live.peer.listen(MarkerArray, 'markers', QoSProfile(depth=10))
         live.peer.send(rotor_state(START, ['rotor'], [0.7]))
+        for viewer in ('first', 'second'):
+            subscription = live.peer.listen(MarkerArray, viewer, QoSProfile(depth=10), 'markers')
 
-        def seen() -> dict[tuple[str, int], Marker]:
-            messages = live.peer.received['markers']
-            return {(marker.ns, marker.id): marker for m in messages for marker in m.markers}
+            def seen(messages=live.peer.received[viewer]) -> dict[tuple[str, int], Marker]:
+                return {(marker.ns, marker.id): marker for m in messages for marker in m.markers}
 
-        live.peer.wait_until(lambda: seen() == expected, 'markers')
+            live.peer.wait_until(lambda seen=seen: seen() == expected, f'what the {viewer} sees')
+            live.peer.node.destroy_subscription(subscription)

@@ -194,12 +194,10 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
     node.destroy_node()
 
 
-def test_markers_cost_nothing_before_somebody_looks(context, monkeypatch):
-    node = GearStatePublisher(context=context, namespace='unseen')
-    node._on_rotor_state(rotor_bytes(1, position=[1.0]))
-    monkeypatch.setattr('gear_kinematics.markers.Markers.due', None)
-    node._publish_markers()
-    node.destroy_node()
+def test_timer_of_the_markers_stands_still_before_somebody_looks(node):
+    [other] = [timer for timer in node.timers if timer is not node._marker_timer]
+    assert node._marker_timer.is_canceled()
+    assert not other.is_canceled()
 
 
 def test_markers_can_be_switched_off(context):
