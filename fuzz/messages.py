@@ -12,18 +12,18 @@ from typing import Any
 from rosbags.serde import SerdeError
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.message_batches import decode_joint_states, decode_pose_arrays
 from gear_kinematics.messages import (
     SECOND,
     JointState,
-    JointStateDecoder,
     MalformedMessageError,
     PoseArray,
     decode_joint_state,
     decode_pose_array,
 )
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state_messages import StateMessages
 
 SEPARATOR = b'\xff<>\xff'
@@ -60,8 +60,7 @@ def check(data: bytes) -> None:
     """
     messages = data.split(SEPARATOR)
     states = [reference_joint_state(message) for message in messages]
-    for decode in (decode_joint_state, JointStateDecoder().decode):
-        _assert_same([_decoded(decode, message) for message in messages], states)
+    _assert_same([_decoded(decode_joint_state, message) for message in messages], states)
     for joint in (_JOINT, ''):
         _check_joint_batch(messages, states, joint)
 

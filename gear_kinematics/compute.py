@@ -8,9 +8,10 @@ from typing import Any, Literal
 
 from gear_kinematics.bag import Bag, BagError, BagWriter
 from gear_kinematics.description import urdf
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.messages import JOINT_STATE
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state_messages import BODY_POSES, OUTPUT_STATE, STATE_TOPICS, StateMessages
 
 _PROGRESS_EVERY = 1000  # messages

@@ -1,11 +1,13 @@
-"""What the node says of its rotor input once a second, without ROS."""
+"""What the node says of its inputs once a second, without ROS."""
 
 from collections import Counter
 from dataclasses import dataclass, field
 
 from gear_kinematics.kinematics import Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.output_encoder import OutputEncoder
 from gear_kinematics.rotor_input import RotorInput
+from gear_kinematics.transmission_error import ErrorWindow
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""
@@ -70,8 +72,7 @@ class InputMonitor:
         for topic, policy in self.incompatible_qos.items():
             errors.append(f'incompatible QoS on {topic}: {policy}')
         if newly_rejected:
-            causes = ', '.join(f'{cause} {count}' for cause, count in newly_rejected.items())
-            warnings.append(f'rejected: {causes}')
+            warnings.append(_rejections(newly_rejected))
         if newly_lost:
             warnings.append(f'lost {newly_lost}')
         if newly_unsent:
@@ -95,6 +96,79 @@ class InputMonitor:
             'loop-closure residual (m)': _residual(rotor_input, mechanism),
         }
         return Report(level, '; '.join(errors + warnings) or 'ok', values)
+
+
+@dataclass(slots=True)
+class EncoderMonitor:
+    """Watches the encoder at the output and the transmission error."""
+
+    lost: int = 0
+    """Inputs that the middleware knows it did not deliver."""
+    last_input: float | None = None
+    """When the last message came, valid or not; s of a steady clock."""
+    _compared: int = 0
+    _lost: int = 0
+    _rejected: Counter[str] = field(default_factory=Counter)
+
+    def report(
+        self, encoder: OutputEncoder, limit: float, timeout: float, now: float
+    ) -> Report | None:
+        """Report on the time since the last report; None as long as there is no encoder.
+
+        Args:
+            encoder: the encoder to report on.
+            limit: of the transmission error, peak to peak, above which there is a warning, rad.
+            timeout: s without input, after which there is a warning.
+            now: s.
+        """
+        if self.last_input is None:
+            return None
+        age = now - self.last_input
+        compared = encoder.compared != self._compared
+        newly_rejected = encoder.rejected - self._rejected
+        newly_lost, self._lost = self.lost - self._lost, self.lost
+        self._compared, self._rejected = encoder.compared, Counter(encoder.rejected)
+
+        warnings = []
+        if age > timeout:
+            warnings.append(f'no output_encoder for {age:.1f} s')
+        elif not compared:
+            warnings.append('no rotor angle of the same time')
+        if newly_rejected:
+            warnings.append(_rejections(newly_rejected))
+        if newly_lost:
+            warnings.append(f'lost {newly_lost}')
+        # What is not fed any more is of another time.
+        window = encoder.window if compared else ErrorWindow(0)
+        peak_to_peak = window.both.peak_to_peak
+        if peak_to_peak is not None and peak_to_peak > limit:
+            warnings.append(f'peak to peak {peak_to_peak:.3g} rad')
+        values = {
+            'received': str(encoder.received),
+            'compared': str(encoder.compared),
+            **{f'rejected: {cause}': str(n) for cause, n in sorted(encoder.rejected.items())},
+            **{
+                f'not compared: {cause}': str(n)
+                for cause, n in sorted(encoder.not_compared.items())
+            },
+            'lost messages': str(self.lost),
+            'age of last input (s)': f'{age:.3f}',
+            'samples': str(len(window.both)),
+            'mean (rad)': _number(window.both.mean),
+            'peak to peak (rad)': _number(peak_to_peak),
+            'mean forward (rad)': _number(window.forward.mean),
+            'mean backward (rad)': _number(window.backward.mean),
+            'lost motion (rad)': _number(window.lost_motion),
+        }
+        return Report(WARN if warnings else OK, '; '.join(warnings) or 'ok', values)
+
+
+def _rejections(counts: Counter[str]) -> str:
+    return f'rejected: {", ".join(f"{cause} {count}" for cause, count in counts.items())}'
+
+
+def _number(value: float | None) -> str:
+    return 'none' if value is None else f'{value:.6g}'
 
 
 def _residual(rotor_input: RotorInput, mechanism: Mechanism) -> str:

@@ -27,7 +27,12 @@ _CONTRACT = {
     'rotor': ('rotor_state', JOINT_STATE),
 }
 """Name and type of the topics."""
-_OURS = {'mechanism_joint_states', 'output_encoder', *(name for name, _ in _CONTRACT.values())}
+_OURS = {
+    *(name for name, _ in _CONTRACT.values()),
+    'mechanism_joint_states',
+    'output_encoder',
+    'transmission_error',
+}
 _BAG_FILE = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
 """Of a file of a split recording."""
@@ -228,7 +233,7 @@ def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagRepo
     # Forking would copy the threads of a progress bar in whatever state they are.
     context = multiprocessing.get_context('spawn')
     others = multiprocessing.active_children()
-    with concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
+    with concurrent.futures.ProcessPoolExecutor(jobs, context, _start_worker) as pool:
         try:
             with _interrupts_blocked():
                 futures = {_submit(pool, task): task for task in tasks}
@@ -253,8 +258,10 @@ def _submit(pool: concurrent.futures.Executor, task: Task) -> concurrent.futures
         return failed
 
 
-def _end_with_parent() -> None:
-    """See to it that nothing is left of a pool whose owner is killed."""
+def _start_worker() -> None:
+    """See to it that a worker ends when it is told to, and with a pool whose owner is killed."""
+    # A handler of Python's runs between any two steps, and may wait for what it interrupts.
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
     if parent := multiprocessing.parent_process():
         threading.Thread(target=_end_after, args=[parent], daemon=True).start()
 

@@ -27,9 +27,10 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import Bag, BagError, BagMessage, DamagedBagError
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.messages import JOINT_STATE, SECOND, JointStateTemplate
 from gear_kinematics.node import make_executor
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.schedule import due_messages, throttled, type_of
 
 DEPTH = 2000

@@ -16,6 +16,7 @@ from gear_kinematics.messages import (
     STAMP_OFFSET,
     Layout,
     MalformedMessageError,
+    joint_index,
     joint_state_layout,
     pose_array_layout,
 )
@@ -73,13 +74,6 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
                 present[rows, field] = True
                 values[rows, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
     return JointStates(stamp, malformed, joint_found, present, values)
-
-
-def joint_index(names: Sequence[bytes], joint: bytes) -> int | None:
-    """Where a joint is among the names of a message; b'' takes the only one. None: nowhere."""
-    if joint:
-        return names.index(joint) if joint in names else None
-    return 0 if len(names) == 1 else None
 
 
 def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:

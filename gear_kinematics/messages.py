@@ -7,15 +7,13 @@ size as counted from behind the encapsulation.
 
 import struct
 from collections.abc import Sequence
-from operator import itemgetter
 from typing import NamedTuple
 
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # behind the encapsulation
 _LITTLE_ENDIAN, _BIG_ENDIAN = b'\x00\x01', b'\x00\x00'
-_STAMP = struct.Struct('<iI')
-_MAX_KEPT = 65_536  # bytes of a message whose layout is kept: far more than any driver sends
+STAMP = struct.Struct('<iI')
 _MAX_LEFT_OVER = 15  # bytes: DDS fills up to four, rclpy's serialize_message by up to twelve
 
 
@@ -64,7 +62,7 @@ class Layout(NamedTuple):
         Raises:
             MalformedMessageError: if it is none.
         """
-        return _total(*struct.unpack_from(self.order + 'iI', data, STAMP_OFFSET))
+        return stamp_from(*struct.unpack_from(self.order + 'iI', data, STAMP_OFFSET))
 
     def numbers(self, data: bytes, array: int) -> tuple[float, ...]:
         """Give the numbers of one array."""
@@ -72,7 +70,12 @@ class Layout(NamedTuple):
         return struct.unpack_from(f'{self.order}{count}d', data, offset)
 
 
-def _total(seconds: int, nanoseconds: int) -> int:
+def stamp_from(seconds: int, nanoseconds: int) -> int:
+    """Give a stamp in ns.
+
+    Raises:
+        MalformedMessageError: if it is none.
+    """
     if nanoseconds >= SECOND:
         raise MalformedMessageError('a stamp has more than a second of nanoseconds')
     return seconds * SECOND + nanoseconds
@@ -84,70 +87,16 @@ def decode_joint_state(data: bytes) -> JointState:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    return _joint_state(data, joint_state_layout(data))
-
-
-def _joint_state(data: bytes, layout: Layout) -> JointState:
+    layout = joint_state_layout(data)
     arrays = (layout.numbers(data, array) for array in range(3))
     return JointState(layout.stamp(data), layout.texts[1:], *arrays)
 
 
-class JointStateDecoder:
-    """Decodes sensor_msgs/JointState, one after another.
-
-    The messages of a driver are all laid out alike. The layout of the last one is kept as one
-    struct, in which what makes the layout is a field beside the numbers: each message is held
-    against it, and gone through anew where it differs.
-    """
-
-    def __init__(self) -> None:
-        """Start with no layout."""
-        self._size = -1
-
-    def decode(self, data: bytes) -> JointState:
-        """Give what `decode_joint_state` gives.
-
-        Raises:
-            MalformedMessageError: if the bytes are no JointState.
-        """
-        if len(data) == self._size:
-            fields = self._struct.unpack(data)
-            if self._pick(fields) == self._fixed:
-                position, velocity, effort = self._arrays
-                return JointState(
-                    _total(fields[1], fields[2]),
-                    self._names,
-                    fields[position],
-                    fields[velocity],
-                    fields[effort],
-                )
-        layout = joint_state_layout(data)
-        state = _joint_state(data, layout)
-        if len(data) <= _MAX_KEPT:
-            self._keep(data, layout, state.names)
-        return state
-
-    def _keep(self, data: bytes, layout: Layout, names: tuple[bytes, ...]) -> None:
-        # Offset, size, format and number of fields of each part; all else is padding.
-        parts = [(STAMP_OFFSET, _STAMP.size, 'iI', 2)]
-        parts += [(start, end - start, f'{end - start}s', 1) for start, end in layout.fixed]
-        parts += [(start, 8 * count, f'{count}d', count) for start, count in layout.arrays]
-        code, position, fields = layout.order, 0, 0
-        first_field = {}
-        for offset, size, item, count in sorted(parts):
-            first_field[offset, size] = fields
-            code += f'{offset - position}x{item}'
-            position, fields = offset + size, fields + count
-        self._size = layout.size
-        self._struct = struct.Struct(f'{code}{layout.size - position}x')
-        self._pick = itemgetter(*(first_field[start, end - start] for start, end in layout.fixed))
-        self._fixed = self._pick(self._struct.unpack(data))
-        self._names = names
-        starts = (first_field[start, 8 * count] for start, count in layout.arrays)
-        self._arrays = [
-            slice(start, start + count)
-            for start, (_, count) in zip(starts, layout.arrays, strict=True)
-        ]
+def joint_index(names: Sequence[bytes], joint: bytes) -> int | None:
+    """Where a joint is among the names of a message; b'' takes the only one. None: nowhere."""
+    if joint:
+        return names.index(joint) if joint in names else None
+    return 0 if len(names) == 1 else None
 
 
 def decode_pose_array(data: bytes) -> PoseArray:
@@ -192,7 +141,7 @@ class _Reader:
 
     def __init__(self, data: bytes) -> None:
         self._data = data
-        self._offset = STAMP_OFFSET + _STAMP.size
+        self._offset = STAMP_OFFSET + STAMP.size
         self._texts: list[bytes] = []
         self._arrays: list[tuple[int, int]] = []
         self._fixed = [(0, 2)]
@@ -246,7 +195,7 @@ class Template:
     """A message laid out once; each encoding only writes the stamp and the numbers into it."""
 
     def __init__(self, frame_id: str) -> None:
-        self._buffer = bytearray(_LITTLE_ENDIAN + bytes(2 + _STAMP.size))
+        self._buffer = bytearray(_LITTLE_ENDIAN + bytes(2 + STAMP.size))
         self._arrays: list[tuple[int, struct.Struct]] = []
         self._string(frame_id)
 
@@ -257,7 +206,7 @@ class Template:
             stamp: ns.
             arrays: the numbers of each array, as many as were laid out.
         """
-        _STAMP.pack_into(self._buffer, STAMP_OFFSET, *divmod(stamp, SECOND))
+        STAMP.pack_into(self._buffer, STAMP_OFFSET, *divmod(stamp, SECOND))
         for (offset, layout), values in zip(self._arrays, arrays, strict=True):
             layout.pack_into(self._buffer, offset, *values)
         return bytes(self._buffer)

@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, NamedTuple
@@ -53,14 +53,18 @@ from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
-from gear_kinematics.diagnostics import InputMonitor
+from gear_kinematics.diagnostics import EncoderMonitor, InputMonitor
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.markers import Markers
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.output_encoder import EncoderSettings, OutputEncoder
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state_messages import STATE_TOPICS, StateMessages
+from gear_kinematics.transmission_error import ErrorSample
 
 _MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
+_ROTOR, _ENCODER = 'rotor_state', 'output_encoder'
 _DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
@@ -87,8 +91,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for name, (parameter, default) in parameters.branch_parameters(branches).items():
             self._declare(name, parameter, default)
         self._mechanism = Mechanism.from_mapping(self._values())
-        self._input = RotorInput(InputSettings.from_mapping(self._values()))
+        self._settings = (
+            InputSettings.from_mapping(self._values()),
+            EncoderSettings.from_mapping(self._values()),
+        )
+        self._input = RotorInput(self._settings[0])
+        self._encoder = OutputEncoder(self._mechanism, self._settings[1])
         self._monitor = InputMonitor(started=time.monotonic())
+        self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
         self._description = String()
 
@@ -101,6 +111,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
             for topic, name in STATE_TOPICS.items()
         }
+        self._listened_to: list[str] = []  # what nobody listens to is not computed
+        self._transmission_error = self._create_output(
+            JointState, 'transmission_error', QoSProfile(depth=_DEPTH)
+        )
         self._diagnostics = self._create_output(
             DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
         )
@@ -119,13 +133,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._marker_publisher = self._create_output(
                 MarkerArray, 'markers', QoSProfile(depth=10), matched=self._on_viewers
             )
-        self._subscription = self._listen()
+        self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
             f'gear ratio {self._mechanism.gear_ratio} '
             f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
-            f'teeth), listening for {listening_for} on {self._subscription.topic_name}'
+            f'teeth), listening for {listening_for} on {self._inputs[_ROTOR].topic_name}'
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -163,25 +177,34 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
                 incompatible_qos=lambda event: self._on_incompatible_qos(topic, event),
-                matched=matched,
+                matched=matched or (lambda _: self._note_listeners()),
             ),
         )
 
-    def _listen(self) -> Subscription:
-        """Subscribe to the driver: reliably, unless there is a driver that only does best effort.
+    def _note_listeners(self) -> None:
+        """Note which outputs have listeners."""
+        self._listened_to = [
+            topic
+            for topic, publisher in self._outputs.items()
+            if publisher.get_subscription_count()
+        ]
+
+    def _listen(self, topic: str) -> Subscription:
+        """Subscribe to a driver: reliably, unless there is a driver that only does best effort.
 
         That is what best available means; it is decided when the subscription is made.
         """
+        on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
         return self.create_subscription(
             JointState,
-            'rotor_state',
-            self._on_rotor_state,
+            topic,
+            on_message[topic],
             QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_AVAILABLE),
             raw=True,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(
-                incompatible_qos=self._on_incompatible_driver,
-                message_lost=self._on_message_lost,
+                incompatible_qos=lambda event: self._on_incompatible_driver(topic, event),
+                message_lost=lambda event: self._on_message_lost(topic, event),
             ),
         )
 
@@ -209,7 +232,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _configure(self) -> None:
         """Take the parameters over; called again after every change."""
-        self._input.settings = InputSettings.from_mapping(self._values())
+        values = self._values()
+        settings = InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
+        if settings != self._settings:  # angles from before and after do not compare
+            self._settings = settings
+            self._input.settings = settings[0]
+            self._encoder = OutputEncoder(self._mechanism, settings[1])
         names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
         self._messages = StateMessages(self._mechanism, **names)
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
@@ -225,17 +253,25 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
-            self._warn(f'rotor_state rejected: {rejection}')
+            self._warn(f'{_ROTOR} rejected: {rejection}')
             return
-        # What nobody listens to is not computed.
-        topics = [
-            topic
-            for topic, publisher in self._outputs.items()
-            if publisher.get_subscription_count()
-        ]
-        for topic, message in self._messages.encode(sample, topics):
+        for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
         self._monitor.published += 1
+        if self._input.referenced:
+            self._publish_errors(self._encoder.follow(sample))
+
+    def _on_output_encoder(self, data: bytes) -> None:
+        self._encoder_monitor.last_input = time.monotonic()
+        try:
+            self._publish_errors(self._encoder.accept(data, self._now))
+        except RejectedInputError as rejection:
+            self._warn(f'{_ENCODER} rejected: {rejection}')
+
+    def _publish_errors(self, samples: Iterable[ErrorSample]) -> None:
+        for sample in samples:
+            if self._transmission_error.get_subscription_count():
+                self._publish(self._transmission_error, self._messages.transmission_error(sample))
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Let the timer of the markers run while somebody looks."""
@@ -265,19 +301,21 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._next_warning = now + _WARNING_PERIOD
             self.get_logger().warning(text)
 
-    def _on_incompatible_driver(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        topic = self._subscription.topic_name
-        asked_for = self._value(f'qos_overrides.{topic}.subscription.reliability')
+    def _on_incompatible_driver(self, topic: str, event: QoSRequestedIncompatibleQoSInfo) -> None:
+        subscription = self._inputs[topic]
+        name = subscription.topic_name
+        asked_for = self._value(f'qos_overrides.{name}.subscription.reliability')
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
-            self.get_logger().info(f'a driver on {topic} is best effort: listening likewise')
-            self.destroy_subscription(self._subscription)
-            self._subscription = self._listen()
+            self.get_logger().info(f'a driver on {name} is best effort: listening likewise')
+            self.destroy_subscription(subscription)
+            self._inputs[topic] = self._listen(topic)
         else:
-            self._on_incompatible_qos('rotor_state', event)
+            self._on_incompatible_qos(topic, event)
 
-    def _on_message_lost(self, event: QoSMessageLostInfo) -> None:
-        self._monitor.lost += event.total_count_change
+    def _on_message_lost(self, topic: str, event: QoSMessageLostInfo) -> None:
+        monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
+        monitor.lost += event.total_count_change
 
     def _on_incompatible_qos(
         self,
@@ -291,7 +329,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until the reliable listeners have what was published; `timeout` is in s."""
         deadline = time.monotonic() + timeout
-        for publisher in self._outputs.values():
+        for publisher in (*self._outputs.values(), self._transmission_error):
             left = max(0.0, deadline - time.monotonic())
             publisher.wait_for_all_acked(Duration(seconds=left))
 
@@ -310,20 +348,26 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return response
 
     def _report(self) -> None:
-        self._monitor.drivers = self._subscription.get_publisher_count()
-        report = self._monitor.report(
-            self._input, self._mechanism, self._value('input_timeout'), time.monotonic()
-        )
+        self._monitor.drivers = self._inputs[_ROTOR].get_publisher_count()
+        timeout, now = self._value('input_timeout'), time.monotonic()
+        reports = {
+            'rotor input': self._monitor.report(self._input, self._mechanism, timeout, now),
+            'transmission error': self._encoder_monitor.report(
+                self._encoder, self._value('transmission_error_limit'), timeout, now
+            ),
+        }
         message = DiagnosticArray()
         message.header.stamp = self.get_clock().now().to_msg()
         message.status = [
             DiagnosticStatus(
                 level=bytes([report.level]),
-                name=f'{self.get_name()}: rotor input',
+                name=f'{self.get_name()}: {subject}',
                 hardware_id=self.get_fully_qualified_name(),
                 message=report.message,
                 values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
             )
+            for subject, report in reports.items()
+            if report
         ]
         self._publish(self._diagnostics, message)
 

@@ -79,6 +79,25 @@ PARAMETERS: Mapping[str, Parameter] = {
     ),
     'input_timeout': Parameter('Silence after which diagnostics say ERROR, s', 1e-3, 1e6),
     'output_joint': Parameter('Name of the output shaft in output_state and the URDF'),
+    'output_encoder_joint': Parameter("Joint to look up in output_encoder; '' takes the only one"),
+    'output_encoder_direction': Parameter(
+        '1, or -1 where the encoder at the output counts backwards', -1, 1, step=2
+    ),
+    'output_encoder_zero': Parameter(
+        "Position of the output's encoder at output angle 0, rad", -1e15, 1e15
+    ),
+    'transmission_error_window': Parameter(
+        'The last while, of which diagnostics give the transmission error, s', 0.1, 60.0
+    ),
+    'transmission_error_limit': Parameter(
+        'Transmission error, peak to peak, above which diagnostics say WARN, rad', 1e-9, 10.0
+    ),
+    'transmission_error_max_gap': Parameter(
+        'Time between rotor states, beyond which nothing is interpolated, s', 1e-6, 10.0
+    ),
+    'transmission_error_travel': Parameter(
+        'How far the output moves after a reversal until its direction counts, rad', 1e-9, 10.0
+    ),
     'home_angle': Parameter('Output angle that ~/home declares, rad', -1e9, 1e9),
     'frame_prefix': Parameter('Put before every frame id and joint name'),
     'markers_rate': Parameter(

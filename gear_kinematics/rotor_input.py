@@ -10,24 +10,22 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.joint_input import (
+    GREATEST,
+    JOINT_MISSING,
+    MALFORMED,
+    OUT_OF_ORDER,
+    POSITION_MISSING,
+    POSITION_NOT_FINITE,
+    JointReader,
+    RejectedInputError,
+)
 from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
-from gear_kinematics.message_batches import decode_joint_states, joint_index
-from gear_kinematics.messages import JointStateDecoder, MalformedMessageError
+from gear_kinematics.message_batches import decode_joint_states
 
 Array = NDArray[Any]
 
-_MALFORMED = 'not a JointState'
-_JOINT_MISSING = 'joint missing'
-_POSITION_MISSING = 'position missing'
-_POSITION_NOT_FINITE = 'position not finite'
-_OUT_OF_ORDER = 'out of order'
-
 CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
-_MAX_POSITION = 1e300  # rad: beyond it, the output angle might not be finite any more
-
-
-class RejectedInputError(ValueError):
-    """A message that gives no output; the text says why and is one of few, to be counted by."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +93,7 @@ class RotorInput:
         self.resets = 0
         self.last: RotorSample | None = None
         self._settings = settings
-        self._decoder = JointStateDecoder()
-        self._names: tuple[bytes, ...] | None = None
-        self._joint: int | None = None
+        self._reader = JointReader(settings.rotor_joint)
         self._turns = RotorTurns(
             single_turn=settings.single_turn,
             max_speed=settings.max_rotor_speed,
@@ -116,7 +112,7 @@ class RotorInput:
         if settings.encoder != self._settings.encoder:
             self._turns.single_turn = settings.single_turn
             self._turns.reset()
-            self._names = None
+            self._reader = JointReader(settings.rotor_joint)
         self._settings = settings
 
     @property
@@ -141,7 +137,8 @@ class RotorInput:
         """
         self.received += 1
         try:
-            return self._accept(data, now)
+            stamp, position, velocity, effort = self._reader.read(data)
+            return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise
@@ -166,16 +163,16 @@ class RotorInput:
         usable = np.ones(len(messages), bool)
         # In the order in which `accept` comes upon them.
         for faulty, cause in (
-            (states.malformed, _MALFORMED),
-            (~states.joint_found, _JOINT_MISSING),
-            (~states.present[:, 0], _POSITION_MISSING),
-            (~(np.abs(states.values[:, 0]) <= _MAX_POSITION), _POSITION_NOT_FINITE),
+            (states.malformed, MALFORMED),
+            (~states.joint_found, JOINT_MISSING),
+            (~states.present[:, 0], POSITION_MISSING),
+            (~(np.abs(states.values[:, 0]) <= GREATEST), POSITION_NOT_FINITE),
         ):
             if count := int(np.count_nonzero(faulty & usable)):
                 self.rejected[cause] += count
             usable &= ~faulty
         stamps, values = states.stamp[usable], states.values[usable]
-        values[~np.isfinite(values)] = np.nan
+        values[~(np.abs(values) <= GREATEST)] = np.nan
         if self._settings.single_turn or not self._in_order(stamps):
             return self._one_by_one(stamps, values, np.asarray(received, np.int64)[usable])
         return self._all_at_once(stamps, values)
@@ -210,7 +207,7 @@ class RotorInput:
             stamps.tolist(), values.tolist(), received.tolist(), strict=True
         ):
             try:
-                samples.append(self._take_row(self._stamp(stamp, partial(int, now)), row))
+                samples.append(self._take_row(stamp or self._clock(partial(int, now)), row))
             except RejectedInputError as rejection:
                 self.rejected[str(rejection)] += 1
         # None becomes NaN.
@@ -220,44 +217,18 @@ class RotorInput:
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
         position, velocity, effort = row
-        return self._take(stamp, position, _finite_or_none(velocity), _finite_or_none(effort))
+        return self._take(stamp, position, _number_or_none(velocity), _number_or_none(effort))
 
-    def _accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
-        try:
-            message = self._decoder.decode(data)
-        except MalformedMessageError as error:
-            raise RejectedInputError(_MALFORMED) from error
-        if message.names is not self._names:  # the decoder gives the same as long as they are
-            self._names = message.names
-            self._joint = joint_index(message.names, self._settings.rotor_joint.encode())
-        index = self._joint
-        if index is None:
-            raise RejectedInputError(_JOINT_MISSING)
-        if index >= len(message.position):
-            raise RejectedInputError(_POSITION_MISSING)
-        position = message.position[index]
-        if not abs(position) <= _MAX_POSITION:  # NaN compares false
-            raise RejectedInputError(_POSITION_NOT_FINITE)
-        return self._take(
-            self._stamp(message.stamp, now),
-            position,
-            *(
-                _finite_or_none(values[index]) if index < len(values) else None
-                for values in (message.velocity, message.effort)
-            ),
-        )
-
-    def _stamp(self, stamp: int, now: Callable[[], int]) -> int:
-        """The stamp, or the clock where there is none."""
-        if stamp:
-            return stamp
+    def _clock(self, now: Callable[[], int]) -> int:
+        """The stamp of a message that has none."""
         self.zero_stamps += 1
         return now()
 
     def _take(
         self, stamp: int, position: float, velocity: float | None, effort: float | None
     ) -> RotorSample:
-        self._check_order(stamp)
+        if self.last is not None and stamp <= self.last.stamp:
+            self._check_order(stamp, self.last.stamp)
         self._turns.update(position, stamp, velocity)
         direction = self._settings.rotor_direction
         self.last = RotorSample(
@@ -268,17 +239,15 @@ class RotorInput:
         )
         return self.last
 
-    def _check_order(self, stamp: int) -> None:
-        if self.last is None or stamp > self.last.stamp:
-            return
-        if stamp == self.last.stamp:
+    def _check_order(self, stamp: int, last: int) -> None:
+        if stamp == last:
             self.duplicates += 1
-        elif self.last.stamp - stamp <= CLOCK_RESET:
-            raise RejectedInputError(_OUT_OF_ORDER)
+        elif last - stamp <= CLOCK_RESET:
+            raise RejectedInputError(OUT_OF_ORDER)
         else:
             self.resets += 1
             self._turns.reset()
 
 
-def _finite_or_none(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+def _number_or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value

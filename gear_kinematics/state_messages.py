@@ -1,4 +1,4 @@
-"""The messages that the node publishes for a rotor sample, as bytes ready to be sent."""
+"""The messages that the node publishes for its samples, as bytes ready to be sent."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -14,6 +14,7 @@ from gear_kinematics.messages import (
     PoseArrayTemplate,
 )
 from gear_kinematics.rotor_input import RotorSample
+from gear_kinematics.transmission_error import ErrorSample
 
 OUTPUT_STATE, BODY_POSES, JOINT_STATES = 'output_state', 'body_poses', 'mechanism_joint_states'
 STATE_TOPICS: Mapping[str, str] = {
@@ -31,7 +32,7 @@ class StateMessages:
         """Lay the messages out."""
         self._form = closed_form(mechanism)
         self._ratio = float(mechanism.gear_ratio)
-        self._axial_positions = [branch.axial_position for branch in mechanism.branches]
+        self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
         self._output_states = {
             (velocity, effort): JointStateTemplate(
                 [frame_prefix + output_joint], velocity=velocity, effort=effort
@@ -64,6 +65,10 @@ class StateMessages:
             else:
                 yield topic, self._joint_state(sample, output_angle, branches)
 
+    def transmission_error(self, sample: ErrorSample) -> bytes:
+        """Give the message for a transmission error: the position of the output's joint."""
+        return self._output_states[False, False].encode(sample.stamp, (sample.error,))
+
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
         arrays = [(output_angle,)]
         if sample.velocity is not None:
@@ -77,12 +82,12 @@ class StateMessages:
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
     ) -> bytes:
         # Every body but the rotor has the angle φ5; within the turn its quaternion has w >= 0.
-        quaternion = (0.0, 0.0, math.sin(0.5 * output_angle), math.cos(0.5 * output_angle))
+        sine, cosine = math.sin(0.5 * output_angle), math.cos(0.5 * output_angle)
+        centres = [branch.satellite for branch in branches]
+        centres += [branch.oldham for branch in branches]
         numbers: list[float] = []
-        for branch, z in zip(branches, self._axial_positions, strict=True):
-            numbers += (branch.satellite.real, branch.satellite.imag, z, *quaternion)
-        for branch, z in zip(branches, self._axial_positions, strict=True):
-            numbers += (branch.oldham.real, branch.oldham.imag, z, *quaternion)
+        for centre, z in zip(centres, self._axial_positions, strict=True):
+            numbers += (centre.real, centre.imag, z, 0.0, 0.0, sine, cosine)
         return self._body_poses.encode(sample.stamp, numbers)
 
     def _joint_state(

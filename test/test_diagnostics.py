@@ -9,8 +9,9 @@ from live import SECOND, rotor_bytes
 
 from gear_kinematics import diagnostics
 from gear_kinematics.diagnostics import ERROR, OK, WARN, InputMonitor
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import solve
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 
 SETTINGS = InputSettings(
     rotor_joint='rotor',

@@ -46,7 +46,7 @@ VALID_EVERY = 20  # of them comes a valid message
 WINDOW = 1000  # messages that the node may be behind: half of what its queue holds
 STEP = SECOND // 1000
 FAR_FUTURE = 10**18  # ns: beyond all stamps that valid messages have, and before the clock's
-MAX_POSITION = 1e300  # rad: what is beyond counts as not finite
+GREATEST = 1e300  # what is beyond counts as not finite
 MAX_EXACT = 2**51 * math.tau  # rad: up to here the poses are exact
 COUNTED = re.compile('received|published|rejected: .*|duplicate stamps|zero stamps|clock resets')
 NUMBERS = (math.nan, math.inf, -math.inf, 1.7e308, -1e301, 1e300, 1e17, 5e-324, -0.0)
@@ -99,7 +99,7 @@ class Contract:
         self.last = stamp
         index = message.names.index(b'rotor')
         rates = (
-            values[index] if index < len(values) and math.isfinite(values[index]) else None
+            values[index] if index < len(values) and abs(values[index]) <= GREATEST else None
             for values in (message.velocity, message.effort)
         )
         return Answer(message.stamp, message.position[index], *rates)
@@ -112,7 +112,7 @@ class Contract:
         index = message.names.index(b'rotor')
         if index >= len(message.position):
             return 'position missing'
-        if not abs(message.position[index]) <= MAX_POSITION:
+        if not abs(message.position[index]) <= GREATEST:
             return 'position not finite'
         if message.stamp and 0 < self.last - message.stamp <= SECOND:
             return 'out of order'

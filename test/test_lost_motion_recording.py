@@ -159,7 +159,7 @@ def ramps_on_rotor(path, angle, **changes):
 
 
 def test_efforts_of_the_rotor_are_torque_at_the_output(tmp_path, config, actuator, angle):
-    recording = read_bag(ramps_on_rotor(tmp_path / 'ramps', angle), config, TRAVEL, 100 * MS)
+    recording = read_bag(ramps_on_rotor(tmp_path / 'ramps', angle), config)
     assert not recording.loading.measured
     assert recording.loading.angle_step == pytest.approx(TURN / 2**14 / 19, rel=1e-6)
     np.testing.assert_allclose(recording.loading.torque, TORQUE, rtol=0, atol=1e-12)
@@ -171,7 +171,7 @@ def test_turns_of_a_single_turn_rotor_encoder_are_counted(tmp_path, config, angl
     many = 2.0 * np.sin(np.arange(len(angle)) / 300.0)  # 6 turns of the rotor either way
     path = ramps_on_rotor(tmp_path / 'wrapped', angle, positions=(-19.0 * many) % TURN)
     single = {**config, 'rotor_encoder': 'single_turn'}
-    recording = read_bag(path, single, TRAVEL, 100 * MS)
+    recording = read_bag(path, single)
     found = recording.loading.angle
     np.testing.assert_allclose(found - found[0], many - many[0], rtol=0, atol=1e-9)
 
@@ -179,21 +179,21 @@ def test_turns_of_a_single_turn_rotor_encoder_are_counted(tmp_path, config, angl
 def test_bag_without_torque_and_output_is_refused(tmp_path, config, angle):
     path = ramps_on_rotor(tmp_path / 'bare', angle, efforts=None)
     with pytest.raises(BagError, match='/rotor_state has no effort, and there is no output_enc'):
-        read_bag(path, config, TRAVEL, 100 * MS)
+        read_bag(path, config)
 
 
 @pytest.mark.parametrize('option', ['rotor_topic', 'encoder_topic'])
 def test_topics_that_are_not_there_are_named(tmp_path, config, angle, option):
     path = ramps_on_rotor(tmp_path / 'ramps', angle)
     with pytest.raises(BagError, match=r'no topic /nowhere of type sensor_msgs/msg/JointState'):
-        read_bag(path, config, TRAVEL, 100 * MS, **{option: '/nowhere'})
+        read_bag(path, config, **{option: '/nowhere'})
 
 
 def test_what_comes_before_a_damage_is_read(tmp_path, config, actuator, angle):
     (file,) = ramps_on_rotor(tmp_path / 'ramps', angle).glob('*.mcap')
     cut = tmp_path / 'cut.mcap'
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
-    recording = read_bag(cut, config, TRAVEL, 100 * MS)
+    recording = read_bag(cut, config)
     assert recording.error.startswith(str(cut))
     assert 0 < recording.rows < len(angle)
     assert measure(recording, actuator).hysteresis.figures[0].loops >= 1

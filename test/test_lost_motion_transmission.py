@@ -59,7 +59,7 @@ def config():
 @pytest.fixture(scope='module')
 def recording(tmp_path_factory, config):
     path = bag_of(tmp_path_factory.mktemp('bags') / 'motion', there_and_back(2.2, 2))
-    return read_bag(path, config, math.radians(1.0), 100 * MS)
+    return read_bag(path, config)
 
 
 @pytest.fixture(scope='module')
@@ -167,7 +167,7 @@ def test_recording_without_matching_stamps_is_refused(tmp_path, config):
     encoder = Samples([START - 5 * MS, START - 4 * MS], [0.0, 0.0])
     path = write_recording(tmp_path / 'apart', rotor, encoder)
     with pytest.raises(MotionError, match='no ideal angle before 2'):
-        read_bag(path, config, 0.01, 100 * MS)
+        read_bag(path, config)
 
 
 def test_orders_of_any_tooth_pair():
@@ -188,7 +188,7 @@ def test_wind_up_is_measured_where_both_encoders_are(tmp_path, config, actuator)
     stamps = START + np.arange(len(torque)) * MS
     rotor = Samples(stamps, -19.0 * (bench + gear), torque / -19.0)
     path = write_recording(tmp_path / 'loaded', rotor, Samples(stamps, bench))
-    recording = read_bag(path, config, math.radians(1.0), 100 * MS)
+    recording = read_bag(path, config)
     report = measure(recording, actuator)
     (ramps,) = report.hysteresis.figures
     assert report.hysteresis.measured

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from live import rotor_bytes
 
+from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.message_batches import decode_joint_states, decode_pose_arrays
 from gear_kinematics.messages import (
     MalformedMessageError,
@@ -15,7 +16,7 @@ from gear_kinematics.messages import (
     decode_joint_state,
     decode_pose_array,
 )
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 
 SECOND = 1_000_000_000
 numbers = st.lists(st.floats(width=64), max_size=3)

@@ -16,7 +16,6 @@ from rosbags.typesys import Stores, get_typestore
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.messages import (
-    JointStateDecoder,
     JointStateTemplate,
     MalformedMessageError,
     PoseArrayTemplate,
@@ -90,64 +89,6 @@ def decoded_or_none(decode, data):
         return decode(data)
     except MalformedMessageError:
         return None
-
-
-@given(st.lists(st.tuples(messages, st.booleans()), max_size=8))
-def test_decoder_takes_any_layout_after_any_other(sequence):
-    decoder = JointStateDecoder()
-    for message, little_endian in sequence:
-        for stamp in (message['stamp'], 5):  # the second time with the layout of the first
-            changed = message | {'stamp': stamp}
-            data = rotor_bytes(**changed, little_endian=little_endian)
-            decoded = decoder.decode(data)
-            assert decoded.stamp == stamp
-            assert [name.decode() for name in decoded.names] == message['names']
-            for field in ('position', 'velocity', 'effort'):
-                assert bits(getattr(decoded, field)) == bits(message[field])
-
-
-@given(messages, st.data())
-def test_decoder_holds_every_message_against_its_layout(message, data):
-    good = rotor_bytes(**message)
-    decoder = JointStateDecoder()
-    decoder.decode(good)
-    changed = bytearray(good)
-    for _ in range(data.draw(st.integers(1, 3))):
-        changed[data.draw(st.integers(0, len(good) - 1))] ^= data.draw(st.integers(1, 255))
-    first = decoded_or_none(decoder.decode, bytes(changed))
-    second = decoded_or_none(decode_joint_state, bytes(changed))
-    assert (first is None) is (second is None)
-    assert first is None or same(first, second)
-    assert same(decoder.decode(good), decode_joint_state(good))
-
-
-def test_decoder_goes_on_after_bytes_that_are_no_message():
-    decoder = JointStateDecoder()
-    for data in (b'', FULL[:50], bytes(len(FULL)), FULL + bytes(64)):
-        assert decoder.decode(FULL) == decode_joint_state(FULL)
-        with pytest.raises(MalformedMessageError):
-            decoder.decode(data)
-    assert decoder.decode(FULL) == decode_joint_state(FULL)
-
-
-def test_decoder_passes_over_padding():
-    # Between "frame" with its length and the number of names are two bytes of chance.
-    data = rotor_bytes(1, ['rotor'], [1.0], frame_id='frame')
-    start = data.index(b'frame\0') + len(b'frame\0')
-    decoder = JointStateDecoder()
-    names = decoder.decode(data).names
-    other = data[:start] + b'\x5a\xa5' + data[start + 2 :]
-    assert decoder.decode(other) == decode_joint_state(data)
-    assert decoder.decode(other).names is names  # the layout was found to be the same
-
-
-def test_decoder_takes_messages_of_any_size():
-    count = 20_000  # far more than a layout that is kept
-    data = rotor_bytes(7, [f'joint_{n}' for n in range(count)], range(count))
-    decoder = JointStateDecoder()
-    for _ in range(2):
-        decoded = decoder.decode(data)
-        assert decoded.position == tuple(range(count))
 
 
 # DDS pads to four bytes; rclpy counts four bytes too many for each of three empty arrays.

@@ -25,6 +25,7 @@ INTEGER_BOUNDS = {
     'ring_teeth': (2, 100_000, 0),
     'satellite_teeth': (1, 99_999, 0),
     'rotor_direction': (-1, 1, 2),
+    'output_encoder_direction': (-1, 1, 2),
 }
 BOUNDS = {
     'eccentricity': (1e-6, 1.0),
@@ -35,6 +36,11 @@ BOUNDS = {
     'max_rotor_acceleration': (1e-3, 1e9),
     'input_timeout': (1e-3, 1e6),
     'markers_rate': (0.0, 1000.0),
+    'output_encoder_zero': (-1e15, 1e15),
+    'transmission_error_window': (0.1, 60.0),
+    'transmission_error_limit': (1e-9, 10.0),
+    'transmission_error_max_gap': (1e-6, 10.0),
+    'transmission_error_travel': (1e-9, 10.0),
     'a.cam_phase': (-2.0 * math.pi, 2.0 * math.pi),
     'b.axial_position': (-10.0, 10.0),
 }
@@ -70,7 +76,7 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 21
+    assert len(own) == 28
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
@@ -186,6 +192,7 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
 
     monkeypatch.setattr(Publisher, 'publish', publish)
     monkeypatch.setattr(Publisher, 'get_subscription_count', lambda _: 1)
+    node._note_listeners()
     node._on_rotor_state(rotor_bytes(1, position=[1.0]))
     assert {'/refused/body_poses', '/refused/mechanism_joint_states'} <= set(published)
     node._report()

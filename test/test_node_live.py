@@ -89,9 +89,13 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
         f'{namespace}/mechanism_joint_states': ['sensor_msgs/msg/JointState'],
         f'{namespace}/robot_description': ['std_msgs/msg/String'],
         f'{namespace}/markers': ['visualization_msgs/msg/MarkerArray'],
+        f'{namespace}/transmission_error': ['sensor_msgs/msg/JointState'],
         '/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray'],
     }
-    heard = {f'{namespace}/rotor_state': ['sensor_msgs/msg/JointState']}
+    heard = {
+        f'{namespace}/{topic}': ['sensor_msgs/msg/JointState']
+        for topic in ('rotor_state', 'output_encoder')
+    }
     served = {f'{namespace}/gear_state_publisher/home': ['std_srvs/srv/Trigger']}
     # News of the graph come in their own time, and of a node's name apart from its endpoints.
     shared.peer.wait_until(lambda: name in node.get_node_names_and_namespaces(), 'the name')

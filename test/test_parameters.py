@@ -30,7 +30,18 @@ CONTRACT = {
     'input_timeout': 1.0,
     'frame_prefix': '',
 }
-OUR_OWN = {'max_rotor_acceleration': 6500.0, 'markers_rate': 30.0, 'executor': 'auto'}
+OUR_OWN = {
+    'max_rotor_acceleration': 6500.0,
+    'markers_rate': 30.0,
+    'executor': 'auto',
+    'output_encoder_joint': '',
+    'output_encoder_direction': 1,
+    'output_encoder_zero': 0.0,
+    'transmission_error_window': 10.0,
+    'transmission_error_limit': 0.003,
+    'transmission_error_max_gap': 0.1,
+    'transmission_error_travel': math.radians(1.0),
+}
 READ_ONLY = {
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'markers_rate',
     'executor',

@@ -9,7 +9,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 
-from gear_kinematics.rotor_input import InputSettings, RejectedInputError, RotorInput
+from gear_kinematics.joint_input import RejectedInputError
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 
 SETTINGS = InputSettings(
     rotor_joint='rotor',

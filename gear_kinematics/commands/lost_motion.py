@@ -70,9 +70,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     topics.add_argument(
         '--max-gap',
         type=_positive,
-        default=0.1,
         metavar='S',
-        help='between rotor states, to interpolate in (default: %(default)g)',
+        help='between rotor states, to interpolate in (default: transmission_error_max_gap)',
     )
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(
@@ -87,9 +86,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     encoders.add_argument(
         '--travel',
         type=_positive,
-        default=1.0,
         metavar='DEG',
-        help='of the output after a reversal until the direction counts (default: %(default)g)',
+        help='of the output after a reversal until the direction counts '
+        '(default: transmission_error_travel)',
     )
     for form in ('json', 'html'):
         parser.add_argument(
@@ -142,8 +141,11 @@ def _complain(text: str) -> None:
 
 def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
     config = parameters.load(config_path(options, path))
+    if options.max_gap is not None:
+        config['transmission_error_max_gap'] = options.max_gap
+    if options.travel is not None:
+        config['transmission_error_travel'] = math.radians(options.travel)
     mechanism = Mechanism.from_mapping(config)
-    travel = math.radians(options.travel)
     if path.suffix.lower() in _CSV:
         columns = Columns(
             options.angle_column,
@@ -154,15 +156,18 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
             on_rotor=options.on_rotor,
         )
         recording = read_csv(
-            path, mechanism, columns, travel, options.counts, options.output_counts
+            path,
+            mechanism,
+            columns,
+            config['transmission_error_travel'],
+            options.counts,
+            options.output_counts,
         )
     else:
         with message_progress(path.name) as told:
             recording = read_bag(
                 path,
                 config,
-                travel,
-                round(options.max_gap * 1e9),
                 options.rotor_topic,
                 options.encoder_topic,
                 options.counts,

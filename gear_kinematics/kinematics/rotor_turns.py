@@ -97,14 +97,15 @@ class RotorTurns:
             stamp: ns, not earlier than the last.
             velocity: rad/s, or None where it is not known.
         """
-        turns, angle = split_turns(position)
+        split = split_turns(position)
         if self.single_turn and self.position is not None:
             expected, known = self._expected_turn((stamp - self._stamp) * 1e-9, velocity)
             self.referenced = self.referenced and known
             self.unknown_gaps += not known
-            apparent = angle - self.position.angle
+            apparent = split.angle - self.position.angle
             turns = self.position.turns + round((expected - apparent) / TURN)
-        self.position = RotorPosition(turns, angle)
+            split = RotorPosition(turns, split.angle)
+        self.position = split
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
     def _expected_turn(self, elapsed: float, velocity: float | None) -> tuple[float, bool]:

@@ -14,8 +14,9 @@ from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
-from gear_kinematics.message_batches import JointStates, decode_joint_states
+from gear_kinematics.message_batches import decode_joint_states
 from gear_kinematics.messages import JOINT_STATE
+from gear_kinematics.output_encoder import EncoderSettings
 from gear_kinematics.rotor_input import InputSettings, RotorInput, RotorSamples
 from gear_kinematics.transmission_error import ErrorSample, TransmissionError
 
@@ -29,8 +30,6 @@ _BATCH = 8192  # messages
 def read_bag(
     path: Path,
     parameters: Mapping[str, Any],
-    travel: float,
-    max_gap: int,
     rotor_topic: str | None = None,
     encoder_topic: str | None = None,
     counts: int | None = None,
@@ -42,8 +41,6 @@ def read_bag(
     Args:
         path: of the bag.
         parameters: of the node, as `parameters.load` gives them.
-        travel: rad of the output after a reversal, until the new direction counts.
-        max_gap: ns between rotor states, beyond which no output angle is compared with them.
         rotor_topic: of the rotor's states; None: by type and name.
         encoder_topic: of the output's encoder; None: by type and name, if there is one.
         counts: steps in a turn of the rotor's encoder.
@@ -75,9 +72,13 @@ def read_bag(
     columns = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
     errors: list[ErrorSample] = []
     if encoder:
-        states = decode_joint_states(messages[encoder], _joint(messages[encoder], parameters))
-        comparison = TransmissionError(max_gap=max_gap, travel=travel)
-        errors = _compare(comparison, samples.stamp, turns, angle, states)
+        settings = EncoderSettings.from_mapping(parameters)
+        states = decode_joint_states(messages[encoder], settings.output_encoder_joint)
+        comparison = settings.comparison()
+        usable = ~states.malformed & states.present[:, 0]
+        measured = settings.output_angle(states.values[usable, 0])
+        ideal = (samples.stamp, turns, angle)
+        errors = _compare(comparison, ideal, (states.stamp[usable], measured))
         readings = states.values[:, 0][np.isfinite(states.values[:, 0])]
         motion = Motion.from_samples(
             errors, comparison.unmatched, rotor_step, step_of(output_counts, readings)
@@ -138,29 +139,23 @@ def _messages(
     return messages, received, error
 
 
-def _joint(messages: list[bytes], parameters: Mapping[str, Any]) -> str:
-    """The output's joint in the encoder's messages; '' for the only one, whatever its name."""
-    name = str(parameters['output_joint'])
-    return name if decode_joint_states(messages[:1], name).joint_found.any() else ''
-
-
 def _compare(
-    comparison: TransmissionError, stamps: Array, turns: Array, angle: Array, states: JointStates
+    comparison: TransmissionError,
+    ideal: tuple[Array, Array, Array],
+    measured: tuple[Array, Array],
 ) -> list[ErrorSample]:
-    """Feed both streams by stamp, as a node gets them."""
-    usable = ~states.malformed & states.present[:, 0]
-    ideal = zip(stamps.tolist(), turns.tolist(), angle.tolist(), strict=True)
+    """Feed both by stamp, as a node gets them: stamps, turns and angles; stamps and angles."""
+    coming = zip(*(column.tolist() for column in ideal), strict=True)
     samples: list[ErrorSample] = []
-    waiting = next(ideal, None)
-    measured = zip(states.stamp[usable].tolist(), states.values[usable, 0].tolist(), strict=True)
-    for stamp, position in measured:
+    waiting = next(coming, None)
+    for stamp, position in zip(*(column.tolist() for column in measured), strict=True):
         while waiting and waiting[0] <= stamp:
             samples += comparison.add_ideal(waiting[0], int(waiting[1]), waiting[2])
-            waiting = next(ideal, None)
+            waiting = next(coming, None)
         samples += comparison.add_measured(stamp, position)
     while waiting:
         samples += comparison.add_ideal(waiting[0], int(waiting[1]), waiting[2])
-        waiting = next(ideal, None)
+        waiting = next(coming, None)
     return samples
 
 

@@ -1,0 +1,102 @@
+"""One joint out of sensor_msgs/JointState messages, and why a message may be of no use."""
+
+import struct
+from operator import itemgetter
+
+from gear_kinematics.messages import (
+    STAMP,
+    STAMP_OFFSET,
+    MalformedMessageError,
+    joint_index,
+    joint_state_layout,
+    stamp_from,
+)
+
+MALFORMED = 'not a JointState'
+JOINT_MISSING = 'joint missing'
+POSITION_MISSING = 'position missing'
+POSITION_NOT_FINITE = 'position not finite'
+OUT_OF_ORDER = 'out of order'
+
+GREATEST = 1e300
+"""Beyond it a number counts as not finite: what is computed from it might not be."""
+_MAX_KEPT = 65_536  # bytes of a message whose layout is kept: far more than any driver sends
+
+
+class RejectedInputError(ValueError):
+    """A message that gives no output; the text says why and is one of few, to be counted by."""
+
+
+class JointReader:
+    """Reads a joint from message after message.
+
+    The messages of a driver are all laid out alike. The layout of the last one is kept as one
+    struct, in which what makes the layout is a field beside the joint's numbers: each message is
+    held against it, and gone through anew where it differs.
+    """
+
+    def __init__(self, joint: str) -> None:
+        """Start.
+
+        Args:
+            joint: its name; '' takes the only joint of a message.
+        """
+        self._joint = joint.encode()
+        self._size = -1  # of the messages whose layout is known
+
+    def read(self, data: bytes) -> tuple[int, float, float | None, float | None]:
+        """Read a message.
+
+        Returns:
+            Stamp (ns, 0 where there is none), position, velocity and effort; None for what is
+            absent or not finite.
+
+        Raises:
+            RejectedInputError: if it has no finite position of the joint.
+        """
+        try:
+            if len(data) != self._size:
+                self._learn(data)
+            fields = (*self._struct.unpack(data), None)
+            if self._fixed_of(fields) != self._fixed:
+                self._learn(data)
+                fields = (*self._struct.unpack(data), None)
+            seconds, nanoseconds, position, velocity, effort = self._numbers_of(fields)
+            stamp = stamp_from(seconds, nanoseconds)
+        except MalformedMessageError as error:
+            raise RejectedInputError(MALFORMED) from error
+        if position is None:
+            raise RejectedInputError(self._fault)
+        if not abs(position) <= GREATEST:  # NaN compares false
+            raise RejectedInputError(POSITION_NOT_FINITE)
+        if velocity is not None and not abs(velocity) <= GREATEST:
+            velocity = None
+        if effort is not None and not abs(effort) <= GREATEST:
+            effort = None
+        return stamp, position, velocity, effort
+
+    def _learn(self, data: bytes) -> None:
+        """Take the layout of a message as that of the next ones."""
+        layout = joint_state_layout(data)
+        index = joint_index(layout.texts[1:], self._joint)
+        numbers = [
+            offset + 8 * index if index is not None and index < count else None
+            for offset, count in layout.arrays
+        ]
+        # Offset, size and format of each part; all else is padding.
+        parts = [(STAMP_OFFSET, STAMP.size, 'iI')]
+        parts += [(start, end - start, f'{end - start}s') for start, end in layout.fixed]
+        parts += [(offset, 8, 'd') for offset in numbers if offset is not None]
+        code, end = layout.order, 0
+        field: dict[int | None, int] = {None: -1}  # what is absent is the None behind the fields
+        for offset, size, item in sorted(parts):
+            field[offset] = len(field) - 1 + (offset > STAMP_OFFSET)  # the stamp is two fields
+            code += f'{offset - end}x{item}'
+            end = offset + size
+        self._struct = struct.Struct(f'{code}{layout.size - end}x')
+        stamp = field[STAMP_OFFSET]
+        self._numbers_of = itemgetter(stamp, stamp + 1, *(field[offset] for offset in numbers))
+        self._fixed_of = itemgetter(*(field[start] for start, _ in layout.fixed))
+        self._fixed = self._fixed_of(self._struct.unpack(data))
+        self._fault = JOINT_MISSING if index is None else POSITION_MISSING
+        self._size = layout.size if layout.size <= _MAX_KEPT else -1
