@@ -31,7 +31,7 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
-        *shared('config', '*.yaml'),
+        *shared('config', '*'),
         *shared('launch', '*.launch.py'),
         *shared('bags', '*'),
         *shared('policies', '*.policy.xml'),

@@ -11,14 +11,16 @@ from xml.etree import ElementTree as ET
 from gear_kinematics.kinematics import Branch, Mechanism
 
 _STEEL = 7850.0  # kg/m³
-_FACE_WIDTH = 0.01  # m, of the gears along the axis
-_COLOURS = {
+FACE_WIDTH = 0.01
+"""Of the gears, along the axis, m."""
+COLOURS = {
     'stator': '0.55 0.57 0.60 0.35',
     'rotor': '0.72 0.45 0.20 1.0',
     'satellite': '0.20 0.45 0.70 1.0',
     'oldham': '0.85 0.65 0.13 1.0',
     'output': '0.35 0.37 0.40 1.0',
 }
+"""Red, green, blue and opacity of the bodies, as a URDF has them."""
 
 
 def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> list[str]:
@@ -55,11 +57,11 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
     e = mechanism.eccentricity
     ring_radius = 0.5 * module * mechanism.ring_teeth
     satellite_radius = 0.5 * module * mechanism.satellite_teeth
-    half_length = max(abs(b.axial_position) for b in mechanism.branches) + _FACE_WIDTH
+    half_length = max(abs(b.axial_position) for b in mechanism.branches) + FACE_WIDTH
     robot = ET.Element('robot', name=f'{frame_prefix}gear_kinematics')
 
     def link(name: str, radius: float, length: float) -> None:
-        _link(robot, frame_prefix + name, radius, length, _COLOURS[name.partition('_')[0]])
+        _link(robot, frame_prefix + name, radius, length, COLOURS[name.partition('_')[0]])
 
     def joint(kind: str, name: str, parent: str, child: str) -> ET.Element:
         element = ET.SubElement(robot, 'joint', name=frame_prefix + name, type=kind)
@@ -73,10 +75,10 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
     joint('continuous', 'rotor', 'stator', 'rotor')
     for branch in mechanism.branches:
         satellite, oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
-        link(satellite, satellite_radius, _FACE_WIDTH)
+        link(satellite, satellite_radius, FACE_WIDTH)
         on_cam = joint('continuous', satellite, 'rotor', satellite)
         ET.SubElement(on_cam, 'origin', xyz=_cam_centre(branch, e), rpy='0 0 0')
-        link(oldham, 0.7 * satellite_radius, 1.2 * _FACE_WIDTH)
+        link(oldham, 0.7 * satellite_radius, 1.2 * FACE_WIDTH)
         slide = joint('prismatic', oldham, satellite, oldham)
         ET.SubElement(
             slide, 'limit', lower=repr(-e), upper=repr(e), effort='1000.0', velocity='1000.0'

@@ -4,7 +4,7 @@ import os
 import signal
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event, Thread
 from typing import Any, NamedTuple
@@ -25,6 +25,7 @@ from rclpy.event_handler import (
     PublisherEventCallbacks,
     QoSMessageLostInfo,
     QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherMatchedInfo,
     QoSRequestedIncompatibleQoSInfo,
     SubscriptionEventCallbacks,
 )
@@ -48,12 +49,14 @@ from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.markers import Markers
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.output_encoder import EncoderSettings, OutputEncoder
 from gear_kinematics.rotor_input import InputSettings, RotorInput
@@ -123,6 +126,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
+        if rate := self._value('markers_rate'):
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self._marker_timer = self.create_timer(
+                1.0 / rate, self._publish_markers, clock=steady, autostart=False
+            )
+            self._marker_publisher = self._create_output(
+                MarkerArray, 'markers', QoSProfile(depth=10), matched=self._on_viewers
+            )
         self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
@@ -153,7 +164,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             descriptor.floating_point_range = [FloatingPointRange(**bounds)]
         self.declare_parameter(name, default, descriptor)
 
-    def _create_output(self, message_type: type, topic: str, qos: QoSProfile) -> Publisher:
+    def _create_output(
+        self,
+        message_type: type,
+        topic: str,
+        qos: QoSProfile,
+        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+    ) -> Publisher:
         return self.create_publisher(
             message_type,
             topic,
@@ -161,7 +178,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
                 incompatible_qos=lambda event: self._on_incompatible_qos(topic, event),
-                matched=lambda _: self._note_listeners(),
+                matched=matched or (lambda _: self._note_listeners()),
             ),
         )
 
@@ -228,6 +245,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         if description != self._description:
             self._description = description
             self._publish(self._description_publisher, description)
+            self._markers = Markers(
+                self._mechanism, module=self._value('module'), frame_prefix=names['frame_prefix']
+            )
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
@@ -253,6 +273,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for sample in samples:
             if self._transmission_error.get_subscription_count():
                 self._publish(self._transmission_error, self._messages.transmission_error(sample))
+
+    def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
+        """Let the timer of the markers run while somebody looks."""
+        if event.current_count:
+            self._marker_timer.reset()
+        else:
+            self._marker_timer.cancel()
+
+    def _publish_markers(self) -> None:
+        for message in self._markers.due(self._input.last, time.monotonic()):
+            self._publish(self._marker_publisher, message)
 
     def _publish(self, publisher: Publisher, message: Any) -> None:
         try:

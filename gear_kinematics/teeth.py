@@ -16,10 +16,10 @@ and shift xk. With few teeth of difference the tips get into each other's way be
 
 with rs, rk the tip radii and αs, αk the involute's pressure angles there; and a ring tip stays
 clear of the satellite's base circle (involute interference) if tan αk ≥ (1 - zs/zk) tan αw. Both
-are in the gear handbooks (KHK/SDP-SI, Elements of Metric Gear Technology, 5; Maitra, Handbook of
-Gear Design, 3.10; Colbourne, The Geometry of Involute Gears, 8). The remedy is theirs too: shorter
-teeth, as high as interference permits. Trimming interference only forbids to push the satellite
-in from the side; it is put in along the axis.
+are in SDP/SI, Elements of Metric Gear Technology, section 5, and derived in Colbourne, The
+Geometry of Involute Gears. The usual remedy is shorter teeth: here as high as interference
+permits. Trimming interference, which only forbids to push the satellite in from the side, does
+not matter: it is put in along the axis.
 """
 
 import math
@@ -39,7 +39,7 @@ PRESSURE_ANGLE = math.radians(20.0)
 """α of the basic rack, rad (ISO 53)."""
 _CLEARANCE = 0.25  # between tip and root, modules (ISO 53, type A)
 _BACKLASH = 0.02  # between the flanks, along their normal, modules; taken from the satellite
-_LEAST_TIP = 0.2  # thickness of a tip, modules: thinner ones are called pointed (Niemann, 21.1)
+_LEAST_TIP = 0.2  # thickness of a tip, modules: the usual limit of what is called pointed
 _FLANK_POINTS = 8  # with less, the chords of teeth of low numbers come too near to each other
 _CIRCLE_POINTS = 360
 _MOST_TEETH = 1000  # to be drawn; no picture shows finer ones

@@ -18,7 +18,8 @@ from gear_kinematics.node import GearStatePublisher, make_executor
 
 READ_ONLY = (
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
-    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'executor',
+    'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
+    'executor',
 )  # fmt: skip
 INTEGER_BOUNDS = {
     'ring_teeth': (2, 100_000, 0),
@@ -34,6 +35,7 @@ BOUNDS = {
     'max_rotor_speed': (1e-3, 1e6),
     'max_rotor_acceleration': (1e-3, 1e9),
     'input_timeout': (1e-3, 1e6),
+    'markers_rate': (0.0, 1000.0),
     'output_encoder_zero': (-1e15, 1e15),
     'transmission_error_window': (0.1, 60.0),
     'transmission_error_limit': (1e-9, 10.0),
@@ -74,7 +76,7 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 27
+    assert len(own) == 28
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
@@ -196,6 +198,21 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
     node._report()
     [status] = published['/diagnostics'].status
     assert 'not sent 1' in status.message
+    node.destroy_node()
+
+
+def test_timer_of_the_markers_stands_still_before_somebody_looks(node):
+    [other] = [timer for timer in node.timers if timer is not node._marker_timer]
+    assert node._marker_timer.is_canceled()
+    assert not other.is_canceled()
+
+
+def test_markers_can_be_switched_off(context):
+    overrides = [Parameter('markers_rate', value=0.0)]
+    node = GearStatePublisher(context=context, namespace='unmarked', parameter_overrides=overrides)
+    topics = {publisher.topic_name for publisher in node.publishers}
+    assert '/unmarked/output_state' in topics
+    assert '/unmarked/markers' not in topics
     node.destroy_node()
 
 

@@ -88,6 +88,7 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
         f'{namespace}/body_poses': ['geometry_msgs/msg/PoseArray'],
         f'{namespace}/mechanism_joint_states': ['sensor_msgs/msg/JointState'],
         f'{namespace}/robot_description': ['std_msgs/msg/String'],
+        f'{namespace}/markers': ['visualization_msgs/msg/MarkerArray'],
         f'{namespace}/transmission_error': ['sensor_msgs/msg/JointState'],
         '/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray'],
     }

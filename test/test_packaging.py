@@ -154,7 +154,7 @@ def metadata(wheel) -> Message:
 
 def shared_files(root: Path) -> set[str]:
     """Return every file that belongs into share/gear_kinematics."""
-    folders = {'config': '*.yaml', 'launch': '*.launch.py', 'bags': '*', 'policies': '*'}
+    folders = {'config': '*', 'launch': '*.launch.py', 'bags': '*', 'policies': '*'}
     files = {
         path.relative_to(root).as_posix()
         for folder, pattern in folders.items()
@@ -185,6 +185,7 @@ def test_wheel_holds_types_and_share(tree, wheel):
     assert f'{data}/share/ament_index/resource_index/packages/gear_kinematics' in names
     shared = shared_files(tree)
     assert {'config/actuator.yaml', 'launch/gear_state_publisher.launch.py'} <= shared
+    assert {'config/view.rviz', 'config/foxglove.json', 'launch/view.launch.py'} <= shared
     assert {f'{data}/{SHARE}/{name}' for name in shared} <= names
     assert not [name for name in names if name.startswith('test')]
 

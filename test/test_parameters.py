@@ -32,6 +32,7 @@ CONTRACT = {
 }
 OUR_OWN = {
     'max_rotor_acceleration': 6500.0,
+    'markers_rate': 30.0,
     'executor': 'auto',
     'output_encoder_joint': '',
     'output_encoder_direction': 1,
@@ -41,7 +42,10 @@ OUR_OWN = {
     'transmission_error_max_gap': 0.1,
     'transmission_error_travel': math.radians(1.0),
 }
-READ_ONLY = {'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'executor'}
+READ_ONLY = {
+    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'markers_rate',
+    'executor',
+}  # fmt: skip
 LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
 
 

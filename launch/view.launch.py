@@ -1,0 +1,69 @@
+"""Watch the mechanism: gear state publisher, robot_state_publisher and RViz."""
+
+from pathlib import Path
+
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+from launch_ros.substitutions import FindPackageShare
+
+from gear_kinematics import parameters
+from gear_kinematics.description import urdf
+from gear_kinematics.kinematics import Mechanism
+
+
+def start_viewers(context: LaunchContext) -> list[Node]:
+    """Describe the nodes; what the gear state publisher has as parameters holds for them too."""
+    config = parameters.load(Path(LaunchConfiguration('config').perform(context)))
+    prefix = LaunchConfiguration('frame_prefix').perform(context) or config['frame_prefix']
+    # It wants the URDF as a parameter, and publishes it again: out of the way.
+    description = urdf(
+        Mechanism.from_mapping(config),
+        module=config['module'],
+        output_joint=config['output_joint'],
+        frame_prefix=prefix,
+    )
+    return [
+        Node(
+            package='robot_state_publisher',
+            executable='robot_state_publisher',
+            namespace=LaunchConfiguration('namespace'),
+            parameters=[{'robot_description': ParameterValue(description, value_type=str)}],
+            remappings=[
+                ('joint_states', 'mechanism_joint_states'),
+                ('robot_description', '~/robot_description'),
+            ],
+            output='screen',
+        ),
+        Node(
+            package='rviz2',
+            executable='rviz2',
+            namespace=LaunchConfiguration('namespace'),
+            arguments=['-d', LaunchConfiguration('rviz_config'), '-f', f'{prefix}stator'],
+            condition=IfCondition(LaunchConfiguration('rviz')),
+            output='screen',
+        ),
+    ]
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Declare two arguments more than the gear state publisher has, and start everything."""
+    share = FindPackageShare('gear_kinematics')
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument('rviz', default_value='true', description='whether to run RViz'),
+            DeclareLaunchArgument(
+                'rviz_config',
+                default_value=PathJoinSubstitution([share, 'config', 'view.rviz']),
+                description='saved configuration of RViz',
+            ),
+            # Its arguments are declared there, and known from here on.
+            IncludeLaunchDescription(
+                PathJoinSubstitution([share, 'launch', 'gear_state_publisher.launch.py'])
+            ),
+            OpaqueFunction(function=start_viewers),
+        ]
+    )

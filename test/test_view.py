@@ -1,0 +1,135 @@
+"""What people watch the mechanism with: launch files, RViz's configuration, Foxglove's layout."""
+
+import ast
+import json
+import runpy
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import rclpy
+import yaml
+from rclpy.context import Context
+from rclpy.signals import SignalHandlerOptions
+
+from gear_kinematics.node import GearStatePublisher
+
+ROOT = Path(__file__).resolve().parents[1]
+LAUNCH_FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
+
+
+def nodes_of(tree) -> Iterator[dict]:
+    """Yield every mapping in a document."""
+    if isinstance(tree, dict):
+        yield tree
+    for child in tree.values() if isinstance(tree, dict) else tree:
+        if isinstance(child, (dict, list)):
+            yield from nodes_of(child)
+
+
+@pytest.fixture(scope='module')
+def rviz() -> dict:
+    return yaml.safe_load((ROOT / 'config/view.rviz').read_text('utf-8'))
+
+
+@pytest.fixture(scope='module')
+def foxglove() -> dict:
+    return json.loads((ROOT / 'config/foxglove.json').read_text('utf-8'))
+
+
+@pytest.fixture(scope='module')
+def topics() -> dict[str, str]:
+    """Return the types of the node's outputs by topic, for a node without a namespace."""
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    node = GearStatePublisher(context=context)
+    found = {publisher.topic_name: publisher.msg_type.__name__ for publisher in node.publishers}
+    node.destroy_node()
+    rclpy.shutdown(context=context)
+    return found
+
+
+def test_rviz_listens_to_topics_of_the_node(rviz, topics):
+    displays = rviz['Visualization Manager']['Displays']
+    kinds = {'MarkerArray': 'MarkerArray', 'RobotModel': 'String'}
+    wanted = {
+        f'/{topic["Value"]}': kinds[display['Class'].partition('/')[2]]
+        for display in displays
+        for name, topic in display.items()
+        if name.endswith('Topic')
+    }
+    assert set(wanted) == {'/markers', '/robot_description'}
+    assert wanted.items() <= topics.items()
+
+
+def test_rviz_gets_the_robot_description_that_was_latched(rviz):
+    [qos] = [n['Description Topic'] for n in nodes_of(rviz) if 'Description Topic' in n]
+    assert qos['Durability Policy'] == 'Transient Local'
+
+
+def test_foxglove_listens_to_topics_of_the_node(foxglove, topics):
+    panels = foxglove['configById']
+    shown = {topic for panel in panels.values() for topic in panel.get('topics', {})}
+    shown |= {panel['topicToRender'] for panel in panels.values() if 'topicToRender' in panel}
+    paths = [p['value'] for panel in panels.values() for p in panel.get('paths', [])]
+    plotted = {path.partition('.')[0] for path in paths}
+    assert shown == {'/markers', '/diagnostics'}
+    assert plotted == {'/output_state'}
+    assert {path.partition('.')[2] for path in paths} <= {'position[0]', 'velocity[0]'}
+    assert shown | plotted <= set(topics)
+
+
+def test_every_panel_of_foxglove_has_its_place(foxglove):
+    halves = [n[side] for n in nodes_of(foxglove['layout']) for side in ('first', 'second')]
+    panels = [half for half in halves if isinstance(half, str)]
+    assert sorted(panels) == sorted(foxglove['configById'])
+
+
+def test_both_look_from_the_frame_of_the_markers(rviz, foxglove):
+    assert rviz['Visualization Manager']['Global Options']['Fixed Frame'] == 'stator'
+    assert foxglove['configById']['3D!mechanism']['followTf'] == 'stator'
+
+
+def started_packages(path: Path) -> set[str]:
+    """Give the packages whose nodes a launch file starts."""
+    return {
+        keyword.value.value
+        for node in ast.walk(ast.parse(path.read_text('utf-8')))
+        if isinstance(node, ast.Call) and getattr(node.func, 'id', '') == 'Node'
+        for keyword in node.keywords
+        if keyword.arg == 'package'
+    }
+
+
+def test_what_launch_files_start_is_a_dependency():
+    manifest = ET.parse(ROOT / 'package.xml').getroot()  # noqa: S314, the project's own file
+    declared = {element.text for element in manifest.iterfind('exec_depend')}
+    started = set().union(*map(started_packages, LAUNCH_FILES))
+    assert started == {'gear_kinematics', 'robot_state_publisher', 'rviz2'}
+    assert started - {'gear_kinematics'} <= declared
+
+
+@pytest.mark.parametrize('path', LAUNCH_FILES, ids=lambda path: path.name)
+def test_launch_file_loads(path):
+    """Needs a system ROS: the wheels have no launch."""
+    pytest.importorskip('launch_ros', reason='launch is not installed')
+    description = runpy.run_path(str(path))['generate_launch_description']()
+    assert description.entities
+
+
+def test_viewers_take_the_prefix_of_the_parameters(tmp_path):
+    """Needs a system ROS, as above."""
+    launch = pytest.importorskip('launch', reason='launch is not installed')
+    pytest.importorskip('launch_ros', reason='launch_ros is not installed')
+    config = tmp_path / 'my.yaml'
+    config.write_text("/**:\n  ros__parameters:\n    frame_prefix: 'left_'\n")
+    context = launch.LaunchContext()
+    context.launch_configurations.update(
+        config=str(config), frame_prefix='', namespace='', rviz='false', rviz_config='view.rviz'
+    )
+    start = runpy.run_path(str(ROOT / 'launch/view.launch.py'))['start_viewers']
+    _, rviz = start(context)
+    words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd[1:]]
+    assert words[words.index('-f') + 1] == 'left_stator'
+    assert not rviz.condition.evaluate(context)
