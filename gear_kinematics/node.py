@@ -92,12 +92,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for name, (parameter, default) in parameters.branch_parameters(branches).items():
             self._declare(name, parameter, default)
         self._mechanism = Mechanism.from_mapping(self._values())
-        self._settings = (
-            InputSettings.from_mapping(self._values()),
-            EncoderSettings.from_mapping(self._values()),
-        )
-        self._input = RotorInput(self._settings[0])
-        self._encoder = OutputEncoder(self._mechanism, self._settings[1])
+        rotor, encoder = self._settings = self._settings_of_inputs()
+        self._input = RotorInput(rotor)
+        self._encoder = OutputEncoder(self._mechanism, encoder)
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
@@ -215,6 +212,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _values(self) -> dict[str, Any]:
         return {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
 
+    def _settings_of_inputs(self) -> tuple[InputSettings, EncoderSettings]:
+        values = self._values()
+        return InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
+
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse what types and ranges, which rclpy checks, cannot say."""
         for parameter in changed:
@@ -233,12 +234,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _configure(self) -> None:
         """Take the parameters over; called again after every change."""
-        values = self._values()
-        settings = InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
-        if settings != self._settings:  # angles from before and after do not compare
+        if (settings := self._settings_of_inputs()) != self._settings:
             self._settings = settings
-            self._input.settings = settings[0]
-            self._encoder = OutputEncoder(self._mechanism, settings[1])
+            self._input.settings, encoder = settings
+            self._encoder = OutputEncoder(self._mechanism, encoder)  # errors begin anew
         names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
         self._messages = StateMessages(self._mechanism, **names)
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
@@ -259,7 +258,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
         self._monitor.published += 1
-        if self._input.referenced:
+        # Without an encoder there is nothing to compare with.
+        if self._encoder.received and self._input.referenced:
             self._publish_errors(self._encoder.follow(sample))
 
     def _on_output_encoder(self, data: bytes) -> None:

@@ -89,12 +89,7 @@ class OutputEncoder:
         return self._note(self._comparison.add_measured(stamp or now(), angle))
 
     def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:
-        """Take the rotor's next sample, whose turns are known; returns what `accept` does.
-
-        As long as there was no message from the encoder, nothing is computed.
-        """
-        if not self.received:
-            return ()
+        """Take the rotor's next sample, whose turns are known; returns what `accept` does."""
         turns, angle = self._form.output_angle(*sample.position, math)
         return self._note(self._comparison.add_ideal(sample.stamp, turns, angle))
 

@@ -120,7 +120,7 @@ class ToothPair:
 
     mechanism: Mechanism
     module: float
-    """m."""
+    """Of the teeth, m."""
     addendum: float
     """Height of the teeth above their reference circle, modules: 1, or less if shortened."""
 
@@ -234,7 +234,7 @@ class Involute(NamedTuple):
 
     teeth: int
     base_radius: float
-    """m."""
+    """Of the base circle, m."""
     base_half_angle: float
     """Half of the angle that a tooth takes on the base circle, rad."""
 

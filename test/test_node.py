@@ -15,6 +15,7 @@ from rclpy.signals import SignalHandlerOptions
 
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.node import GearStatePublisher, make_executor
+from gear_kinematics.output_encoder import OutputEncoder
 
 READ_ONLY = (
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
@@ -213,6 +214,18 @@ def test_markers_can_be_switched_off(context):
     topics = {publisher.topic_name for publisher in node.publishers}
     assert '/unmarked/output_state' in topics
     assert '/unmarked/markers' not in topics
+    node.destroy_node()
+
+
+def test_nothing_is_compared_before_there_is_an_encoder(context, monkeypatch):
+    node = GearStatePublisher(context=context, namespace='compared')
+    followed = []
+    monkeypatch.setattr(OutputEncoder, 'follow', lambda _, sample: followed.append(sample) or [])
+    node._on_rotor_state(rotor_bytes(1, position=[1.0]))
+    assert not followed
+    node._on_output_encoder(rotor_bytes(1, position=[1.0]))
+    node._on_rotor_state(rotor_bytes(2, position=[1.0]))
+    assert [sample.stamp for sample in followed] == [2]
     node.destroy_node()
 
 
