@@ -1,7 +1,10 @@
 """One joint out of sensor_msgs/JointState messages, and why a message may be of no use."""
 
 import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from operator import itemgetter
+from typing import Any, Self
 
 from gear_kinematics.messages import (
     STAMP,
@@ -25,6 +28,16 @@ _MAX_KEPT = 65_536  # bytes of a message whose layout is kept: far more than any
 
 class RejectedInputError(ValueError):
     """A message that gives no output; the text says why and is one of few, to be counted by."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Parameters of the node that say how to read an input, each under its own name."""
+
+    @classmethod
+    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
+        """Pick them from the parameters of the node."""
+        return cls(**{field.name: parameters[field.name] for field in fields(cls)})
 
 
 class JointReader:

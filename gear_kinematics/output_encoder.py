@@ -3,10 +3,10 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Self
+from dataclasses import dataclass
+from typing import Any
 
-from gear_kinematics.joint_input import JointReader, RejectedInputError
+from gear_kinematics.joint_input import JointReader, RejectedInputError, Settings
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.messages import SECOND
@@ -15,8 +15,8 @@ from gear_kinematics.transmission_error import ErrorSample, ErrorWindow, Transmi
 
 
 @dataclass(frozen=True, slots=True)
-class EncoderSettings:
-    """How to read the encoder and what to compare; the parameters of the same names."""
+class EncoderSettings(Settings):
+    """How to read the encoder and what to compare."""
 
     output_encoder_joint: str
     output_encoder_direction: int
@@ -24,11 +24,6 @@ class EncoderSettings:
     transmission_error_window: float
     transmission_error_max_gap: float
     transmission_error_travel: float
-
-    @classmethod
-    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
-        """Pick them from the parameters of the node, by name."""
-        return cls(**{field.name: parameters[field.name] for field in fields(cls)})
 
     def output_angle(self, position: Any) -> Any:
         """The measured output angle at a position of the encoder, rad; or arrays of them."""

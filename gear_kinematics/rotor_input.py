@@ -2,10 +2,10 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from gear_kinematics.joint_input import (
     POSITION_NOT_FINITE,
     JointReader,
     RejectedInputError,
+    Settings,
 )
 from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
 from gear_kinematics.message_batches import decode_joint_states
@@ -29,8 +30,8 @@ CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
 
 
 @dataclass(frozen=True, slots=True)
-class InputSettings:
-    """How to read the rotor's encoder; the parameters of the same names."""
+class InputSettings(Settings):
+    """How to read the rotor's encoder."""
 
     rotor_joint: str
     rotor_direction: int
@@ -38,11 +39,6 @@ class InputSettings:
     rotor_encoder: str
     max_rotor_speed: float
     max_rotor_acceleration: float
-
-    @classmethod
-    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
-        """Pick them from the parameters of the node, by name."""
-        return cls(**{field.name: parameters[field.name] for field in fields(cls)})
 
     @property
     def encoder(self) -> tuple[str, str]:
