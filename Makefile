@@ -22,7 +22,7 @@ demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and valid
 
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest
+	$(BIN)/coverage run -m pytest --numprocesses 2 --dist loadfile
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 
