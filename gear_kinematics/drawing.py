@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics import teeth
 from gear_kinematics.kinematics import Mechanism, solve, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
 
 Array = NDArray[np.float64]
 Outlines = tuple[Array, ...]
@@ -67,7 +68,7 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
     """
     of_branch = mechanism.branches[branch]
     ring, satellite = teeth.outlines(mechanism, module)
-    ring = _turned(ring, teeth.ring_phase(mechanism, of_branch))
+    ring = turned(ring, teeth.ring_phase(mechanism, of_branch))
     root = float(np.min(np.hypot(*satellite.T)))
     e, alpha = mechanism.eccentricity, of_branch.cam_phase
     cam = -e * math.sin(alpha), e * math.cos(alpha)  # e u(α)
@@ -80,9 +81,9 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
     slot = _rectangle(0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key)
     mark = _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root))
     key = [(sizes.tongue, -sizes.key), (sizes.tongue, sizes.key)]
-    jaws = _turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi)
+    jaws = turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi)
     return shapes | {
-        'satellite': _pierced(satellite, _circle(sizes.cam), slot, _turned(slot, math.pi), mark),
+        'satellite': _pierced(satellite, _circle(sizes.cam), slot, turned(slot, math.pi), mark),
         'rotor': _pierced(_circle(sizes.cam, *cam), _circle(sizes.shaft)),
         'oldham': _pierced(_tabbed_circle(sizes.coupling, key, 4), _circle(sizes.coupling_bore)),
         'output_shaft': _pierced(_circle(sizes.rim), jaws),
@@ -118,6 +119,27 @@ def poses(
         'oldham': Pose(state.oldham_centre[..., branch, :], state.output_turn_angle),
         'output_shaft': Pose(axis, state.output_turn_angle),
     }
+
+
+def roses(mechanism: Mechanism, petals: int, points: int) -> Array:
+    """The paths of the centres of the couplings, O4, from φ2 = 0 on (eqs. 21, 22).
+
+    Args:
+        mechanism: the mechanism.
+        petals: how many of its `oldham_petals` to go through.
+        points: of a petal.
+
+    Returns:
+        m, (petals · points + 1, B, 2).
+    """
+    share = petals / mechanism.oldham_petals
+    angle = np.linspace(0.0, TURN * mechanism.cycle_turns * share, petals * points + 1)
+    return np.asarray(solve(mechanism, angle).oldham_centre)
+
+
+def turned(outline: Array, angle: float) -> Array:
+    """Turn points (n, 2) about the origin by an angle, rad."""
+    return Pose(np.zeros(2), np.asarray(angle)).place(outline)
 
 
 class _Sizes(NamedTuple):
@@ -180,7 +202,7 @@ def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int
     angles = np.linspace(start, end, math.ceil((end - start) / _ARC))
     arc = radius * np.column_stack([np.cos(angles), np.sin(angles)])
     part = np.concatenate([[(foot, -half_width), *tab], arc[:-1]])
-    return np.concatenate([_turned(part, 2.0 * math.pi * k / count) for k in range(count)])
+    return np.concatenate([turned(part, 2.0 * math.pi * k / count) for k in range(count)])
 
 
 def _circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
@@ -194,7 +216,3 @@ def _rectangle(low: float, high: float, y: float) -> Array:
 
 def _pierced(border: Array, *holes: Array) -> Outlines:
     return border, *(hole[::-1] for hole in holes)
-
-
-def _turned(outline: Array, angle: float) -> Array:
-    return Pose(np.zeros(2), np.asarray(angle)).place(outline)

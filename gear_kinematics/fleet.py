@@ -138,6 +138,19 @@ def find_topics(bag: Bag, task: Task | None = None, *, outputs: bool = True) -> 
     return replace(_TOPICS, **given)
 
 
+def find_rotor_topic(bag: Bag, given: str | None = None) -> str:
+    """Give the rotor's topic: the given one, or else by type and name.
+
+    Raises:
+        BagError: if it is not there, or which one is meant is not clear.
+    """
+    if not given:
+        return find_topics(bag, outputs=False).rotor
+    if bag.topics.get(given) != JOINT_STATE:
+        raise BagError(f'{bag.path}: no topic {given} of type {JOINT_STATE} in it')
+    return given
+
+
 def _find_topic(path: Path, available: Mapping[str, str], name: str, kind: str) -> str:
     by_type = {
         topic: topic.rpartition('/')[2]
@@ -233,7 +246,7 @@ def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagRepo
     # Forking would copy the threads of a progress bar in whatever state they are.
     context = multiprocessing.get_context('spawn')
     others = multiprocessing.active_children()
-    with concurrent.futures.ProcessPoolExecutor(jobs, context, _start_worker) as pool:
+    with concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
         try:
             with _interrupts_blocked():
                 futures = {_submit(pool, task): task for task in tasks}
@@ -258,10 +271,8 @@ def _submit(pool: concurrent.futures.Executor, task: Task) -> concurrent.futures
         return failed
 
 
-def _start_worker() -> None:
-    """See to it that a worker ends when it is told to, and with a pool whose owner is killed."""
-    # A handler of Python's runs between any two steps, and may wait for what it interrupts.
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+def _end_with_parent() -> None:
+    """See to it that nothing is left of a pool whose owner is killed."""
     if parent := multiprocessing.parent_process():
         threading.Thread(target=_end_after, args=[parent], daemon=True).start()
 

@@ -22,7 +22,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from gear_kinematics import teeth
 from gear_kinematics.description import COLOURS, FACE_WIDTH
-from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.drawing import roses, turned
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.rotor_input import RotorSample
 
@@ -70,9 +71,11 @@ class Markers:
     def _fixed(self) -> bytes:
         """The ring gears, and the roses on which the centres of the Oldham couplings move."""
         line, thin = _OUTLINE_WIDTH * self._module, _ROSE_WIDTH * self._mechanism.eccentricity
+        petals = min(self._mechanism.oldham_petals, _MOST_PETALS)
+        paths = roses(self._mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
         markers = []
-        for branch, rose in zip(self._mechanism.branches, _roses(self._mechanism), strict=True):
-            outline = _turned(self._outlines.ring, teeth.ring_phase(self._mechanism, branch))
+        for branch, rose in zip(self._mechanism.branches, paths, strict=True):
+            outline = turned(self._outlines.ring, teeth.ring_phase(self._mechanism, branch))
             z = branch.axial_position
             markers += [
                 _line('ring', 'stator', _closed(outline), line, z + 0.5 * FACE_WIDTH),
@@ -176,23 +179,8 @@ def _places(mechanism: Mechanism, sample: RotorSample) -> dict[str, _Place]:
     return places
 
 
-def _roses(mechanism: Mechanism) -> Array:
-    """The paths of the couplings' centres, (B, n, 2), m: a petal for each turn of β by π."""
-    petals = min(mechanism.oldham_petals, _MOST_PETALS)
-    petal = math.pi * mechanism.satellite_teeth / mechanism.ring_teeth
-    rotor_angle = np.linspace(0.0, petals * petal, petals * _PETAL_POINTS + 1)
-    roses: Array = solve(mechanism, rotor_angle).oldham_centre.swapaxes(0, 1)
-    return roses
-
-
 def _closed(outline: Array) -> Array:
     return np.concatenate([outline, outline[:1]])
-
-
-def _turned(points: Array, angle: float) -> Array:
-    cosine, sine = math.cos(angle), math.sin(angle)
-    turned: Array = points @ np.array([[cosine, sine], [-sine, cosine]])
-    return turned
 
 
 def _line(kind: str, colour: str, points: Array, width: float, z: float) -> Marker:

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.fleet import find_topics
+from gear_kinematics.fleet import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.messages import JOINT_STATE, SECOND
+from gear_kinematics.messages import SECOND
 from gear_kinematics.rotor_input import InputSettings, RotorInput
 
 Array = NDArray[np.float64]
@@ -124,9 +124,7 @@ def read_trajectory(
     """
     messages, received = [], []
     with Bag(path) as bag:
-        topic = rotor_topic or find_topics(bag, outputs=False).rotor
-        if bag.topics.get(topic) != JOINT_STATE:
-            raise BagError(f'{path}: no topic {topic} of type {JOINT_STATE} in it')
+        topic = find_rotor_topic(bag, rotor_topic)
         for _, stamp, data in bag.messages([topic]):
             messages.append(data)
             received.append(stamp)

@@ -2,7 +2,6 @@
 
 import argparse
 import math
-import sys
 from pathlib import Path
 
 from gear_kinematics import parameters, plotting
@@ -11,6 +10,7 @@ from gear_kinematics.commands.arguments import add_config, config_path, positive
 from gear_kinematics.commands.output import (
     Console,
     closed_pipe_ignored,
+    complain,
     message_progress,
     write,
     write_file,
@@ -114,22 +114,18 @@ def run(options: argparse.Namespace) -> ExitCode:
         try:
             reports.append(_measure(path, options))
         except (RampError, MotionError) as error:
-            _complain(f'{path}: {error}')
+            complain(f'{path}: {error}')
             code = ExitCode.UNUSABLE
         except (ValueError, OSError) as error:
-            _complain(str(error))
+            complain(error)
             code = ExitCode.UNUSABLE
     for report in reports:
         if report.recording.error:
-            _complain(report.recording.error)
+            complain(report.recording.error)
             code = ExitCode.UNUSABLE
     if reports:
         _write(reports, options)
     return code
-
-
-def _complain(text: str) -> None:
-    print(f'gearkin: {" ".join(text.split())}', file=sys.stderr)
 
 
 def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:

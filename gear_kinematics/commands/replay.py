@@ -7,7 +7,7 @@ from pathlib import Path
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.fleet import find_topics
+from gear_kinematics.fleet import find_rotor_topic
 
 HELP = "publish a bag's rotor topic in its own time"
 
@@ -39,7 +39,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         if options.topics:
             topics = {topic: topic for topic in options.topics}
         else:
-            topics = {find_topics(bag, outputs=False).rotor: 'rotor_state'}
+            topics = {find_rotor_topic(bag): 'rotor_state'}
         if not options.no_wait:
             print(f'waiting for a subscriber on {", ".join(topics.values())}', file=sys.stderr)
         played = play(

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
-from gear_kinematics.fleet import find_topics
+from gear_kinematics.fleet import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -55,9 +55,7 @@ def read_bag(
     mechanism = Mechanism.from_mapping(parameters)
     with Bag(path) as bag:
         encoder = _find_encoder(bag, encoder_topic)
-        rotor = rotor_topic or find_topics(bag, outputs=False).rotor
-        if bag.topics.get(rotor) != JOINT_STATE:
-            raise BagError(f'{path}: no topic {rotor} of type {JOINT_STATE} in it')
+        rotor = find_rotor_topic(bag, rotor_topic)
         messages, received, error = _messages(bag, rotor, encoder, progress)
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     samples = rotor_input.accept_batch(messages[rotor], received)

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from gear_kinematics import drawing
 from gear_kinematics.drawing import Array
-from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.plotting.figures import FAINT, SERIES, render
 from gear_kinematics.trajectory import Trajectory
@@ -46,10 +47,7 @@ def rose(mechanism: Mechanism) -> Array:
         raise ValueError(
             f'a picture has room for {MOST_PETALS} petals, not for {mechanism.oldham_petals}'
         )
-    angle = np.linspace(
-        0.0, TURN * mechanism.cycle_turns, mechanism.oldham_petals * _PETAL_POINTS + 1
-    )
-    return np.asarray(solve(mechanism, angle).oldham_centre)
+    return drawing.roses(mechanism, mechanism.oldham_petals, _PETAL_POINTS)
 
 
 def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle: bool) -> bytes:
