@@ -124,13 +124,13 @@ class EncoderMonitor:
         if self.last_input is None:
             return None
         age = now - self.last_input
-        compared = encoder.compared != self._compared
+        silent, compared = age > timeout, encoder.compared != self._compared
         newly_rejected = encoder.rejected - self._rejected
         newly_lost, self._lost = self.lost - self._lost, self.lost
         self._compared, self._rejected = encoder.compared, Counter(encoder.rejected)
 
         warnings = []
-        if age > timeout:
+        if silent:
             warnings.append(f'no output_encoder for {age:.1f} s')
         elif not compared:
             warnings.append('no rotor angle of the same time')
@@ -139,7 +139,7 @@ class EncoderMonitor:
         if newly_lost:
             warnings.append(f'lost {newly_lost}')
         # What is not fed any more is of another time.
-        window = encoder.window if compared else ErrorWindow(0)
+        window = encoder.window if compared and not silent else ErrorWindow(0)
         peak_to_peak = window.both.peak_to_peak
         if peak_to_peak is not None and peak_to_peak > limit:
             warnings.append(f'peak to peak {peak_to_peak:.3g} rad')

@@ -143,9 +143,11 @@ def test_error_above_the_limit_is_a_warning(bench):
     assert (report.level, report.message) == (WARN, 'peak to peak 0.0032 rad')
 
 
-def test_silence_is_a_warning_and_leaves_no_figures(bench):
+@pytest.mark.parametrize('before', [True, False], ids=['after a report', 'at once'])
+def test_silence_is_a_warning_and_leaves_no_figures(bench, before):
     swing(bench, 0.001)
-    bench.report()
+    if before:
+        bench.report()
     report = bench.report(NOW + 2.5)
     assert (report.level, report.message) == (WARN, 'no output_encoder for 2.5 s')
     assert report.values['samples'] == '0'
