@@ -1,6 +1,7 @@
 """What every test needs: a ROS domain of its own, hypothesis profiles, mechanisms, shared data."""
 
 import os
+import signal
 import socket
 from pathlib import Path
 
@@ -23,6 +24,9 @@ def _free_domain() -> int:
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_DOMAIN_ID'] = str(_free_domain())
 os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(Path(__file__).with_name('discovery.xml'))
+
+# A background job of a shell ignores SIGINT, and so would every process that a test starts.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import math  # noqa: E402, see above
 from collections.abc import Callable  # noqa: E402
