@@ -184,7 +184,8 @@ def test_twice_the_rate_takes_half_the_time(tmp_path, listener):
 def test_a_loop_repeats_until_a_signal(number, bag_path, recorded, listener):
     name = next(names)
     heard = listener.listen(name)
-    with playing(bag_path, {ROTOR: name}, loop=True, rate=5.0) as process:
+    # At a rate at which a listener on a busy machine stays within its queue, however many rounds.
+    with playing(bag_path, {ROTOR: name}, loop=True) as process:
         listener.wait_until(lambda: len(heard) >= 2.5 * COUNT, 'the third round')
         process.send_signal(number)
     assert len(heard) <= process.sent
