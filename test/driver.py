@@ -13,6 +13,7 @@ from sensor_msgs.msg import JointState
 SECOND = 1_000_000_000  # ns
 MILLISECOND = SECOND // 1000
 _BURST = 10  # messages
+_PERIOD = 0.002  # s: not so fast that a listener on a busy machine falls behind by its queue
 _MOMENT = Duration(nanoseconds=50 * MILLISECOND)
 _ENDLESS = Duration(seconds=-1)
 
@@ -49,6 +50,7 @@ def drive(topic: str, start: int, go, acknowledged) -> None:
         message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
         message.position = [rotor_position(stamp)]
         publisher.publish(message)
+        time.sleep(_PERIOD)
         if number % _BURST == 0:
             publisher.wait_for_all_acked(_ENDLESS)
             acknowledged.value = stamp

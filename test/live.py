@@ -27,7 +27,7 @@ from std_srvs.srv import Trigger
 
 from gear_kinematics.live_node import running_node
 
-DEADLINE = 30.0  # s: far beyond anything but a failure
+DEADLINE = 60.0  # s: far beyond anything but a failure
 SECOND = 1_000_000_000  # ns
 START = 100 * SECOND
 STATES = ('output_state', 'body_poses', 'mechanism_joint_states')
