@@ -2,18 +2,26 @@
 
 import ast
 import json
+import math
 import runpy
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
 import pytest
 import rclpy
 import yaml
 from rclpy.context import Context
+from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
+from visualization_msgs.msg import Marker, MarkerArray
 
+from gear_kinematics.kinematics import split_turns
+from gear_kinematics.markers import Markers
 from gear_kinematics.node import GearStatePublisher
+from gear_kinematics.rotor_input import RotorSample
 
 ROOT = Path(__file__).resolve().parents[1]
 LAUNCH_FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
@@ -89,6 +97,105 @@ def test_every_panel_of_foxglove_has_its_place(foxglove):
 def test_both_look_from_the_frame_of_the_markers(rviz, foxglove):
     assert rviz['Visualization Manager']['Global Options']['Fixed Frame'] == 'stator'
     assert foxglove['configById']['3D!mechanism']['followTf'] == 'stator'
+
+
+class View(NamedTuple):
+    """A camera, with angles in rad, about a point of the frame of the markers."""
+
+    focus: list[float]
+    distance: float
+    elevation: float
+    azimuth: float
+    field: float
+    """From the lower to the upper edge."""
+    near: float
+
+    def seen(self, points: np.ndarray) -> np.ndarray:
+        """Give the places of points in the picture, from -1 to 1 along the height of it."""
+        across = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
+        flat = np.array([math.cos(self.azimuth), math.sin(self.azimuth), 0.0])
+        back = math.cos(self.elevation) * flat + [0.0, 0.0, math.sin(self.elevation)]
+        relative = points - self.focus
+        depth = self.distance - relative @ back
+        assert depth.min() > self.near
+        axes = np.stack([across, np.cross(back, across)], axis=1)
+        return relative @ axes / depth[:, np.newaxis] / math.tan(0.5 * self.field)
+
+
+@pytest.fixture(scope='module')
+def views(rviz, foxglove) -> dict[str, View]:
+    current = rviz['Visualization Manager']['Views']['Current']
+    camera = foxglove['configById']['3D!mechanism']['cameraState']
+    return {
+        'rviz': View(
+            [current['Focal Point'][axis] for axis in 'XYZ'],
+            current['Distance'],
+            current['Pitch'],
+            current['Yaw'],
+            math.radians(45.0),  # OGRE's
+            current['Near Clip Distance'],
+        ),
+        'foxglove': View(
+            camera['targetOffset'],
+            camera['distance'],
+            math.radians(90.0 - camera['phi']),
+            math.radians(270.0 - camera['thetaOffset']),
+            math.radians(camera['fovy']),
+            camera['near'],
+        ),
+    }
+
+
+def surface(marker: Marker) -> np.ndarray:
+    """Give points of a marker, of a cylinder about it where it is a body."""
+    position, scale = marker.pose.position, marker.scale
+    middle = np.array([position.x, position.y, position.z])
+    angle, height = np.meshgrid(np.linspace(0.0, math.tau, 72), [-0.5 * scale.z, 0.5 * scale.z])
+    radius = 0.5 * max(scale.x, scale.y)
+    body = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=-1)
+    outline = [(point.x, point.y, point.z) for point in marker.points]
+    return middle + np.reshape(outline or body, (-1, 3))
+
+
+@pytest.mark.parametrize('viewer', ['rviz', 'foxglove'])
+def test_mechanism_fills_the_view(views, viewer, actuator):
+    markers = Markers(actuator, module=0.0005, frame_prefix='')
+    sample = RotorSample(1, split_turns(0.7), None, None)
+    arrays = [deserialize_message(data, MarkerArray) for data in markers.due(sample, 0.0)]
+    places = views[viewer].seen(
+        np.concatenate([surface(marker) for array in arrays for marker in array.markers])
+    )
+    low, high = places.min(axis=0), places.max(axis=0)
+    assert np.all(np.maximum(-low, high) < 0.95)
+    assert high[1] - low[1] > 1.5
+    assert abs(high + low) == pytest.approx(0.0, abs=0.1)
+
+
+def test_both_look_from_the_same_direction(views):
+    rviz, foxglove = views['rviz'], views['foxglove']
+    assert rviz.elevation == pytest.approx(foxglove.elevation, abs=0.01)
+    assert rviz.azimuth == pytest.approx(foxglove.azimuth, abs=0.01)
+
+
+def test_foxglove_draws_no_frames_over_the_mechanism(foxglove):
+    """By itself, it draws axes of 0.2 m in every frame."""
+    frames = foxglove['configById']['3D!mechanism']['scene']['transforms']
+    assert frames == {'axisScale': 0, 'lineWidth': 0, 'showLabel': False}
+
+
+def test_plots_are_named_in_foxglove_and_in_lichtblick(foxglove):
+    plots = [panel for panel in foxglove['configById'].values() if 'paths' in panel]
+    titles = [
+        {panel[f'{program}PanelTitle'] for program in ('foxglove', 'lichtblick')}
+        for panel in plots
+    ]
+    assert titles == [{'Output angle, rad'}, {'Output velocity, rad/s'}]
+
+
+def test_rviz_is_told_whether_to_hide_its_docks(rviz):
+    """Otherwise it reads a variable that nobody has set."""
+    geometry = rviz['Window Geometry']
+    assert geometry['Hide Left Dock'] is geometry['Hide Right Dock'] is False
 
 
 def started_packages(path: Path) -> set[str]:
