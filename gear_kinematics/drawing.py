@@ -196,8 +196,8 @@ def _jaw(sizes: _Sizes) -> list[tuple[float, float]]:
 def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int) -> Array:
     """A circle with equal tabs, evenly spaced from the x axis on; the tab given on the x axis."""
     half_width = abs(tab[0][1])
-    foot = math.sqrt(radius**2 - half_width**2)
     start = math.asin(half_width / radius)
+    foot = radius * math.cos(start)
     end = 2.0 * math.pi / count - start
     angles = np.linspace(start, end, math.ceil((end - start) / _ARC))
     arc = radius * np.column_stack([np.cos(angles), np.sin(angles)])

@@ -82,6 +82,13 @@ def test_coupling_and_arm_are_drawn_where_the_slides_leave_them_room(actuator):
         assert all(-area(border) < area(hole) < 0.0 for hole in holes)
 
 
+@pytest.mark.parametrize('eccentricity', [1e-300, 1e300])
+def test_sizes_that_have_no_squares_are_drawn_too(eccentricity):
+    shapes = bodies(Mechanism(80, 76, eccentricity, (Branch('a'),)), eccentricity)
+    assert tuple(shapes) == BODIES
+    assert all(np.isfinite(outline).all() for outlines in shapes.values() for outline in outlines)
+
+
 @pytest.mark.parametrize('rotor_angle', ANGLES)
 def test_parts_fit_each_other(actuator, rotor_angle):
     """Cam in the bore, keys of the coupling in the slots of satellite and arm, all in the gear."""
