@@ -115,7 +115,7 @@ def scheme(
         branch: index of the branch.
     """
     draw = partial(_draw_scheme, mechanism, module, rotor, branch)
-    return render(path, (7.4, 4.4), draw)
+    return render(path, (7.4, 4.7), draw)
 
 
 def _draw_scheme(
@@ -136,7 +136,7 @@ def _draw_scheme(
     )
     left.set_title(
         f'branch {mechanism.branches[branch].name}, '
-        f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}, '
+        f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}\n'
         f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
         fontsize=9,
     )

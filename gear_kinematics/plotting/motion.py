@@ -121,8 +121,13 @@ def _draw_slides(
         axes.margins(x=0.0)
     if by_angle:
         speeds.set_xticks(np.arange(x[0], x[-1] + 1.0, 45.0))
+    # In one row, or in columns of a branch, or in as many as the width allows.
     handles, names = positions.get_legend_handles_labels()
-    figure.legend(handles, names, loc='outside upper center', ncols=4)
+    for columns in (len(names), *range(len(mechanism.branches), 0, -1)):
+        legend = figure.legend(handles, names, loc='outside upper center', ncols=columns)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            break
+        legend.remove()
 
 
 def _draw_output(mechanism: Mechanism, trajectory: Trajectory, figure: Any) -> None:
