@@ -8,12 +8,18 @@ import re
 from typing import Any
 
 from docutils import nodes
+from numpy.typing import ArrayLike
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import Config as NapoleonConfig
 from sphinx.ext.napoleon import GoogleDocstring
+from sphinx.util.typing import stringify_annotation
 
-_ARRAY = re.compile(r'ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]')
+_ALIASES = {
+    r'ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]': r'NDArray[\1]',
+    re.escape(re.sub(r'(?:\w+\.)+', '', stringify_annotation(ArrayLike))): 'ArrayLike',
+}
+"""What numpy's aliases are spelled out as, and what stands in the sources."""
 
 project = 'gear_kinematics'
 root_doc = 'docs/index'
@@ -53,10 +59,12 @@ def _read_sections(
 
 
 def _name_arrays(app: Sphinx, document: nodes.document, name: str) -> None:
-    """Write numpy's alias, which it spells out, as it stands in the sources."""
+    """Write numpy's aliases as they stand in the sources."""
     del app, name
     for kind in (addnodes.desc_parameter, addnodes.desc_annotation, addnodes.desc_returns):
         for node in list(document.findall(kind)):
-            text, count = _ARRAY.subn(r'NDArray[\1]', node.astext())
-            if count:
+            spelled = text = ''.join(child.astext() for child in node)  # no arrow before returns
+            for pattern, alias in _ALIASES.items():
+                text = re.sub(pattern, alias, text)
+            if text != spelled:
                 node.children = [nodes.Text(text)]
