@@ -73,13 +73,28 @@ def test_sizes_are_those_of_the_config_and_the_options(tmp_path):
     assert pictures[0] == pictures[1] != pictures[2]
 
 
+def test_scheme_without_teeth_says_why(tmp_path, capsys):
+    """At 0.65 mm the same gears mesh."""
+    pair = ('--ring-teeth', '30', '--satellite-teeth', '28')
+    path = str(tmp_path / 'a.svg')
+    assert main(['plot', 'scheme', path, *pair, '--eccentricity', '0.0011']) == 0
+    [told] = capsys.readouterr().out.splitlines()
+    assert told.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
+    assert 'at an eccentricity of 0.0011 m' in told
+    assert main(['plot', 'scheme', path, *pair, '--eccentricity', '0.00065']) == 0
+    assert main(['plot', 'roses', path, *pair, '--eccentricity', '0.0011']) == 0
+    assert capsys.readouterr() == ('', '')
+
+
 def test_animation_has_the_promised_frames(tmp_path, capsys):
     """Three turns of the rotor at 60 rad/s take 0.314 s, which are 13 frames, nearly 0.314/40."""
     path = tmp_path / 'loop.gif'
     pair = ('--ring-teeth', '4', '--satellite-teeth', '3', '--eccentricity', '0.0008')
     speed = ('--speed', '60', '--fps', '40', '--width', '120')
     assert main(['animate', str(path), *pair, *speed]) == 0
-    assert capsys.readouterr().out == f'{path}: 13 frames, 40 in a second\n'
+    told, circles = capsys.readouterr().out.splitlines()
+    assert told == f'{path}: 13 frames, 40 in a second'
+    assert circles.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
     assert path.read_bytes().startswith(SIGNATURES['gif'])
     with Image.open(path) as image:
         assert (image.n_frames, image.size) == (13, (120, 80))

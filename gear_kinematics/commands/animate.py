@@ -17,7 +17,7 @@ from gear_kinematics.commands.arguments import (
     positive,
     recording,
 )
-from gear_kinematics.commands.output import progress, write_file
+from gear_kinematics.commands.output import progress, tell_of_circles, write_file
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.trajectory import Trajectory
 
@@ -76,6 +76,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         )
     write_file(options.out, content)
     print(f'{options.out}: {count} frames, {options.fps} in a second')
+    tell_of_circles(pair, module(options))
     step = frames.longest_step
     if step > _UNSEEN:
         rate = 0.5 * options.rate * _UNSEEN / step

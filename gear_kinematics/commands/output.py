@@ -18,7 +18,9 @@ from rich.progress import (
 from rich.table import Table
 from rich.text import Text
 
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.rendering.wording import printable
+from gear_kinematics.teeth import InterferenceError, tooth_pair
 
 
 def complain(error: object) -> None:
@@ -94,6 +96,14 @@ def write_file(target: str, content: bytes) -> None:
     finally:
         with suppress(OSError):
             unfinished.unlink()
+
+
+def tell_of_circles(mechanism: Mechanism, module: float) -> None:
+    """Say why the gears of a drawing have no teeth, where they cannot mesh; module in m."""
+    try:
+        tooth_pair(mechanism, module)
+    except InterferenceError as error:
+        print(f'The gears are drawn as circles: {error}')
 
 
 @contextmanager

@@ -18,7 +18,7 @@ from gear_kinematics.commands.arguments import (
     module,
     recording,
 )
-from gear_kinematics.commands.output import write_file
+from gear_kinematics.commands.output import tell_of_circles, write_file
 from gear_kinematics.kinematics import Mechanism, RotorPosition, split_turns
 from gear_kinematics.trajectory import Trajectory
 
@@ -60,7 +60,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the figure and write its file."""
-    write_file(options.out, options.draw(options, mechanism(options), Path(options.out)))
+    pair = mechanism(options)
+    write_file(options.out, options.draw(options, pair, Path(options.out)))
+    if options.draw is _scheme:
+        tell_of_circles(pair, module(options))
     return ExitCode.DONE
 
 
