@@ -60,8 +60,8 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
     half_length = max(abs(b.axial_position) for b in mechanism.branches) + FACE_WIDTH
     robot = ET.Element('robot', name=f'{frame_prefix}gear_kinematics')
 
-    def link(name: str, radius: float, length: float) -> None:
-        _link(robot, frame_prefix + name, radius, length, COLOURS[name.partition('_')[0]])
+    def link(name: str, radius: float, length: float) -> ET.Element:
+        return _link(robot, frame_prefix + name, radius, length, _colour(name))
 
     def joint(kind: str, name: str, parent: str, child: str) -> ET.Element:
         element = ET.SubElement(robot, 'joint', name=frame_prefix + name, type=kind)
@@ -71,9 +71,16 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
         return element
 
     link('stator', 1.15 * ring_radius, 2.0 * half_length)
-    link('rotor', 0.5 * ring_radius, 1.6 * half_length)
+    rotor = link('rotor', 0.5 * ring_radius, 1.6 * half_length)
     joint('continuous', 'rotor', 'stator', 'rotor')
+    shaft = link('output_shaft', 0.2 * ring_radius, 2.4 * half_length)
+    joint('continuous', output_joint, 'stator', 'output_shaft')
+    # Cams and arms end a little beyond the faces of satellites and couplings, to be seen there.
+    cam = {'radius': repr(0.6 * ring_radius), 'length': repr(1.3 * FACE_WIDTH)}
+    arm = {'size': f'{0.1 * satellite_radius!r} {1.8 * satellite_radius!r} {1.4 * FACE_WIDTH!r}'}
     for branch in mechanism.branches:
+        _visual(rotor, 'cylinder', cam, _colour('rotor'), _cam_centre(branch, e))
+        _visual(shaft, 'box', arm, _colour('output_shaft'), f'0 0 {branch.axial_position!r}')
         satellite, oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
         link(satellite, satellite_radius, FACE_WIDTH)
         on_cam = joint('continuous', satellite, 'rotor', satellite)
@@ -83,8 +90,6 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
         ET.SubElement(
             slide, 'limit', lower=repr(-e), upper=repr(e), effort='1000.0', velocity='1000.0'
         )
-    link('output_shaft', 0.2 * ring_radius, 2.4 * half_length)
-    joint('continuous', output_joint, 'stator', 'output_shaft')
     ET.indent(robot)
     return ET.tostring(robot, encoding='unicode', xml_declaration=True) + '\n'
 
@@ -95,8 +100,12 @@ def _cam_centre(branch: Branch, eccentricity: float) -> str:
     return f'{x!r} {y!r} {branch.axial_position!r}'
 
 
-def _link(robot: ET.Element, name: str, radius: float, length: float, colour: str) -> None:
-    """A cylinder of steel about the link's z axis."""
+def _colour(link: str) -> str:
+    return COLOURS[link.partition('_')[0]]
+
+
+def _link(robot: ET.Element, name: str, radius: float, length: float, colour: str) -> ET.Element:
+    """A cylinder of steel about the link's z axis; what else is shown of it has no mass."""
     link = ET.SubElement(robot, 'link', name=name)
     inertial = ET.SubElement(link, 'inertial')
     mass = _STEEL * math.pi * radius**2 * length
@@ -105,8 +114,13 @@ def _link(robot: ET.Element, name: str, radius: float, length: float, colour: st
     ET.SubElement(inertial, 'mass', value=repr(mass))
     moments = {'ixx': across, 'iyy': across, 'izz': along, 'ixy': 0.0, 'ixz': 0.0, 'iyz': 0.0}
     ET.SubElement(inertial, 'inertia', {key: repr(value) for key, value in moments.items()})
+    _visual(link, 'cylinder', {'radius': repr(radius), 'length': repr(length)}, colour, '0 0 0')
+    return link
+
+
+def _visual(link: ET.Element, shape: str, size: dict[str, str], colour: str, at: str) -> None:
     visual = ET.SubElement(link, 'visual')
-    geometry = ET.SubElement(visual, 'geometry')
-    ET.SubElement(geometry, 'cylinder', radius=repr(radius), length=repr(length))
-    material = ET.SubElement(visual, 'material', name=f'{name}_colour')
+    ET.SubElement(visual, 'origin', xyz=at, rpy='0 0 0')
+    ET.SubElement(ET.SubElement(visual, 'geometry'), shape, size)
+    material = ET.SubElement(visual, 'material', name=f'{link.get("name")}_colour')
     ET.SubElement(material, 'color', rgba=colour)

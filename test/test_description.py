@@ -144,13 +144,38 @@ def test_every_link_is_shown_and_has_sizes(mechanism):
         assert float(cylinder.get('length')) > 0.0
 
 
+def test_rotor_has_its_cams_and_the_output_shaft_its_arms(mechanism):
+    """Cams about the joints of the satellites and wider than the rotor, arms along y."""
+    text = urdf(mechanism, module=MODULE, **NAMES)
+    robot, (_, joints) = ET.fromstring(text), read(text)  # noqa: S314, our own
+    links = {link.get('name'): link for link in robot.iterfind('link')}
+    rotor, *cams = links['rotor'].iterfind('visual')
+    shaft, *arms = links['output_shaft'].iterfind('visual')
+    thickness = float(links['rotor'].find('visual/geometry/cylinder').get('radius'))
+    assert origin(rotor) == origin(shaft) == [0.0, 0.0, 0.0]
+    for branch, cam, arm in zip(mechanism.branches, cams, arms, strict=True):
+        assert origin(cam) == joints[f'satellite_{branch.name}'].origin.tolist()
+        assert origin(arm) == [0.0, 0.0, branch.axial_position]
+        assert float(cam.find('geometry/cylinder').get('radius')) > thickness
+        x, y, z = map(float, arm.find('geometry/box').get('size').split())
+        coupling = links[f'oldham_{branch.name}'].find('visual/geometry/cylinder')
+        assert y > 2.0 * float(coupling.get('radius')) > x > 0.0
+        assert (
+            z > float(cam.find('geometry/cylinder').get('length')) > float(coupling.get('length'))
+        )
+
+
+def origin(visual) -> list[float]:
+    return [float(number) for number in visual.find('origin').get('xyz').split()]
+
+
 def test_mechanism_that_is_thin_has_sizes_too():
     # A branch is at 0 unless it is told to be elsewhere.
     thin = Mechanism(80, 76, 0.0011, (Branch('a'),))
     robot = ET.fromstring(urdf(thin, module=MODULE, **NAMES))  # noqa: S314, our own
     lengths = [float(x.get('length')) for x in robot.iterfind('link/visual/geometry/cylinder')]
     masses = [float(x.get('value')) for x in robot.iterfind('link/inertial/mass')]
-    assert len(lengths) == len(masses) == 5
+    assert (len(lengths), len(masses)) == (6, 5)  # the rotor's cam has no mass of its own
     assert min(lengths + masses) > 0.0
 
 
@@ -312,7 +337,7 @@ def test_urdfdom_does_complain_of_what_is_missing(actuator, element, attribute, 
 
 
 def test_links_are_of_steel_and_balanced(actuator):
-    """As Pinocchio reads them: cylinders about the axis, of the volumes that are shown."""
+    """As Pinocchio reads them: cylinders about the axis, of the volumes that are shown first."""
     pin = pinocchio()
     text = urdf(actuator, module=MODULE, **NAMES)
     model = pin.buildModelFromXML(text)
