@@ -99,7 +99,7 @@ def test_urdf_is_written_for_a_given_configuration(capsys, tmp_path):
     [
         (['describe', '--satellite-teeth', '80'], 'satellite_teeth (80) must be less than'),
         (['describe', '--module', '0'], 'module must be'),
-        (['describe', '--eccentricity', 'nan'], 'eccentricity must be finite'),
+        (['describe', '--eccentricity', 'nan'], '--eccentricity must be between 1e-06 and 1.0'),
         (['describe', '--config', 'missing.yaml'], 'missing.yaml'),
         (['urdf', '--config', 'missing.yaml'], 'missing.yaml'),
     ],

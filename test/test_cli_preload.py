@@ -256,7 +256,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         (['index', '--preload', '1'], '--preload needs the stiffness of branches and shaft'),
         (['index', '--angle', 'nan'], 'at most a whole turn, not by nan rad'),
         (['index', '--degrees', '361'], 'at most a whole turn, not by 6.30064 rad'),
-        (['index', '--angle', '1', '--ring-teeth', '0'], 'must be at least 1, not 0'),
+        (['index', '--angle', '1', '--ring-teeth', '0'], 'must be between 2 and 100000, not 0'),
         (['index', '--angle', '1', '--ring-teeth', '-3'], 'at least 1 tooth, not -3'),
         (['index', '--angle', '1', '--from', '80', '0', '0'], 'tooth 80 is not one of 0 to 79'),
         (['index', '--angle', '1', '--neighbours', '-1'], 'must not be negative, not -1'),

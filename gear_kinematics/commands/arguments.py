@@ -62,11 +62,19 @@ def mechanism(options: argparse.Namespace) -> Mechanism:
 
 
 def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
-    """The parameters of the node, with what was asked for instead of theirs."""
+    """The parameters of the node, with what was asked for instead of theirs.
+
+    Raises:
+        ValueError: for what the node would refuse.
+    """
     config = parameters.load(config_path(options, getattr(options, 'bag', None)))
     for name in ('ring_teeth', 'satellite_teeth', 'eccentricity', 'module'):
-        if (given := getattr(options, name, None)) is not None:
-            config[name] = given
+        if (given := getattr(options, name, None)) is None:
+            continue
+        option = f'--{name.replace("_", "-")}'
+        if fault := parameters.PARAMETERS[name].fault(option, given, config[name]):
+            raise ValueError(fault)
+        config[name] = given
     return config
 
 
