@@ -9,7 +9,7 @@ import pytest
 from gear_recordings import Gear, creep, quantised, ramps
 
 from gear_kinematics.lost_motion.hysteresis import Figures, Settings, figures
-from gear_kinematics.lost_motion.ramps import find_ramps
+from gear_kinematics.lost_motion.ramps import RampError, find_ramps
 from gear_kinematics.lost_motion.uncertainty import student_t
 
 RATED = 40.0
@@ -153,6 +153,21 @@ def test_ranges_that_the_ramps_do_not_reach_are_left_out():
     torque = ramps(*[(6.5, 200)] * 3)
     (found,) = measured(torque, creep(GEARS['soft'], torque), step=0.0)
     assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, 6.0)]
+
+
+def test_a_range_that_friction_holds_has_no_stiffness():
+    """From the peak at -4 N·m on, a friction of ±2.5 N·m holds it up to +1 N·m."""
+    torque = ramps(*[(4.0, 200)] * 3)
+    (found,) = measured(torque, creep(Gear(0.02, 300.0, 2.5), torque), step=0.0, rated=4.0)
+    assert [round(s.low, 3) for s in found.stiffness] == [0.6, 2.0]
+
+
+@pytest.mark.parametrize('offset', [0.0, 0.1, -1e3])
+def test_angle_that_does_not_follow_the_torque_is_refused(offset):
+    torque = ramps(*[(SMALL, 200)] * 3)
+    for angle in (0.0 * torque, -torque / 300.0):
+        with pytest.raises(RampError, match='does not grow with the torque'):
+            measured(torque, angle + offset, step=0.0, rated=SMALL)
 
 
 def test_lost_motion_beyond_the_ramps_is_not_there():

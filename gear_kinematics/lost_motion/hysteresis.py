@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.lost_motion.ramps import Array, Branch, Loop, Ramps
+from gear_kinematics.lost_motion.ramps import Array, Branch, Loop, RampError, Ramps
 from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
 
 LOST_MOTION_SHARE = 0.03
@@ -22,6 +22,8 @@ STIFFNESS_SHARES = (0.15, 0.5)
 
 _LEAST_RANGE = 1.5
 """A range of stiffness ends at as many times the torque where it begins, if not at a corner."""
+_ROUNDING = 1e-11
+"""Share of an angle that sums of many readings may be off by."""
 _LEVELS = 200
 """Torques at which a curve is compared with a straight line or with the model."""
 _FRICTIONS = 50
@@ -108,7 +110,12 @@ class Settings:
 
 
 def figures(ramps: Sequence[Ramps], settings: Settings) -> tuple[Figures, ...]:
-    """Measure the ramps, by amplitude from small to large."""
+    """Measure the ramps, by amplitude from small to large.
+
+    Raises:
+        RampError: if the angle does not grow with the torque.
+    """
+    _check(ramps[-1], settings)
     stiffness = [_stiffness(group, settings) for group in ramps]
     spring = stiffness[-1][-1].both if stiffness[-1] else None
     return tuple(
@@ -122,6 +129,22 @@ def figures(ramps: Sequence[Ramps], settings: Settings) -> tuple[Figures, ...]:
         )
         for group, found in zip(ramps, stiffness, strict=True)
     )
+
+
+def _check(ramps: Ramps, settings: Settings) -> None:
+    """Make sure that the torque moves the angle, and its own way."""
+    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps.loops]
+    if float(np.mean(ways)) <= _still(ramps, settings):
+        raise RampError(
+            'the angle does not grow with the torque. Does it stand still, or does one of them '
+            'count backwards?'
+        )
+
+
+def _still(ramps: Ramps, settings: Settings) -> float:
+    """How far an angle is from another that may be the same, rad."""
+    angles = [branch.angle for loop in ramps.loops for branch in (loop.fall, loop.rise)]
+    return max(settings.angle_step, _ROUNDING * float(np.max(np.abs(np.concatenate(angles)))))
 
 
 def _hysteresis(loops: Sequence[Loop], settings: Settings) -> Estimate:
@@ -154,7 +177,7 @@ def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
 
 def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
     corners = (0.0, *(corner for corner in settings.corners if corner < ramps.amplitude))
-    found = []
+    found, still = [], _still(ramps, settings)
     for low, high in pairwise((*corners, ramps.amplitude)):
         if high < _LEAST_RANGE * low:
             break
@@ -168,6 +191,8 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
             both = [0.5 * (a + b) for a, b in pulls]
             reading = Component(math.sqrt(2.0) * resolution(settings.angle_step) / (high - low))
             compliances = (both, positive, negative)
+            if min(map(np.mean, compliances)) * (high - low) <= still:
+                continue  # friction holds the gear all the way
             found.append(
                 Stiffness(
                     low, high, *(Estimate.of_mean(c, reading).inverse() for c in compliances)
