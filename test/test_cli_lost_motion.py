@@ -265,6 +265,18 @@ def test_motion_with_a_torque_that_is_no_ramp_is_motion(tmp_path, capsys):
     assert found['remarks'][0].startswith('no torque ramp')
 
 
+def test_remarks_tell_where_the_spring_is_not_clear_of_the_play(tmp_path, capsys):
+    torque = ramps((4.0, 200), (4.0, 200))
+    angle = creep(Gear(play=0.02, stiffness=300.0, friction=2.5), torque)
+    path = write_csv(tmp_path / 'sticky.csv', angle=angle, torque=torque)
+    assert main(['lost-motion', str(path)]) == 0
+    assert 'The friction is more than the 2 N·m from which on' in capsys.readouterr().out
+    assert main(['lost-motion', str(path), '--rated-torque', '40']) == 0
+    told = capsys.readouterr().out
+    assert 'No range of stiffness is clear of zero torque' in told
+    assert 'backlash (play model)' not in told
+
+
 def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
     torque = ramps((4.0, 200))
     path = write_csv(tmp_path / 'one.csv', angle=creep(GEAR, torque), torque=torque)

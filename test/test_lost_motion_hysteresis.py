@@ -155,6 +155,15 @@ def test_ranges_that_the_ramps_do_not_reach_are_left_out():
     assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, 6.0)]
 
 
+def test_spring_with_the_play_in_it_makes_no_play_model():
+    """Small ramps alone, of a gear that is rated far higher."""
+    torque = ramps(*[(SMALL, 200)] * 3)
+    (found,) = measured(torque, creep(GEARS['backlash'], torque), step=0.0, rated=RATED)
+    assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, SMALL)]
+    assert found.play_model is None
+    assert found.hysteresis.value == pytest.approx(truth(GEARS['backlash']).hysteresis, abs=2e-5)
+
+
 def test_a_range_that_friction_holds_has_no_stiffness():
     """From the peak at -4 N·m on, a friction of ±2.5 N·m holds it up to +1 N·m."""
     torque = ramps(*[(4.0, 200)] * 3)

@@ -51,7 +51,7 @@ class PlayModel:
     """Play and a spring in series, moved against Coulomb friction."""
 
     stiffness: float
-    """N·m/rad, of the spring: that of the largest ramps in their highest range."""
+    """N·m/rad, of the spring: that of the largest ramps in their highest range, clear of zero."""
     play: Estimate
     """rad: the backlash."""
     friction: Estimate
@@ -84,7 +84,7 @@ class Figures:
     stiffness: tuple[Stiffness, ...]
     """In the ranges that they reach."""
     play_model: PlayModel | None = None
-    """None where no ramp is large enough to know the spring by."""
+    """None where no range of stiffness is clear of zero, to know the spring by."""
 
     @property
     def play(self) -> Estimate | None:
@@ -117,7 +117,9 @@ def figures(ramps: Sequence[Ramps], settings: Settings) -> tuple[Figures, ...]:
     """
     _check(ramps[-1], settings)
     stiffness = [_stiffness(group, settings) for group in ramps]
-    spring = stiffness[-1][-1].both if stiffness[-1] else None
+    # A range that begins at no torque has the play in it.
+    clear = [found.both for found in stiffness[-1] if found.low > 0.0]
+    spring = clear[-1] if clear else None
     return tuple(
         Figures(
             amplitude=group.amplitude,

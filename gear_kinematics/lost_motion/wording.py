@@ -246,13 +246,21 @@ def _doubts(found: HysteresisReport) -> Iterator[str]:
         yield 'Where nothing was repeated there is no uncertainty.'
     model = smallest.play_model
     if not model:
-        yield 'No ramp is large enough to know the spring of the play model by.'
+        yield (
+            'No range of stiffness is clear of zero torque: without the spring there is no play '
+            'model.'
+        )
         return
     yield (
         f'The play model takes {number(model.stiffness, 4)} N·m/rad for its spring and leaves '
         f'{number(model.residual * ARC_MINUTES)} arcmin (root mean square) of the curve: what '
         'sticks and slips is no part of it.'
     )
+    if model.friction.value > (low := largest.stiffness[-1].low):
+        yield (
+            f'The friction is more than the {torque(low)} N·m from which on the spring is '
+            'measured: part of the play is in the spring. Larger ramps are needed.'
+        )
     at = LOST_MOTION_SHARE * found.settings.rated_torque
     if model.friction.value > at and not found.measured:
         yield (
