@@ -119,6 +119,17 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
             assert np.median(widths[f'{name} {figure}']) < limit, (name, figure)
 
 
+def test_many_repeats_do_not_hide_that_noise_rounds_the_curve():
+    """The gear goes through its play at a torque of 1 N·m; lost motion is read at 1.2 N·m."""
+    torque = ramps(*[(LARGE, 400)] * 10)
+    angle = creep(GEARS['backlash'], torque)
+    expected = truth(GEARS['backlash']).lost_motion
+    for seed in range(8):
+        noisy = torque + 0.1 * np.random.default_rng(seed).standard_normal(len(torque))
+        (found,) = measured(noisy, angle, step=0.0)
+        assert abs(found.lost_motion.value - expected) <= found.lost_motion.uncertainty
+
+
 def test_repeats_that_differ_widen_the_interval():
     gear, count = Gear(0.02, 300.0, 1.0), 200
     torque = ramps(*[(SMALL, count)] * 5)

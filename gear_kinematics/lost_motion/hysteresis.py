@@ -152,26 +152,28 @@ def _still(ramps: Ramps, settings: Settings) -> float:
 def _hysteresis(loops: Sequence[Loop], settings: Settings) -> Estimate:
     reading = resolution(settings.angle_step)
     widths = [loop.width(0.0) for loop in loops]
-    # Between no rounding and all of it anything is as likely, GUM 4.3.7.
-    rounding = float(np.mean([loop.rounding(0.0) for loop in loops])) / math.sqrt(3.0)
-    return Estimate.of_mean(widths, Component(math.sqrt(2.0) * reading), Component(rounding))
+    rounding = np.mean([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops])
+    return Estimate.of_mean(widths, Component(math.sqrt(2.0) * reading), _rounded(rounding))
+
+
+def _rounded(rounding: float | np.floating) -> Component:
+    """Between no rounding and all of it, rad, anything is as likely, GUM 4.3.7."""
+    return Component(abs(float(rounding)) / math.sqrt(3.0))
 
 
 def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
     torque = LOST_MOTION_SHARE * settings.rated_torque
     ways = [
-        [
-            float(branch.angle_at(torque) - branch.angle_at(-torque))
-            for branch in branches
-            if branch.reaches(torque) and branch.reaches(-torque)
-        ]
+        [branch for branch in branches if branch.reaches(torque) and branch.reaches(-torque)]
         for branches in ([loop.fall for loop in loops], [loop.rise for loop in loops])
     ]
     if not all(ways):
         return None
+    angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
+    rounding = [np.mean([b.rounding(torque) - b.rounding(-torque) for b in way]) for way in ways]
     # Four readings, each by half.
     reading = Component(resolution(settings.angle_step))
-    return Estimate.of_sum([(0.5, way) for way in ways], reading)
+    return Estimate.of_sum([(0.5, way) for way in angles], reading, _rounded(np.mean(rounding)))
 
 
 # Stiffness

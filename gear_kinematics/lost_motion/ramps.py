@@ -70,6 +70,11 @@ class Branch:
         sign = 1.0 if self.rising else -1.0
         return np.interp(sign * np.asarray(torque), sign * self.torque, self.angle)
 
+    def rounding(self, torque: float) -> float:
+        """By how much noise may raise the angle at a torque, rad: it rounds corners."""
+        before, at, after = self.angle_at(torque + 2.0 * self.blur * np.array([-1.0, 0.0, 1.0]))
+        return float(0.5 * (before + after) - at)
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Loop:
@@ -90,12 +95,6 @@ class Loop:
     def width(self, torque: float) -> float:
         """The angle between the branches, rad."""
         return float(self.fall.angle_at(torque) - self.rise.angle_at(torque))
-
-    def rounding(self, torque: float) -> float:
-        """How far a corner of the curve at a torque may be rounded, rad."""
-        reach = 2.0 * max(self.fall.blur, self.rise.blur)
-        beside = 0.5 * (self.width(torque - reach) + self.width(torque + reach))
-        return abs(beside - self.width(torque))
 
     def middle(self, torque: float) -> float:
         """The angle midway between the branches, rad."""
