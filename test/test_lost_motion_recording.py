@@ -44,6 +44,7 @@ def hysteresis(recording, actuator) -> float:
         ('Position_rad', 'Effort', 1.0, [], {}),
         ('Deflection [deg]', 'Motor Torque [Nm]', 180.0 / math.pi, [], {}),
         ('position_rev', 'torque', 1.0 / TURN, [], {}),
+        ('angle_mrad', 'torque', 1e3, [], {}),
         ('POSITION', 'TORQUE', 1.0 / TURN, ['Q_CURRENT'], {}),
         ('a', 'b', 1.0 / TURN, ['angle', 'torque'],
          {'angle': 'a', 'torque': 'b', 'unit': 'rev'}),
@@ -60,6 +61,32 @@ def test_columns_and_units(
     assert hysteresis(recording, actuator) == pytest.approx(expected, abs=1e-5)
     assert recording.rows == len(angle)
     assert not recording.loading.measured
+
+
+def test_unit_in_any_name_is_that_of_all_angles(tmp_path, actuator):
+    ideal = np.linspace(0.0, 3.0, 500)
+    columns = {'rotor': np.degrees(-19.0 * ideal), 'output_deg': np.degrees(ideal + 0.01)}
+    recording = read(write_csv(tmp_path / 'r.csv', **columns), actuator)
+    np.testing.assert_allclose(recording.motion.error, 0.01, rtol=0, atol=1e-12)
+    columns['rotor_rad'] = columns.pop('rotor')
+    with pytest.raises(CsvError, match='one unit, not in deg and rad'):
+        read(write_csv(tmp_path / 'r.csv', **columns), actuator)
+
+
+@pytest.mark.parametrize('on_rotor', [False, True])
+def test_torque_beside_both_encoders_winds_up_the_gear_alone(tmp_path, actuator, angle, on_rotor):
+    bench = TORQUE / 50.0  # gives way as well
+    path = write_csv(
+        tmp_path / 'r.csv',
+        rotor=-19.0 * (angle + bench),
+        output=bench,
+        torque=TORQUE / (-19.0 if on_rotor else 1.0),
+    )
+    recording = read(path, actuator, on_rotor=on_rotor)
+    np.testing.assert_allclose(recording.loading.angle, angle, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(recording.loading.torque, TORQUE, rtol=1e-12)
+    assert recording.loading.measured
+    assert len(recording.motion.error) == len(angle)
 
 
 def test_torque_that_was_measured_comes_before_the_commanded(tmp_path, actuator, angle):

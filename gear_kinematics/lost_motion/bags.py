@@ -177,5 +177,4 @@ def _loading(
     start = samples.stamp[0]
     stamps = np.array([error.stamp for error in errors]) - start
     torque = np.interp(stamps, samples.stamp[known] - start, torque)
-    step = float(np.hypot(motion.rotor_step, motion.output_step))
-    return Loading(torque, -motion.error, step, measured=True)
+    return Loading.of_gear(torque, motion)

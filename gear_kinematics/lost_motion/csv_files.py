@@ -20,7 +20,7 @@ from gear_kinematics.transmission_error import TransmissionError
 
 Array = NDArray[np.float64]
 
-UNITS: Mapping[str, float] = {'rad': 1.0, 'deg': math.radians(1.0), 'rev': TURN}
+UNITS: Mapping[str, float] = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
 """rad in units of angle."""
 _NAMES: Mapping[str, tuple[str, ...]] = {
     'angle': ('position', 'angle', 'deflection', 'twist', 'motor_position'),
@@ -29,8 +29,9 @@ _NAMES: Mapping[str, tuple[str, ...]] = {
     'output': ('output_position', 'output_angle', 'output_encoder', 'output'),
 }
 """Columns to look for, in any case, with or without a unit behind the name."""
-_PAIRS = (('angle', 'torque'), ('rotor', 'output'))
-_UNIT = re.compile(r'[\s_]*[\[(]?(rad|deg|rev)[\])]?$')
+_SETS = (('angle', 'torque'), ('rotor', 'output'), ('rotor', 'output', 'torque'))
+"""What belongs together."""
+_UNIT = re.compile(rf'[\s_]*[\[(]?({"|".join(UNITS)})[\])]?$')
 _TORQUE_UNIT = re.compile(r'[\s_]*[\[(]?n[·*.]?m[\])]?$')
 _MOTEUS = {'position', 'torque', 'q_current'}
 """Registers of moteus motor controllers, which give positions in revolutions."""
@@ -82,15 +83,19 @@ def read_csv(
     data = dict(zip(found, values[finite].T, strict=True))
     left_out = int(np.count_nonzero(~finite))
     remarks = (f'{left_out} rows were left out: not finite',) if left_out else ()
-    unit, why = _unit(header, columns, found)
+    unit, why = _unit(path, header, columns, found)
     for role in ('angle', 'rotor', 'output'):
         if role in data:
             data[role] *= UNITS[unit]
     loading = motion = None
-    if 'torque' in data:
-        loading = _loading(mechanism, data, counts, on_rotor=columns.on_rotor)
+    if columns.on_rotor and 'torque' in data:
+        data['torque'] *= float(mechanism.gear_ratio)
     if 'rotor' in data:
         motion = _motion(mechanism, data, travel, counts, output_counts)
+    if 'angle' in data:
+        loading = _loading(mechanism, data, counts, on_rotor=columns.on_rotor)
+    elif motion and 'torque' in data:
+        loading = Loading.of_gear(data['torque'], motion)
     return Recording(
         path.name,
         tuple(_described(found, unit, why, on_rotor=columns.on_rotor)),
@@ -134,14 +139,14 @@ def _find(path: Path, header: Sequence[str], columns: Columns) -> dict[str, str]
         for role, names in _NAMES.items()
         if (name := given.get(role) or next((plain[n] for n in names if n in plain), None))
     }
-    pairs = [pair for pair in _PAIRS if found.keys() >= {*pair}]
-    if not pairs:
+    together = [roles for roles in _SETS if found.keys() >= {*roles}]
+    if not together:
         raise CsvError(
             f'{path}: neither an angle and a torque nor a rotor and an output among the columns '
             f'{", ".join(header)}; name them with --angle-column, --torque-column, '
             '--rotor-column, --output-column'
         )
-    return {role: found[role] for pair in pairs for role in pair}
+    return {role: found[role] for roles in together for role in roles}
 
 
 def _plain(name: str) -> str:
@@ -163,13 +168,18 @@ def _numbers(
     return values
 
 
-def _unit(header: Sequence[str], columns: Columns, found: Mapping[str, str]) -> tuple[str, str]:
+def _unit(
+    path: Path, header: Sequence[str], columns: Columns, found: Mapping[str, str]
+) -> tuple[str, str]:
     """The unit of the angles, and how it is known."""
     if columns.unit:
         return columns.unit, 'as given'
-    for role in ('angle', 'rotor'):
-        if role in found and (suffix := _UNIT.search(found[role].lower())):
-            return suffix[1], 'by its name'
+    suffixes = [_UNIT.search(name.lower()) for role, name in found.items() if role != 'torque']
+    units = sorted({suffix[1] for suffix in suffixes if suffix})
+    if len(units) > 1:
+        raise CsvError(f'{path}: all angles have to be in one unit, not in {" and ".join(units)}')
+    if units:
+        return units[0], 'by its name'
     if {name.lower() for name in header} >= _MOTEUS:
         return 'rev', 'as moteus controllers record it'
     return 'rad', 'assumed'
@@ -177,8 +187,9 @@ def _unit(header: Sequence[str], columns: Columns, found: Mapping[str, str]) -> 
 
 def _described(found: Mapping[str, str], unit: str, why: str, *, on_rotor: bool) -> Iterable[str]:
     side = 'of the rotor' if on_rotor else 'at the output'
-    if 'torque' in found:
+    if 'angle' in found:
         yield f'angle {found["angle"]} {side}, {unit} ({why})'
+    if 'torque' in found:
         yield f'torque {found["torque"]} {side}, N·m'
     if 'rotor' in found:
         yield f'rotor {found["rotor"]}, output {found["output"]}, {unit} ({why})'
@@ -187,12 +198,11 @@ def _described(found: Mapping[str, str], unit: str, why: str, *, on_rotor: bool)
 def _loading(
     mechanism: Mechanism, data: Mapping[str, Array], counts: int | None, *, on_rotor: bool
 ) -> Loading:
-    angle, torque = data['angle'], data['torque']
-    step = step_of(counts, angle)
+    angle, step = data['angle'], step_of(counts, data['angle'])
     if on_rotor:
         ratio = float(mechanism.gear_ratio)
-        angle, torque, step = angle / ratio, torque * ratio, step / abs(ratio)
-    return Loading(torque, angle, step, measured=False)
+        angle, step = angle / ratio, step / abs(ratio)
+    return Loading(data['torque'], angle, step, measured=False)
 
 
 def _motion(

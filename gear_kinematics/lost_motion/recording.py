@@ -1,6 +1,8 @@
 """What a recording holds to measure lost motion by, whatever kind of file it is."""
 
+import math
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +30,17 @@ class Loading:
     """rad at the output, between readings of the angle; 0 where it is not known."""
     measured: bool
     """Whether an encoder saw the output; else it is taken to be locked."""
+
+    @classmethod
+    def of_gear(cls, torque: Array, motion: Motion) -> Self:
+        """Of the gear alone, where both its encoders were recorded.
+
+        Args:
+            torque: (n,), N·m, at the output, at the samples of `motion`.
+            motion: whose error is the wind-up.
+        """
+        step = math.hypot(motion.rotor_step, motion.output_step)
+        return cls(torque, -motion.error, step, measured=True)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
