@@ -262,6 +262,8 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         (['index', '--angle', '1', '--neighbours', '-1'], 'must not be negative, not -1'),
         (['index', '--angle', '1', '--backlash', '0.1'], '--branch-stiffness is missing'),
         (['index', '--angle', '1', '--config', 'none.yaml'], 'none.yaml'),
+        (['index', '--angle', '1', '--mirrored'], 'of use with --drawing only'),
+        (['index', '--angle', '1', '--json', '--drawing', '-'], 'only one of --json and'),
         (['index', '--angle', '1', '--drawing', 'none/a.svg'], 'none/a.svg: No such file'),
         (['index', '--angle', '1', '--ring-teeth', '2000', '--drawing', 'a.svg'], '1000 teeth'),
         (['preload', '--angle', '1'], 'stiffness of branches and shaft is missing'),

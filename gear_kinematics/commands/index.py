@@ -86,6 +86,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Print the setting and its neighbours, and draw it."""
+    if options.mirrored and not options.drawing:
+        raise ValueError('--mirrored is of use with --drawing only')
+    if options.json and options.drawing == '-':
+        raise ValueError('only one of --json and --drawing can go to stdout')
     answer = _answer(options)
     if options.drawing:
         setting = answer.nearest.choice.settings[0]
