@@ -5,6 +5,7 @@ import signal
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
+from typing import NoReturn
 
 from gear_kinematics.commands import (
     Command,
@@ -38,6 +39,15 @@ COMMANDS: dict[str, Command] = {
 }
 
 
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, as the commands do; the usage is in the help."""
+
+    def error(self, message: str) -> NoReturn:
+        """Complain and end."""
+        complain(f'{message}; see {self.prog} --help')
+        raise SystemExit(ExitCode.UNUSABLE)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
     if isinstance(sys.stdout, TextIOWrapper):
@@ -60,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='gearkin', description=__doc__)
+    parser = _Parser(prog='gearkin', description=__doc__)
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
     for name, command in COMMANDS.items():
         added = commands.add_parser(name, help=command.HELP, description=command.HELP)

@@ -112,12 +112,24 @@ def test_unusable_input_gets_one_clear_line_and_code_2(arguments, cause, capsys)
     assert cause in captured.err
 
 
-@pytest.mark.parametrize('arguments', [[], ['unknown'], ['describe', '--ring-teeth', 'many']])
-def test_unusable_arguments_get_code_2(arguments, capsys):
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        ([], 'arguments are required: COMMAND; see gearkin --help'),
+        (['unknown'], "'unknown'"),
+        (['describe', '--ring-teeth', 'many'], "--ring-teeth: invalid int value: 'many'; see"),
+        (['index', '--from', '1', '2'], 'expected 3 arguments; see gearkin index --help'),
+    ],
+)
+def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause, capsys):
     with pytest.raises(SystemExit) as exit_:
         main(arguments)
     assert exit_.value.code == 2
-    assert 'gearkin' in capsys.readouterr().err
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.startswith('gearkin: ')
+    assert captured.err.count('\n') == 1
+    assert cause in captured.err
 
 
 @pytest.mark.parametrize('command', ['', 'demo', 'describe', 'urdf'])

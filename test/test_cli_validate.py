@@ -244,7 +244,9 @@ def test_arguments_that_do_not_fit_together_get_code_2(options, capsys):
     with pytest.raises(SystemExit) as exit_:
         main(['validate', *options])
     assert exit_.value.code == 2
-    assert 'gearkin validate: error: ' in capsys.readouterr().err
+    errors = capsys.readouterr().err
+    assert errors.count('\n') == 1
+    assert errors.endswith('; see gearkin validate --help\n')
 
 
 # Reports in files.
