@@ -173,7 +173,9 @@ def _read(path: Path) -> dict[str, Any]:
     """The ros__parameters that the file has for the node, flattened to dotted names."""
     try:
         document = yaml.load(path.read_text(encoding='utf-8'), _RosLoader)  # noqa: S506, it is safe
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise ConfigError(f'{path}: {error.strerror}') from error
+    except UnicodeDecodeError as error:
         raise ConfigError(f'{path}: {error}') from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error

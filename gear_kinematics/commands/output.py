@@ -81,13 +81,13 @@ def write_file(target: str, content: bytes) -> None:
     Raises:
         ValueError: if it cannot be written, naming it.
     """
-    path = Path(target)
-    if path.exists() and not path.is_file():  # a device or a pipe: nothing to put in its place
-        path.write_bytes(content)
-        return
-    path = path.resolve()
+    given = Path(target)
+    path = given.resolve()
     unfinished = path.with_name(f'.{path.name}.{os.getpid()}.tmp')
     try:
+        if given.exists() and not given.is_file():  # a pipe, perhaps: nothing to put in its place
+            given.write_bytes(content)
+            return
         with unfinished.open('xb') as file:  # follows no link that is there
             file.write(content)
         unfinished.replace(path)
