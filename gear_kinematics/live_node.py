@@ -48,7 +48,7 @@ _MESSAGE_TYPES: Mapping[str, type] = {
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s: for messages that nobody expects
 _WINDOW = 500  # messages that the node may be behind: no queue of DEPTH runs over
-_QUIET = 1.0  # s of silence after which nothing more is to come
+_QUIET = 5.0  # s of silence after which nothing more is to come; DDS repeats every 3 s
 _PROBE_SECOND = 2**31 - 1  # the last one that a stamp can name
 _PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
 
@@ -238,7 +238,7 @@ class Replay:
             but: how many of a topic may be missing.
 
         Returns:
-            Whether they came; False when nothing has come for a second.
+            Whether they came; False when nothing has come for some seconds.
 
         Raises:
             ReplayError: if the node has ended before.
