@@ -297,10 +297,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return int(self.get_clock().now().nanoseconds)
 
     def _warn(self, text: str) -> None:
-        now = time.monotonic()
-        if now >= self._next_warning:
-            self._next_warning = now + _WARNING_PERIOD
+        if time.monotonic() >= self._next_warning:
             self.get_logger().warning(text)
+            self._next_warning = time.monotonic() + _WARNING_PERIOD  # from its stamp in the log on
 
     def _on_incompatible_driver(self, topic: str, event: QoSRequestedIncompatibleQoSInfo) -> None:
         subscription = self._inputs[topic]
