@@ -31,6 +31,8 @@ DEADLINE = 60.0  # s: far beyond anything but a failure
 SECOND = 1_000_000_000  # ns
 START = 100 * SECOND
 STATES = ('output_state', 'body_poses', 'mechanism_joint_states')
+PATIENT = '-p', 'input_timeout:=1000.0'
+"""Arguments of a node whose driver may fall silent, as every one does on a busy machine."""
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 _typestore = get_typestore(Stores.ROS2_JAZZY)
@@ -147,7 +149,10 @@ class Peer(Listener):
         self._driver = self.node.create_publisher(
             JointState, topics.get('rotor_state', 'rotor_state'), qos
         )
-        self.listen(DiagnosticArray, 'diagnostics', qos, topics.get('diagnostics', '/diagnostics'))
+        self._reports: list[tuple[int, DiagnosticArray]] = []  # with the time of publication, ns
+        self.node.create_subscription(
+            DiagnosticArray, topics.get('diagnostics', '/diagnostics'), self._keep_report, qos
+        )
         self._parameters = AsyncParameterClient(self.node, f'{namespace}/gear_state_publisher')
 
     def connect(self, *, probes=True, joint='rotor') -> None:
@@ -208,20 +213,21 @@ class Peer(Listener):
         assert all(stamp_of(message) == stamp_of(messages[-1]) for message in output)
         return output
 
-    def report(self, condition=bool, what='diagnostics', meanwhile=lambda: None):
-        """Wait for the next report on this peer's node that meets a condition, and take it.
+    def report(self, condition=bool, what='diagnostics', meanwhile=lambda: None, since=None):
+        """Wait for the first report on this peer's node that meets a condition, and take it.
 
-        `meanwhile` is done again and again until then.
+        It was published after the time `since`, ns, which is now unless given: what is still on
+        its way tells of what was before. `meanwhile` is done again and again until then.
         """
         name = f'{self.namespace}/gear_state_publisher'
-        messages = self.received['diagnostics']
-        messages.clear()
+        since = since or time.time_ns()
 
         def found():
             meanwhile()
             matching = (
                 (message, status)
-                for message in messages
+                for published, message in self._reports
+                if published > since
                 for status in message.status
                 if status.hardware_id == name and condition(status)
             )
@@ -229,9 +235,9 @@ class Peer(Listener):
 
         return self.wait_until(found, what)
 
-    def status(self, condition=bool, what='diagnostics', meanwhile=lambda: None):
-        """Wait for the next status that meets a condition, as level, message and values."""
-        _, status = self.report(condition, what, meanwhile)
+    def status(self, condition=bool, what='diagnostics', meanwhile=lambda: None, since=None):
+        """Wait for the first status that meets a condition, as level, message and values."""
+        _, status = self.report(condition, what, meanwhile, since)
         values = {pair.key: pair.value for pair in status.values}
         return status.level[0], status.message, values
 
@@ -289,6 +295,9 @@ class Peer(Listener):
         name = f'robot_description {len(self.received)}'
         self.listen(String, name, LATCHED, 'robot_description')
         return self.wait_until(lambda: self.received[name], 'robot_description')[-1].data
+
+    def _keep_report(self, message, about) -> None:
+        self._reports.append((about['source_timestamp'], message))
 
     def _result(self, future):
         self.wait_until(future.done, 'an answer')

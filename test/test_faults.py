@@ -23,6 +23,7 @@ from driver import MILLISECOND, drive, rotor_position
 from geometry_msgs.msg import PoseArray
 from live import (
     LATCHED,
+    PATIENT,
     SECOND,
     START,
     STATES,
@@ -302,7 +303,8 @@ def test_driver_killed_and_restarted_twenty_times(tmp_path, tally):
 @pytest.mark.parametrize(('encoder', 'referenced'), [('multi_turn', True), ('single_turn', False)])
 def test_node_killed_and_restarted_while_the_driver_runs(tmp_path, tally, encoder, referenced):
     namespace = next(names)
-    command = ['--ros-args', '-r', f'__ns:={namespace}', *parameter('rotor_encoder', encoder)]
+    command = ['--ros-args', '-r', f'__ns:={namespace}', *PATIENT]
+    command += parameter('rotor_encoder', encoder)
     environment = os.environ | {'ROS_LOG_DIR': str(tmp_path)}
     with closing(Peer(namespace)) as peer:
         home = peer.node.create_client(Trigger, 'gear_state_publisher/home')
@@ -474,7 +476,7 @@ def test_listeners_that_want_old_outputs_do_not_disturb_the_others(tmp_path, tal
 def test_reliable_listener_to_a_best_effort_topic_does_not_disturb_the_others(tmp_path, tally):
     namespace = next(names)
     override = qos_override(f'{namespace}/body_poses', 'publisher', 'best_effort')
-    with live_node(tmp_path, *override, namespace=namespace) as live:
+    with live_node(tmp_path, *PATIENT, *override, namespace=namespace) as live:
         peer = live.peer  # which listens reliably to all
         peer.listen(PoseArray, 'body_poses', BEST_EFFORT)
         peer.connect()
@@ -528,7 +530,7 @@ def test_twenty_subscribers_come_and_go(tmp_path, tally, record_property):
 
 
 def test_two_drivers_are_reported_and_answered(tmp_path, tally):
-    with live_node(tmp_path) as live:
+    with live_node(tmp_path, *PATIENT) as live:
         peer = live.peer
         peer.connect()
         second = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=2000))
