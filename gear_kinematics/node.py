@@ -23,10 +23,10 @@ from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.event_handler import (
     PublisherEventCallbacks,
-    QoSMessageLostInfo,
     QoSOfferedIncompatibleQoSInfo,
     QoSPublisherMatchedInfo,
     QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionEventType,
     SubscriptionEventCallbacks,
 )
 from rclpy.exceptions import ParameterException
@@ -131,7 +131,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._marker_publisher = self._create_output(
                 MarkerArray, 'markers', QoSProfile(depth=10), matched=self._on_viewers
             )
-        self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
+        self._inputs: dict[str, Subscription] = {}
+        self._losses: dict[str, Any] = {}
+        for topic in (_ROTOR, _ENCODER):
+            self._listen(topic)
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
@@ -187,13 +190,19 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if publisher.get_subscription_count()
         ]
 
-    def _listen(self, topic: str) -> Subscription:
+    def destroy_node(self) -> None:
+        """Let go of what the middleware holds for this node."""
+        for losses in self._losses.values():
+            losses.destroy_when_not_in_use()
+        super().destroy_node()
+
+    def _listen(self, topic: str) -> None:
         """Subscribe to a driver: reliably, unless there is a driver that only does best effort.
 
         That is what best available means; it is decided when the subscription is made.
         """
         on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
-        return self.create_subscription(
+        subscription = self._inputs[topic] = self.create_subscription(
             JointState,
             topic,
             on_message[topic],
@@ -202,9 +211,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(
                 incompatible_qos=lambda event: self._on_incompatible_driver(topic, event),
-                message_lost=lambda event: self._on_message_lost(topic, event),
             ),
         )
+        with subscription.handle:
+            self._losses[topic] = rclpy_implementation.EventHandle(
+                subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
+            )
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
@@ -308,14 +320,24 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
             self.get_logger().info(f'a driver on {name} is best effort: listening likewise')
+            self._count_losses(topic)
+            self._losses[topic].destroy_when_not_in_use()
             self.destroy_subscription(subscription)
-            self._inputs[topic] = self._listen(topic)
+            self._listen(topic)
         else:
             self._on_incompatible_qos(topic, event)
 
-    def _on_message_lost(self, topic: str, event: QoSMessageLostInfo) -> None:
+    def _count_losses(self, topic: str) -> None:
+        """Ask the middleware what it has lost since the last time.
+
+        Were it told of each loss, as of other events, it could come to a deadlock between the
+        thread that takes the event and the one that receives: ros2/rmw_fastrtps#890.
+        """
+        losses = self._losses[topic]
+        with losses:
+            status = losses.take_event()
         monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
-        monitor.lost += event.total_count_change
+        monitor.lost += status.total_count_change
 
     def _on_incompatible_qos(
         self,
@@ -348,6 +370,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return response
 
     def _report(self) -> None:
+        for topic in self._inputs:
+            self._count_losses(topic)
         self._monitor.drivers = self._inputs[_ROTOR].get_publisher_count()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {

@@ -37,6 +37,7 @@ from live import (
 from rclpy.duration import Duration
 from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
 from replaying import ACTUATOR, BOUND, valid_samples
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -553,6 +554,27 @@ def test_two_drivers_are_reported_and_answered(tmp_path, tally):
         tally.count(peer.received, sent + drive.finish())
     assert (level, '2 drivers' in message, values['drivers']) == (WARN, True, '2')
     assert tally.faults == NONE
+
+
+def test_overrun_by_a_driver_of_short_memory_does_not_stop_the_node(tmp_path, tally):
+    with live_node(tmp_path, *PATIENT) as live:
+        peer = live.peer
+        peer.connect()
+        hasty = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=10))
+        peer.wait_until(hasty.get_subscription_count, 'the node to hear the driver')
+        sent = []
+        for _ in range(10):
+            burst = [peer.stamp()] * 20_000
+            message = serialize_message(message_at(burst[0]))
+            for _ in burst:
+                hasty.publish(message)
+            sent += burst
+            peer.status()
+        peer.wait_until(lambda: newest(peer) == sent[-1], 'an output of the last burst')
+        _, _, values = peer.status()
+        tally.count(peer.received, sent)
+    assert tally.wrong == 0
+    assert 0 < int(values['lost messages']) < len(sent)
 
 
 def rejected_in(status) -> str | None:
