@@ -39,7 +39,7 @@ TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: 'geometry_msgs/msg/Pose
 PERIOD = 2_000_000  # ns
 COUNT = 500
 DURATION = (COUNT - 1) * PERIOD / SECOND  # s
-MOMENT = 0.05  # s: from a look at the clock to the message that is sent then
+MOMENT = 0.2  # s: from a look at the clock to the message that is sent then
 PLAY = """
 import json, sys
 from gear_kinematics.bag import Bag
