@@ -119,7 +119,7 @@ def play(
                 bag_clock.update(received)
                 publishers[topic].publish(data)
                 played.messages += 1
-                played.worst_delay = max(played.worst_delay, -left)
+                played.worst_delay = max(played.worst_delay, time.monotonic() - start - due)
                 report(played.messages)
         finally:
             # What got lost on the way is sent again as long as the publisher is there.

@@ -39,7 +39,7 @@ TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: 'geometry_msgs/msg/Pose
 PERIOD = 2_000_000  # ns
 COUNT = 500
 DURATION = (COUNT - 1) * PERIOD / SECOND  # s
-MOMENT = 0.2  # s: from a look at the clock to the message that is sent then
+SLEW = 0.005  # s: by which the clocks of stamps and of the player may drift apart
 PLAY = """
 import json, sys
 from gear_kinematics.bag import Bag
@@ -149,7 +149,7 @@ def assert_took(heard, process, duration) -> None:
     """Hold the time from the first message to the last against the bag's, in s."""
     took = heard[-1][0] - heard[0][0]
     # However busy the machine is: nothing is early, and by how much it is late is known.
-    assert abs(took - duration) <= process.worst_delay + MOMENT
+    assert abs(took - duration) <= process.worst_delay + SLEW
 
 
 def data_of(heard) -> list[bytes]:
