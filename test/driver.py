@@ -1,6 +1,5 @@
 """A driver to be run as a process of its own, which can be killed at any moment."""
 
-import os
 import time
 from itertools import count
 
@@ -32,8 +31,6 @@ def drive(topic: str, start: int, go, acknowledged) -> None:
         go: an event to wait for, when the node is known to hear this driver.
         acknowledged: its `value` becomes the last stamp that the node is known to have got.
     """
-    # What is killed leaves its shared memory behind, and its peers in the middle of it.
-    os.environ['FASTDDS_BUILTIN_TRANSPORTS'] = 'UDPv4'
     rclpy.init()
     node = Node('driver')
     # A full history asks for acknowledgement at once, one with room every 3 s.
