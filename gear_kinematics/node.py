@@ -131,16 +131,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._marker_publisher = self._create_output(
                 MarkerArray, 'markers', QoSProfile(depth=10), matched=self._on_viewers
             )
-        self._inputs: dict[str, Subscription] = {}
-        self._losses: dict[str, Any] = {}
-        for topic in (_ROTOR, _ENCODER):
-            self._listen(topic)
+        self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
             f'gear ratio {self._mechanism.gear_ratio} '
             f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
-            f'teeth), listening for {listening_for} on {self._inputs[_ROTOR].topic_name}'
+            f'teeth), listening for {listening_for} on '
+            f'{self._inputs[_ROTOR].subscription.topic_name}'
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -192,17 +190,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def destroy_node(self) -> None:
         """Let go of what the middleware holds for this node."""
-        for losses in self._losses.values():
-            losses.destroy_when_not_in_use()
+        for topic_input in self._inputs.values():
+            topic_input.losses.destroy_when_not_in_use()
         super().destroy_node()
 
-    def _listen(self, topic: str) -> None:
+    def _listen(self, topic: str) -> '_Input':
         """Subscribe to a driver: reliably, unless there is a driver that only does best effort.
 
         That is what best available means; it is decided when the subscription is made.
         """
         on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
-        subscription = self._inputs[topic] = self.create_subscription(
+        subscription = self.create_subscription(
             JointState,
             topic,
             on_message[topic],
@@ -214,9 +212,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             ),
         )
         with subscription.handle:
-            self._losses[topic] = rclpy_implementation.EventHandle(
+            losses = rclpy_implementation.EventHandle(
                 subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
             )
+        return _Input(subscription, losses)
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
@@ -314,16 +313,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._next_warning = time.monotonic() + _WARNING_PERIOD  # from its stamp in the log on
 
     def _on_incompatible_driver(self, topic: str, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        subscription = self._inputs[topic]
+        subscription, losses = self._inputs[topic]
         name = subscription.topic_name
         asked_for = self._value(f'qos_overrides.{name}.subscription.reliability')
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
             self.get_logger().info(f'a driver on {name} is best effort: listening likewise')
             self._count_losses(topic)
-            self._losses[topic].destroy_when_not_in_use()
+            losses.destroy_when_not_in_use()
             self.destroy_subscription(subscription)
-            self._listen(topic)
+            self._inputs[topic] = self._listen(topic)
         else:
             self._on_incompatible_qos(topic, event)
 
@@ -333,7 +332,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         Were it told of each loss, as of other events, it could come to a deadlock between the
         thread that takes the event and the one that receives: ros2/rmw_fastrtps#890.
         """
-        losses = self._losses[topic]
+        losses = self._inputs[topic].losses
         with losses:
             status = losses.take_event()
         monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
@@ -372,7 +371,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _report(self) -> None:
         for topic in self._inputs:
             self._count_losses(topic)
-        self._monitor.drivers = self._inputs[_ROTOR].get_publisher_count()
+        self._monitor.drivers = self._inputs[_ROTOR].subscription.get_publisher_count()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {
             'rotor input': self._monitor.report(self._input, self._mechanism, timeout, now),
@@ -394,6 +393,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if report
         ]
         self._publish(self._diagnostics, message)
+
+
+class _Input(NamedTuple):
+    """How the node hears a driver."""
+
+    subscription: Subscription
+    losses: Any
+    """What the middleware knows of messages that it did not deliver."""
 
 
 def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:

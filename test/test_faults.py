@@ -232,6 +232,13 @@ class Drive:
         return [self._peer.received[name] for name in STATES]
 
 
+def another_driver(peer, depth):
+    """Give another driver, which the node hears, with a history of so many messages."""
+    driver = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=depth))
+    peer.wait_until(driver.get_subscription_count, 'the node to hear the driver')
+    return driver
+
+
 def parameter(name, value) -> tuple[str, str]:
     return '-p', f'{name}:={value}'
 
@@ -331,8 +338,7 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path, tally, encode
         with running_node(command, env=environment) as process:
             peer.connect()
             # With a full history, what is missing is made up for at once and not every 3 s.
-            driver = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=100))
-            peer.wait_until(driver.get_subscription_count, 'the node to hear the driver')
+            driver = another_driver(peer, depth=100)
             drive = Drive(peer, rate=200.0, ahead=math.inf, publish=driver.publish)
             peer.wait_until(lambda: heard(peer) > 100, 'outputs')
             reference()
@@ -546,8 +552,7 @@ def test_two_drivers_are_reported_and_answered(tmp_path, tally):
     with live_node(tmp_path, *PATIENT) as live:
         peer = live.peer
         peer.connect()
-        second = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=2000))
-        peer.wait_until(second.get_subscription_count, 'the node to hear the second driver')
+        second = another_driver(peer, depth=2000)
         sent = []
         # In turns, each after the answer to the other.
         for publish in (peer.send, second.publish) * 50:
@@ -572,8 +577,7 @@ def test_overrun_by_a_driver_of_short_memory_does_not_stop_the_node(tmp_path, ta
     with live_node(tmp_path, *PATIENT) as live:
         peer = live.peer
         peer.connect()
-        hasty = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=10))
-        peer.wait_until(hasty.get_subscription_count, 'the node to hear the driver')
+        hasty = another_driver(peer, depth=10)
         sent = []
         for _ in range(10):
             burst = [peer.stamp()] * 20_000
@@ -671,8 +675,7 @@ def test_what_was_received_before_the_signal_is_answered(tmp_path, tally):
         peer.connect()
         # With a full history, acknowledgement is asked for at once.
         burst = 100
-        driver = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=burst))
-        peer.wait_until(driver.get_subscription_count, 'the node to hear the driver')
+        driver = another_driver(peer, depth=burst)
         sent = []
 
         def send_burst():

@@ -7,32 +7,14 @@ import pytest
 import shapely
 from live import START, live_node, rotor_state
 from rclpy.qos import QoSProfile
-from rclpy.serialization import deserialize_message
 from shapely import affinity
+from shown_markers import MODULE, all_at, sample_at, shown
 from visualization_msgs.msg import Marker, MarkerArray
 
-from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
+from gear_kinematics.kinematics import Branch, Mechanism, matrix_method
 from gear_kinematics.markers import Markers
-from gear_kinematics.rotor_input import RotorSample
 
-MODULE = 0.0005
 ANGLES = [0.0, 0.3, -2.0, 59.0, -119.0, 1e5]
-
-
-def sample_at(rotor_angle: float) -> RotorSample:
-    return RotorSample(START, split_turns(rotor_angle), None, None)
-
-
-def shown(markers: Markers, sample: RotorSample | None, now: float) -> list[Marker]:
-    messages = [deserialize_message(data, MarkerArray) for data in markers.due(sample, now)]
-    return [marker for message in messages for marker in message.markers]
-
-
-def all_at(mechanism: Mechanism, rotor_angle: float, prefix: str = '') -> list[Marker]:
-    """Give what a viewer that starts now sees."""
-    return shown(
-        Markers(mechanism, module=MODULE, frame_prefix=prefix), sample_at(rotor_angle), 0.0
-    )
 
 
 def of_kind(markers: list[Marker], kind: str, shape: int | None = None) -> list[Marker]:

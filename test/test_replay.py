@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 import rclpy
-from live import rotor_bytes
+from live import DEADLINE, rotor_bytes
 from rclpy.context import Context
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
@@ -32,7 +32,6 @@ from gear_kinematics.schedule import due_messages
 
 ROOT = Path(__file__).resolve().parents[1]
 BAGS = ROOT / 'bags'
-DEADLINE = 30.0  # s: far beyond anything but a failure
 ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
 JOINT_STATE = 'sensor_msgs/msg/JointState'
 TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: 'geometry_msgs/msg/PoseArray'}

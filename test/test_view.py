@@ -14,14 +14,11 @@ import pytest
 import rclpy
 import yaml
 from rclpy.context import Context
-from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
-from visualization_msgs.msg import Marker, MarkerArray
+from shown_markers import all_at
+from visualization_msgs.msg import Marker
 
-from gear_kinematics.kinematics import split_turns
-from gear_kinematics.markers import Markers
 from gear_kinematics.node import GearStatePublisher
-from gear_kinematics.rotor_input import RotorSample
 
 ROOT = Path(__file__).resolve().parents[1]
 LAUNCH_FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
@@ -159,12 +156,7 @@ def surface(marker: Marker) -> np.ndarray:
 
 @pytest.mark.parametrize('viewer', ['rviz', 'foxglove'])
 def test_mechanism_fills_the_view(views, viewer, actuator):
-    markers = Markers(actuator, module=0.0005, frame_prefix='')
-    sample = RotorSample(1, split_turns(0.7), None, None)
-    arrays = [deserialize_message(data, MarkerArray) for data in markers.due(sample, 0.0)]
-    places = views[viewer].seen(
-        np.concatenate([surface(marker) for array in arrays for marker in array.markers])
-    )
+    places = views[viewer].seen(np.concatenate([*map(surface, all_at(actuator, 0.7))]))
     low, high = places.min(axis=0), places.max(axis=0)
     assert np.all(np.maximum(-low, high) < 0.95)
     assert high[1] - low[1] > 1.5

@@ -56,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the frames, write the file and say how long it is."""
-    pair = mechanism(options)
+    pair, of_teeth = mechanism(options), module(options)
     for name, (low, high) in _BOUNDS.items():
         if not low <= (given := getattr(options, name)) <= high:
             raise ValueError(f'--{name} must be between {low} and {high}, not {given}')
@@ -66,7 +66,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         task = bars.add_task(options.out, total=count)
         content = plotting.animate(
             pair,
-            module(options),
+            of_teeth,
             Path(options.out),
             frames,
             fps=options.fps,
@@ -76,7 +76,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         )
     write_file(options.out, content)
     print(f'{options.out}: {count} frames, {options.fps} in a second')
-    tell_of_circles(pair, module(options))
+    tell_of_circles(pair, of_teeth)
     step = frames.longest_step
     if step > _UNSEEN:
         rate = 0.5 * options.rate * _UNSEEN / step
