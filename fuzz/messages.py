@@ -169,7 +169,7 @@ def _check_rotor_input(messages: Sequence[bytes], encoder: str) -> None:
         with suppress(RejectedInputError):
             samples.append(one_by_one.accept(message, lambda: _NOW))
     batch = at_once.accept_batch(messages, [_NOW] * len(messages))
-    columns = [column.tolist() for column in batch]
+    columns = [column.tolist() for column in batch[:5]]
     _assert_same(
         [(stamp, turns + 0.0, *others) for stamp, turns, *others in zip(*columns, strict=True)],
         [

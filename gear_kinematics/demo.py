@@ -37,6 +37,7 @@ def run(console: Console) -> BagReport:
     validator = Validator(
         config,
         tolerances=Tolerances(TOLERANCE, TOLERANCE * eccentricity),
+        strict=True,
         solver=matrix_method.solve,  # not the node's own formulas
     )
     validator.feed(published)

@@ -1,6 +1,7 @@
 """Why recorded outputs differ: a constant offset, another mechanism, another order of poses."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import permutations
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Mechanism
 
 Array = NDArray[np.float64]
+Stamps = NDArray[np.int64]
 
 _MOST_TEETH = 1000
 _ENOUGH_TURNING = 0.1  # rad of the rotor, to tell a ratio
@@ -122,14 +124,44 @@ def _tooth_pair(mechanism: Mechanism, ratio: float, uncertainty: float) -> tuple
     return None
 
 
-def pose_order(
-    bodies: list[str], recorded: Array, expected: Array, tolerance: float
-) -> str | None:
-    """Name the order in which recorded positions (bodies, 3) are the expected ones, or None."""
-    if len(bodies) > _MOST_BODIES:
-        return None
-    for order in permutations(range(len(bodies))):
-        if np.abs(recorded - expected[list(order)]).max() <= tolerance:
-            names = ', '.join(bodies[k] for k in order)
-            return f'the poses are in another order: {names}'
-    return None
+class PoseOrder:
+    """Recognises recorded poses that are the expected ones in another order."""
+
+    def __init__(self, bodies: list[str], tolerance: float) -> None:
+        """Start with no poses.
+
+        Args:
+            bodies: their names, in the order that is expected.
+            tolerance: m.
+        """
+        self._bodies = bodies
+        self._tolerance = tolerance
+        self._found: dict[tuple[int, ...], tuple[int, int]] = {}  # messages, and the first stamp
+
+    def update(self, recorded: Array, expected: Array, error: Array, stamp: Stamps) -> None:
+        """Take positions (n, bodies, 3) with the greatest error of each message, (n,), m."""
+        wrong = np.flatnonzero(error > self._tolerance)
+        if not len(wrong) or len(self._bodies) > _MOST_BODIES:
+            return
+        worst = int(np.argmax(np.where(np.isfinite(error), error, -1.0)))
+        for order in permutations(range(len(self._bodies))):
+            if self._fits(recorded[worst], expected[worst, list(order)]):
+                fits = self._fits(recorded[wrong], expected[wrong][:, list(order)])
+                count, first = self._found.get(order, (0, int(stamp[worst])))
+                self._found[order] = count + int(np.count_nonzero(fits)), first
+                return
+
+    def findings(self, messages: int) -> Iterator[str]:
+        """Name the orders that were found, if any, in a number of messages."""
+        for order, (count, first) in self._found.items():
+            names = ', '.join(self._bodies[k] for k in order)
+            if count == messages:
+                yield f'the poses are in another order: {names}'
+            else:
+                yield (
+                    f'in {count} of {messages} messages the poses are in another order: {names}; '
+                    f'one is at stamp {first}'
+                )
+
+    def _fits(self, recorded: Array, expected: Array) -> NDArray[np.bool_]:
+        return np.asarray(np.abs(recorded - expected).max(axis=(-2, -1)) <= self._tolerance)

@@ -56,6 +56,7 @@ class Task:
     """Where they are from."""
     tolerances: Tolerances
     allow_offset: bool = False
+    strict: bool = False
     rotor_topic: str | None = None
     """None: found by type and name, and so are the others."""
     output_topic: str | None = None
@@ -117,6 +118,8 @@ def _may_hold(path: Path) -> bool:
 def find_topics(bag: Bag, task: Task | None = None, *, outputs: bool = True) -> Topics:
     """Find the three topics by type and name: as in the contract, in any namespace.
 
+    Those of the namespace of the rotor's topic come first.
+
     Args:
         bag: an open bag.
         task: may name them.
@@ -128,6 +131,11 @@ def find_topics(bag: Bag, task: Task | None = None, *, outputs: bool = True) -> 
     roles = list(_CONTRACT) if outputs else ['rotor']
     given = {role: topic for role in roles if (topic := getattr(task, f'{role}_topic', None))}
     left = dict(bag.topics)
+    namespace, _, _ = given.get('rotor', '').rpartition('/')
+    for role in roles if 'rotor' in given else ():
+        beside = f'{namespace}/{_CONTRACT[role][0]}'
+        if bag.topics.get(beside) == _CONTRACT[role][1]:
+            given.setdefault(role, beside)
     for role, topic in given.items():
         if left.pop(topic, None) != (kind := _CONTRACT[role][1]):
             raise BagError(f'{bag.path}: no topic {topic} of type {kind} in it')
@@ -188,7 +196,8 @@ def validate_bag(
             topics = find_topics(bag, task, outputs=not play)
             if play:
                 messages = play(bag, task.parameters, rotor_topic=topics.rotor)
-                return validate_messages(task, messages, progress)
+                # Nothing gets lost on the way to what is recorded here.
+                return validate_messages(replace(task, strict=True), messages, progress)
             messages = bag.messages(topics.names())
             return validate_messages(task, messages, progress, topics, bag.message_count)
     except BagError as error:
@@ -208,6 +217,7 @@ def validate_messages(
         topics=topics,
         tolerances=task.tolerances,
         allow_offset=task.allow_offset,
+        strict=task.strict,
     )
     damage = None
     try:

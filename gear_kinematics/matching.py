@@ -34,6 +34,10 @@ class Window:
             for name, column in columns.items()
         }
 
+    def rows(self, index: Array | slice) -> dict[str, Array]:
+        """Give some of the samples."""
+        return {name: column[index] for name, column in self.columns.items()}
+
     def drop(self, count: int) -> None:
         """Forget the oldest."""
         self.columns = {name: column[count:] for name, column in self.columns.items()}
@@ -46,12 +50,11 @@ class Matcher:
         """Start with nothing seen."""
         self.messages = 0
         self.compared = 0
-        self.missing = 0
         self.extra = 0
         self.duplicates = 0
         self.out_of_order = 0
-        self.first_missing: int | None = None
         self.first_extra: int | None = None
+        self.first_out_of_order: int | None = None
         self.matched = np.zeros(0, bool)
         """Which samples of the window have their message."""
         self._next = 0
@@ -69,7 +72,10 @@ class Matcher:
         before = stamps[0] - 1 if self._last_stamp is None else self._last_stamp
         steps = np.diff(stamps, prepend=before)
         self.duplicates += int(np.count_nonzero(steps == 0))
-        self.out_of_order += int(np.count_nonzero((steps < 0) & (steps >= -_NEW_BEGINNING)))
+        disordered = np.flatnonzero((steps < 0) & (steps >= -_NEW_BEGINNING))
+        self.out_of_order += len(disordered)
+        if len(disordered) and self.first_out_of_order is None:
+            self.first_out_of_order = int(stamps[disordered[0]])
         self._last_stamp = int(stamps[-1])
 
     def match(self, stamps: Array, window: Array) -> Array:
@@ -99,12 +105,8 @@ class Matcher:
         if len(stamps) and self.first_extra is None:
             self.first_extra = int(stamps[0])
 
-    def drop(self, count: int, window: Array) -> None:
-        """Count the oldest samples of the window that have no message, before they go."""
-        unmatched = np.flatnonzero(~self.matched[:count])
-        self.missing += len(unmatched)
-        if len(unmatched) and self.first_missing is None:
-            self.first_missing = int(window[unmatched[0]])
+    def drop(self, count: int) -> None:
+        """Forget the oldest samples of the window."""
         self.matched = self.matched[count:]
         self._next = max(self._next - count, 0)
 

@@ -38,6 +38,10 @@ class FieldReport:
     worst_stamp: int | None = None
     """Of the sample with `max_error`; None where there is no error at all."""
     worst_rotor_angle: float | None = None
+    first_non_finite: int | None = None
+    """Stamp of the first sample that is not finite."""
+    first_absent: int | None = None
+    """Stamp of the first sample that lacks the field."""
 
     @property
     def budget_used(self) -> float:
@@ -73,8 +77,12 @@ class TopicReport:
     """Stamp of the first input without a message."""
     first_extra: int | None = None
     """Stamp of the first message without an input."""
+    first_out_of_order: int | None = None
+    """Stamp of the first message out of order."""
     faults: tuple[str, ...] = ()
     """What else is wrong, each with how often and where first: frame ids, names, layouts."""
+    left_out: dict[str, int] = field(default_factory=dict)
+    """Inputs without an output and outputs without an input that are the recorder's doing."""
 
     @property
     def passed(self) -> bool:

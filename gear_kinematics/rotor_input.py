@@ -64,7 +64,7 @@ class RotorSample(NamedTuple):
 
 
 class RotorSamples(NamedTuple):
-    """Valid rotor states as arrays (n,)."""
+    """Valid rotor states as arrays (n,), and the stamps of the others."""
 
     stamp: Array
     """ns."""
@@ -75,6 +75,12 @@ class RotorSamples(NamedTuple):
     """rad/s; NaN where the message has none."""
     effort: Array
     """N·m; NaN where the message has none."""
+    received: Array
+    """ns."""
+    stretch: Array
+    """Goes up where the count of a single-turn encoder's turns begins anew or is in doubt."""
+    rejected: Array
+    """(m,), ns: the stamps of rejected messages that have one."""
 
 
 class RotorInput:
@@ -120,6 +126,10 @@ class RotorInput:
     def unknown_turns(self) -> int:
         """Gaps in which the rotor could have turned half a turn or more unseen."""
         return self._turns.unknown_gaps
+
+    @property
+    def _stretch(self) -> int:
+        return self._turns.unknown_gaps + self.resets
 
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         """Take the next message.
@@ -169,16 +179,20 @@ class RotorInput:
             usable &= ~faulty
         stamps, values = states.stamp[usable], states.values[usable]
         values[~(np.abs(values) <= GREATEST)] = np.nan
+        clock = np.asarray(received, np.int64)[usable]
+        rejected = states.stamp[~(usable | states.malformed)]
         if self._settings.single_turn or not self._in_order(stamps):
-            return self._one_by_one(stamps, values, np.asarray(received, np.int64)[usable])
-        return self._all_at_once(stamps, values)
+            return self._one_by_one(stamps, values, clock, rejected)
+        return self._all_at_once(stamps, values, clock, rejected)
 
     def _in_order(self, stamps: Array) -> bool:
         in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
         follows = self.last is None or not len(stamps) or stamps[0] >= self.last.stamp
         return bool(in_order and follows)
 
-    def _all_at_once(self, stamps: Array, values: Array) -> RotorSamples:
+    def _all_at_once(
+        self, stamps: Array, values: Array, received: Array, rejected: Array
+    ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
         zero_turns, zero_angle = split_turns(self._settings.rotor_zero)
         direction = self._settings.rotor_direction
@@ -188,6 +202,9 @@ class RotorInput:
             direction * (angle - zero_angle),
             direction * values[:, 1],
             direction * values[:, 2],
+            received,
+            np.full(len(stamps), self._stretch),
+            rejected,
         )
         if len(stamps):
             before = stamps[0] - 1 if self.last is None else self.last.stamp
@@ -197,19 +214,37 @@ class RotorInput:
             self._take_row(int(stamps[-1]), values[-1].tolist())
         return samples
 
-    def _one_by_one(self, stamps: Array, values: Array, received: Array) -> RotorSamples:
-        samples = []
+    def _one_by_one(
+        self, stamps: Array, values: Array, received: Array, rejected: Array
+    ) -> RotorSamples:
+        taken: list[RotorSample] = []
+        columns: list[tuple[int, int]] = []  # received, stretch
+        disordered: list[int] = []
         for stamp, row, now in zip(
             stamps.tolist(), values.tolist(), received.tolist(), strict=True
         ):
             try:
-                samples.append(self._take_row(stamp or self._clock(partial(int, now)), row))
+                sample = self._take_row(stamp or self._clock(partial(int, now)), row)
             except RejectedInputError as rejection:
                 self.rejected[str(rejection)] += 1
+                disordered.append(stamp)
+                continue
+            taken.append(sample)
+            columns.append((now, self._stretch))
         # None becomes NaN.
-        rows = [(*sample.position, sample.velocity, sample.effort) for sample in samples]
-        columns = np.array(rows, np.float64).reshape(len(rows), 4).T
-        return RotorSamples(np.array([sample.stamp for sample in samples], np.int64), *columns)
+        rows = [(*sample.position, sample.velocity, sample.effort) for sample in taken]
+        turns, angle, velocity, effort = np.array(rows, np.float64).reshape(len(rows), 4).T
+        clock, stretch = np.array(columns, np.int64).reshape(len(rows), 2).T
+        return RotorSamples(
+            np.array([sample.stamp for sample in taken], np.int64),
+            turns,
+            angle,
+            velocity,
+            effort,
+            clock,
+            stretch,
+            np.append(rejected, np.array(disordered, np.int64)),
+        )
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
         position, velocity, effort = row

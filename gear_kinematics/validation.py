@@ -1,6 +1,7 @@
 """What a node published, against what it should have published: one pass over a recording."""
 
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import islice
 from typing import Any
@@ -10,14 +11,20 @@ from numpy.typing import NDArray
 
 from gear_kinematics.diagnosis import diagnose
 from gear_kinematics.input_health import InputHealth
-from gear_kinematics.kinematics import Mechanism, MotionState, solve
-from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.matching import WINDOW, Window
-from gear_kinematics.output_topics import BodyPoses, OutputState, Tolerances
+from gear_kinematics.messages import (
+    MalformedMessageError,
+    joint_state_layout,
+    pose_array_layout,
+)
+from gear_kinematics.output_topics import BodyPoses, OutputState, Solver, Tolerances
+from gear_kinematics.recorder import Completeness, Inputs, RecordedInputs
 from gear_kinematics.report import BagReport, InputReport, Verdict
-from gear_kinematics.rotor_input import InputSettings, RotorInput, RotorSamples
+from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.series import SeriesRecorder
+from gear_kinematics.unseen_turns import UnseenTurns
 
 __all__ = ['Message', 'Tolerances', 'Topics', 'Validator']
 
@@ -25,9 +32,8 @@ Array = NDArray[Any]
 Message = tuple[str, int, bytes]
 """Topic, received (ns), CDR."""
 
-Solver = Callable[..., MotionState]
-
 _BATCH = 8192  # messages
+_FRAME = 'stator'
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,17 +53,28 @@ _TOPICS, _TOLERANCES = Topics(), Tolerances()
 
 
 @dataclass(slots=True)
+class _Messages:
+    """Of one topic."""
+
+    data: list[bytes] = field(default_factory=list)
+    received: list[int] = field(default_factory=list)
+    """ns."""
+
+
+@dataclass(slots=True)
 class _Batch:
     """Messages by topic."""
 
-    rotor: list[bytes] = field(default_factory=list)
-    received: list[int] = field(default_factory=list)
-    """ns, of the rotor messages."""
-    output: list[bytes] = field(default_factory=list)
-    poses: list[bytes] = field(default_factory=list)
+    rotor: _Messages = field(default_factory=_Messages)
+    output: _Messages = field(default_factory=_Messages)
+    poses: _Messages = field(default_factory=_Messages)
+
+    def topics(self) -> tuple[_Messages, _Messages, _Messages]:
+        """All three, in the order of `Topics.names`."""
+        return self.rotor, self.output, self.poses
 
     def __len__(self) -> int:
-        return len(self.rotor) + len(self.output) + len(self.poses)
+        return sum(len(topic.data) for topic in self.topics())
 
 
 class Validator:
@@ -70,6 +87,7 @@ class Validator:
         topics: Topics = _TOPICS,
         tolerances: Tolerances = _TOLERANCES,
         allow_offset: bool = False,
+        strict: bool = False,
         solver: Solver = solve,
     ) -> None:
         """Prepare for a recording.
@@ -79,24 +97,33 @@ class Validator:
             topics: their names.
             tolerances: greatest errors that pass.
             allow_offset: accept a constant offset of the output angle, as homing leaves it.
+            strict: count everything that is missing or extra, also what may be the recorder's
+                doing; see `recorder`.
             solver: what recomputes the motion: `solve`, or the matrix method's.
 
         Raises:
             MechanismError: if the parameters describe no mechanism.
         """
         self._parameters = dict(parameters)
+        self._prefix_open = not parameters['frame_prefix']
         self._topics = topics
         self._tolerances = tolerances
         self._offset_open = allow_offset
         self._solver = solver
-        self._mechanism = Mechanism.from_mapping(parameters)
-        self._form = closed_form(self._mechanism)
+        self._strict = strict
+        self._mechanism = mechanism = Mechanism.from_mapping(parameters)
         self._input = RotorInput(InputSettings.from_mapping(parameters))
         self._health = InputHealth(parameters['max_rotor_speed'])
         self._window = Window()
+        self._inputs = RecordedInputs(strict=strict)
+        self._absences = Completeness(2, strict=strict)
+        self._begun: dict[int, int] = {}  # when the first message of each topic was received, ns
+        single_turn = self._input.settings.single_turn
+        self._unseen = UnseenTurns(mechanism, tolerances.angle) if single_turn else None
         prefix = parameters['frame_prefix']
-        self.output = OutputState(prefix + parameters['output_joint'], tolerances)
-        self.poses = BodyPoses(prefix + 'stator', self._mechanism, tolerances)
+        common = mechanism, tolerances, solver, self._unseen
+        self.output = OutputState(prefix + parameters['output_joint'], *common)
+        self.poses = BodyPoses(prefix + _FRAME, *common)
         self._series = SeriesRecorder()
         self._findings: list[str] = []
 
@@ -115,14 +142,11 @@ class Validator:
         count = 1
         while count:
             batch = _Batch()
-            by_topic = dict(
-                zip(self._topics.names(), (batch.rotor, batch.output, batch.poses), strict=True)
-            )
+            by_topic = dict(zip(self._topics.names(), batch.topics(), strict=True))
             try:
                 for topic, received, data in islice(source, _BATCH):
-                    by_topic[topic].append(data)
-                    if topic == self._topics.rotor:
-                        batch.received.append(received)
+                    by_topic[topic].data.append(data)
+                    by_topic[topic].received.append(received)
             finally:
                 self._take(batch)
             count = len(batch)
@@ -138,9 +162,10 @@ class Validator:
         """
         self._close()
         rotor = self._health.report(self._input, self._topics.rotor)
+        lacks_output, lacks_poses = self._absences.topics
         topics = (
-            self.output.report(self._topics.output),
-            self.poses.report(self._topics.poses),
+            self.output.report(self._topics.output, lacks_output),
+            self.poses.report(self._topics.poses, lacks_poses),
         )
         if error is None and not rotor.valid:
             error = 'no usable rotor states in it'
@@ -161,50 +186,75 @@ class Validator:
             module=self._parameters['module'],
         )
 
-    def _take(self, batch: '_Batch') -> None:
+    def _take(self, batch: _Batch) -> None:
+        if self._prefix_open and len(batch):
+            self._settle_prefix(batch)
         if self._offset_open and len(batch):
             self._settle_offset(batch)
-        self._expect(self._input.accept_batch(batch.rotor, batch.received))
-        self.output.take(batch.output, self._window)
-        self.poses.take(batch.poses, self._window)
-        stamps = self._window.columns['stamp']
+        for k, topic in enumerate(batch.topics()):
+            if topic.received:
+                self._begun.setdefault(k, topic.received[0])
+        if len(self._begun) == len(batch.topics()):
+            self._absences.begin(max(self._begun.values()))
+        self._add_samples(batch.rotor)
+        for output, messages in ((self.output, batch.output), (self.poses, batch.poses)):
+            output.take(messages.data, messages.received, self._window, self._inputs)
         self._series.update(self.output.compared, self.poses.compared)
         done = self.output.matcher.matched & self.poses.matcher.matched
         settled = len(done) if done.all() else int(np.argmin(done))
-        self._drop(max(settled, len(stamps) - WINDOW))
+        self._drop(max(settled, len(done) - WINDOW))
 
-    def _expect(self, samples: RotorSamples) -> None:
-        """Recompute the outputs of the samples and put them into the window."""
-        state = self._solver(self._mechanism, samples.angle, rotor_turns=samples.turns)
-        rotor_angle = TURN * samples.turns + samples.angle
-        self._health.update(samples.stamp, rotor_angle)
-        half = 0.5 * state.output_turn_angle
-        effort = float(self._mechanism.gear_ratio) * samples.effort
+    def _add_samples(self, messages: _Messages) -> None:
+        """Put the rotor's samples into the window."""
+        samples = self._input.accept_batch(messages.data, messages.received)
+        self._inputs.update(samples.received, samples.stamp, samples.rejected)
+        self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
         self._window.append(
             stamp=samples.stamp,
-            rotor_angle=rotor_angle,
-            output=np.stack(
-                [state.output_angle, self._form.output_rate(samples.velocity), effort], axis=-1
-            ),
-            centres=np.concatenate([state.satellite_centre, state.oldham_centre], axis=1),
-            half_turn=np.stack([np.sin(half), np.cos(half)], axis=-1),
+            received=samples.received,
+            turns=samples.turns,
+            angle=samples.angle,
+            velocity=samples.velocity,
+            effort=samples.effort,
+            stretch=samples.stretch,
         )
         self.output.matcher.extend(len(samples.stamp))
         self.poses.matcher.extend(len(samples.stamp))
 
     def _drop(self, count: int) -> None:
-        stamps = self._window.columns['stamp']
-        self.output.matcher.drop(count, stamps)
-        self.poses.matcher.drop(count, stamps)
-        self._window.drop(count)
+        oldest = self._window.rows(slice(count))
+        matchers = self.output.matcher, self.poses.matcher
+        answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
+        self._absences.update(Inputs(oldest['received'], oldest['stamp'], answered))
+        for part in (*matchers, self._window):
+            part.drop(count)
 
     def _close(self) -> None:
         """Nothing comes any more: what waits is missing or extra."""
         for _ in range(2):  # what was late waits for one batch more
             self._take(_Batch())
         self._drop(len(self._window))
+        self._absences.close()
 
-    def _settle_offset(self, batch: '_Batch') -> None:
+    def _settle_prefix(self, batch: _Batch) -> None:
+        """Take the frame prefix from the first output, if that has one."""
+        joint = self._parameters['output_joint']
+        for (data, *_), layout_of, name in (
+            (batch.poses.data or [b''], pose_array_layout, _FRAME),
+            (batch.output.data or [b''], joint_state_layout, joint),
+        ):
+            with suppress(MalformedMessageError):
+                recorded = layout_of(data).texts[-1].decode(errors='replace')
+                if not recorded.endswith(name):
+                    continue
+                self._prefix_open = False
+                if prefix := recorded.removesuffix(name):
+                    self._parameters['frame_prefix'] = prefix
+                    self.output.joint, self.poses.frame_id = prefix + joint, prefix + _FRAME
+                    self._findings.append(f'frame_prefix {prefix!r} is taken from the outputs')
+                return
+
+    def _settle_offset(self, batch: _Batch) -> None:
         """Find out, from the first batch with outputs, whether there is an offset to accept.
 
         Homing moves the rotor's zero, and so the poses too; if the poses are better without that,
@@ -228,12 +278,13 @@ class Validator:
             f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
         )
 
-    def _trial(self, batch: '_Batch', changes: Mapping[str, Any]) -> 'Validator':
+    def _trial(self, batch: _Batch, changes: Mapping[str, Any]) -> 'Validator':
         trial = Validator(
             {**self._parameters, **changes},
             topics=self._topics,
             tolerances=self._tolerances,
             solver=self._solver,
+            strict=self._strict,
         )
         trial._take(batch)
         return trial
@@ -243,15 +294,22 @@ class Validator:
             found = diagnose(self._mechanism, self.output.fit, self._tolerances.angle)
             if found:
                 yield found
-        if found := self.poses.order():
-            yield found
+        yield from self.poses.findings()
+        if self._unseen:
+            yield from self._unseen.findings()
+        for topic, missing in zip(self._topics.names()[1:], self._absences.topics, strict=True):
+            if missing.ended_early is not None:
+                yield (
+                    f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '
+                    'the node may have ended'
+                )
 
 
 def _health_findings(rotor: InputReport) -> Iterable[str]:
     if rotor.jumps:
         yield (
             f'{rotor.jumps} gaps of {rotor.topic} could hide a turn of the single-turn encoder: '
-            'from there on its turns are not known'
+            'after each, its turns are those that the outputs tell'
         )
     if rotor.overspeed:
         yield (

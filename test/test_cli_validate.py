@@ -11,6 +11,7 @@ import sys
 import threading
 from contextlib import ExitStack, suppress
 from pathlib import Path
+from types import MappingProxyType
 from xml.etree import ElementTree as ET
 
 import jsonschema
@@ -32,9 +33,19 @@ LAST_BITS = ('--tolerance-angle', '0', '--tolerance-position', '1e-18')
 """m: numpy fuses a sum of products and rounds it once, plain floats twice; angles are the same."""
 
 
-def rewrite(path: Path, edit=lambda *_: None, rename=lambda topic: topic, drop=()) -> Path:
-    """Write the beginning of a servo's move, each output position as `edit` gives it."""
+def rewrite(
+    path: Path,
+    edit=lambda *_: None,
+    rename=lambda topic: topic,
+    drop=(),
+    late=MappingProxyType({}),
+) -> Path:
+    """Write the beginning of a servo's move, each output position as `edit` gives it.
+
+    Topics that are `late` lack so many messages at the beginning.
+    """
     number = 0
+    late = dict(late)
     with Bag(SERVO) as bag, BagWriter(path) as writer:
         for topic, kind in TYPES.items():
             if topic not in drop:
@@ -43,6 +54,9 @@ def rewrite(path: Path, edit=lambda *_: None, rename=lambda topic: topic, drop=(
             if k == 3 * SAMPLES:
                 break
             if topic in drop:
+                continue
+            if late.get(topic):
+                late[topic] -= 1
                 continue
             if topic == '/output_state':
                 message = replaying.decode(data, JOINT_STATE)
@@ -99,6 +113,21 @@ def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
     assert lines[0] == f'{name}: verdict: {verdict}'
     assert all(line.startswith(f'{name}: ') for line in lines)
     assert done.stdout.isprintable() or done.stdout.replace('\n', '').isprintable()
+
+
+def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_only(tmp_path):
+    rewrite(tmp_path / 'late', late={'/body_poses': 40})
+    done = gearkin('validate', 'late', cwd=tmp_path)
+    assert done.returncode == 0
+    left_out = '40 before every topic was recorded'
+    assert f"late: finding: not judged, as the recorder's doing: /body_poses {left_out}\n" in (
+        done.stdout
+    )
+    assert 'late: /body_poses: left out: 40\n' in done.stdout
+    for options in ([], ['--jobs', '2']):
+        done = gearkin('validate', '--strict', *options, 'late', cwd=tmp_path)
+        assert done.returncode == 1
+        assert 'late: finding: /body_poses: 40 messages missing, the first at ' in done.stdout
 
 
 @pytest.mark.parametrize('options', [[], ['--jobs', '2']])

@@ -166,6 +166,19 @@ def bag_with(joint_states: str, pose_arrays: str = '') -> SimpleNamespace:
             {'output_topic': '/old/output_state'},
             Topics('/rotor_state', '/old/output_state', '/body_poses'),
         ),
+        # Two nodes: those beside the one that is named.
+        (
+            '/left/rotor_state /left/output_state /right/rotor_state /right/output_state',
+            '/left/body_poses /right/body_poses',
+            {'rotor_topic': '/right/rotor_state'},
+            Topics('/right/rotor_state', '/right/output_state', '/right/body_poses'),
+        ),
+        (
+            '/left/rotor_state /left/output_state /output_state',
+            '/left/body_poses',
+            {'rotor_topic': '/left/rotor_state', 'output_topic': '/output_state'},
+            Topics('/left/rotor_state', '/output_state', '/left/body_poses'),
+        ),
     ],
 )
 def test_topics_are_found_by_name_then_by_type(joint_states, pose_arrays, given, found):

@@ -196,7 +196,12 @@ def test_a_negated_quaternion_is_the_same_rotation(recorded, config):
         q = message.poses[1].orientation
         q.x, q.y, q.z, q.w = -q.x, -q.y, -q.z, -q.w
 
-    assert validate(change_all(recorded, POSES, negate), config).passed
+    changed, stamp = change_one(recorded, POSES, negate)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.PASS
+    (finding,) = report.findings
+    assert finding.startswith('orientations with w < 0')
+    assert finding.endswith(f'1 message, the first at stamp {stamp}')
 
 
 @pytest.mark.parametrize('value', [math.nan, math.inf])
@@ -206,18 +211,22 @@ def test_a_value_that_is_not_finite_is_found(recorded, config, value):
         (POSES, 'position', lambda m: setattr(m.poses[2].position, 'y', value)),
         (POSES, 'orientation', lambda m: setattr(m.poses[2].orientation, 'w', value)),
     ):
-        report = validate(change_one(recorded, topic, edit)[0], config)
+        changed, stamp = change_one(recorded, topic, edit)
+        report = validate(changed, config)
         assert report.verdict == Verdict.FAIL
-        assert field_of(report, topic, field).non_finite == 1
+        found = field_of(report, topic, field)
+        assert (found.non_finite, found.first_non_finite) == (1, stamp)
 
 
 def test_a_field_that_lacks_is_found(recorded, config):
     def without_effort(message) -> None:
         message.effort = np.zeros(0)
 
-    report = validate(change_one(recorded, OUTPUT, without_effort)[0], config)
+    changed, stamp = change_one(recorded, OUTPUT, without_effort)
+    report = validate(changed, config)
     assert report.verdict == Verdict.FAIL
-    assert field_of(report, OUTPUT, 'effort').absent == 1
+    found = field_of(report, OUTPUT, 'effort')
+    assert (found.absent, found.first_absent) == (1, stamp)
     report = validate(change_one(recorded, ROTOR, without_effort)[0], config)
     assert field_of(report, OUTPUT, 'effort').absent == 1
 
@@ -252,6 +261,7 @@ def test_two_messages_that_were_swapped_are_out_of_order(recorded, config, topic
     report = validate(swapped, config)
     found = topic_of(report, topic)
     assert (found.missing, found.extra, found.out_of_order) == (0, 0, 1)
+    assert found.first_out_of_order == change_one(recorded, topic, lambda _: None)[1]
     assert report.verdict == Verdict.FAIL
 
 
@@ -341,35 +351,70 @@ def test_another_order_of_the_poses_is_named(recorded, config):
     report = validate(change_all(recorded, POSES, swap), config)
     assert report.verdict == Verdict.FAIL
     (finding,) = (f for f in report.findings if 'order' in f)
-    assert 'satellite_a, oldham_a, satellite_b, oldham_b' in finding
+    assert finding == (
+        'the poses are in another order: satellite_a, oldham_a, satellite_b, oldham_b'
+    )
+
+
+def test_a_single_message_in_another_order_is_not_said_of_all(recorded, config):
+    def swap(message) -> None:
+        message.poses[0], message.poses[1] = message.poses[1], message.poses[0]
+
+    changed, stamp = change_one(recorded, POSES, swap)
+    (finding,) = (f for f in validate(changed, config).findings if 'order' in f)
+    assert finding == (
+        'in 1 of 300 messages the poses are in another order: satellite_b, satellite_a, '
+        f'oldham_a, oldham_b; one is at stamp {stamp}'
+    )
 
 
 def test_another_frame_is_named(recorded, config):
     def rename(message) -> None:
         message.header.frame_id = 'base'
 
-    changed, _ = change_one(recorded, POSES, rename)
+    changed, stamp = change_one(recorded, POSES, rename)
     report = validate(changed, config)
     assert report.verdict == Verdict.FAIL
     (fault,) = topic_of(report, POSES).faults
     assert "'base'" in fault
     assert "'stator'" in fault
-    assert '1 message' in fault
+    assert f'1 message, the first at stamp {stamp}' in fault
 
 
 def test_another_joint_name_is_named(recorded, config):
     def rename(message) -> None:
         message.name = ['shaft']
 
-    report = validate(change_one(recorded, OUTPUT, rename)[0], config)
+    changed, stamp = change_one(recorded, OUTPUT, rename)
+    report = validate(changed, config)
     assert report.verdict == Verdict.FAIL
-    assert any("'output_shaft'" in fault for fault in topic_of(report, OUTPUT).faults)
+    assert topic_of(report, OUTPUT).faults == (
+        f"no joint 'output_shaft': 1 message, the first at stamp {stamp}",
+    )
 
 
 def test_a_prefix_belongs_to_the_configuration(recorded, config):
     report = validate(recorded, {**config, 'frame_prefix': 'left_'})
     assert report.verdict == Verdict.FAIL
     assert all(topic.faults for topic in report.topics)
+
+
+def test_a_prefix_that_the_outputs_agree_on_is_taken_from_them(recorded, config):
+    def prefixed(message) -> None:
+        message.header.frame_id = 'left_stator'
+
+    def renamed(message) -> None:
+        message.name = ['left_output_shaft']
+
+    with_frames = change_all(recorded, POSES, prefixed)
+    with_both = change_all(with_frames, OUTPUT, renamed)
+    report = validate(with_both, config)
+    assert report.verdict == Verdict.PASS
+    assert report.findings == ("frame_prefix 'left_' is taken from the outputs",)
+    report = validate(with_frames, config)
+    assert report.verdict == Verdict.FAIL
+    assert "no joint 'left_output_shaft'" in topic_of(report, OUTPUT).faults[0]
+    assert validate(with_both, {**config, 'frame_prefix': 'right_'}).verdict == Verdict.FAIL
 
 
 def test_poses_that_lack_a_body_are_malformed(recorded, config):
@@ -467,7 +512,7 @@ def test_missing_messages_are_counted_exactly_in_long_recordings(recorded, confi
     messages = repeated(recorded, 100, 1)
     dropped = [k for k, m in enumerate(messages) if m[0] == OUTPUT][::97]
     kept = [m for k, m in enumerate(messages) if k not in set(dropped)]
-    found = topic_of(validate(kept, config), OUTPUT)
+    found = topic_of(validate(kept, config, strict=True), OUTPUT)
     assert (found.missing, found.extra) == (len(dropped), 0)
     assert all(f.max_error < 1e-11 for f in found.fields)
 

@@ -44,6 +44,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--allow-offset', action='store_true', help='accept a constant offset, as homing leaves it'
     )
+    parser.add_argument(
+        '--strict',
+        action='store_true',
+        help='every input needs its output and every output its input, also while the recorder '
+        'subscribed to its topics and where it lost messages',
+    )
     way = parser.add_mutually_exclusive_group()
     way.add_argument(
         '--live', action='store_true', help='play the rotor topic through the node, validate that'
@@ -84,6 +90,7 @@ def run(options: argparse.Namespace) -> ExitCode:
                 str(config),
                 tolerances,
                 options.allow_offset,
+                options.strict,
                 options.rotor_topic,
                 options.output_topic,
                 options.poses_topic,

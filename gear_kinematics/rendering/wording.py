@@ -208,6 +208,7 @@ def topic_table(report: BagReport) -> Table:
             'extra',
             'duplicates',
             'out of order',
+            'left out',
         ),
         tuple(
             (
@@ -218,6 +219,7 @@ def topic_table(report: BagReport) -> Table:
                 _bad(topic.extra),
                 _notable(topic.duplicates),
                 _bad(topic.out_of_order),
+                Cell(str(sum(topic.left_out.values()) or ''), Tone.NOTABLE),
             )
             for topic in report.topics
         ),
@@ -310,12 +312,23 @@ def remarks(report: BagReport) -> list[str]:
             ),
         )
     ]
-    return error(report) + faults + [printable(finding) for finding in report.findings]
+    findings = [printable(finding) for finding in report.findings]
+    return error(report) + faults + findings + _left_out(report)
 
 
 def error(report: BagReport) -> list[str]:
     """Say what made the bag unusable, if anything did."""
     return [] if report.error is None else [printable(report.error)]
+
+
+def _left_out(report: BagReport) -> list[str]:
+    """Say in one sentence what was not judged, and why, if anything was not."""
+    parts = [
+        printable(f'{topic.topic} {count} {cause}')
+        for topic in report.topics
+        for cause, count in topic.left_out.items()
+    ]
+    return [f"not judged, as the recorder's doing: {', '.join(parts)}"] if parts else []
 
 
 def topic_faults(topic: TopicReport, report: BagReport) -> list[str]:
@@ -330,7 +343,8 @@ def topic_faults(topic: TopicReport, report: BagReport) -> list[str]:
         first = _first(topic.first_extra, report)
         faults.append(f'{_count(topic.extra, "message")} too many{first}')
     if topic.out_of_order:
-        faults.append(f'{_count(topic.out_of_order, "message")} out of order')
+        first = _first(topic.first_out_of_order, report)
+        faults.append(f'{_count(topic.out_of_order, "message")} out of order{first}')
     return faults + [printable(fault) for fault in topic.faults]
 
 
@@ -344,9 +358,12 @@ def field_faults(field: FieldReport, report: BagReport) -> list[str]:
             f'{number(field.tolerance)} {unit}{_worst(field, report)}'
         )
     if field.non_finite:
-        faults.append(f'{_count(field.non_finite, "value")} not finite')
+        first = _first(field.first_non_finite, report)
+        faults.append(f'{_count(field.non_finite, "value")} not finite{first}')
     if field.absent:
-        faults.append(f'{_count(field.absent, "sample")} with the field in input or output only')
+        samples = _count(field.absent, 'sample')
+        first = _first(field.first_absent, report)
+        faults.append(f'{samples} with the field in input or output only{first}')
     return faults
 
 

@@ -1,0 +1,239 @@
+"""What a recording lacks because of its recorder, for which the node is not to blame.
+
+A recorder subscribes to one topic after another and loses messages meanwhile: `ros2 bag record`
+for about a tenth of a second. So outputs can be missing only from the moment at which every topic
+is being recorded and nothing is lost any more, and an output can be too many only if its input
+would have been recorded.
+"""
+
+from collections import Counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+
+BEFORE = 'before every topic was recorded'
+SETTLING = 'while the recorder settled'
+AFTER = 'after the last output'
+NO_INPUT = 'whose input was not recorded'
+
+_SETTLED = 1_000_000_000  # ns: by then a recorder loses nothing any more
+_QUIET = 150_000_000  # ns without a loss, after which it has settled earlier
+_END = 500_000_000  # ns that outputs can end before their input
+_HOLE = 1.5  # median periods between two inputs, of which one between them was not recorded
+_SILENCE = 5.0  # median periods in which the recorder may have lost all topics alike
+_KEPT = 32_768  # stamps of inputs
+_DELAY = 1_000_000_000  # ns that an output can take longer than the inputs around it
+_ALWAYS = -(2**62)  # ns
+
+
+class Inputs(NamedTuple):
+    """Inputs in the order of their reception."""
+
+    received: Array
+    """(n,), ns."""
+    stamp: Array
+    """(n,), ns."""
+    answered: Flags
+    """(n, topics): whether the input has its output."""
+
+    def where(self, chosen: Flags) -> 'Inputs':
+        """Give some of them."""
+        return Inputs(self.received[chosen], self.stamp[chosen], self.answered[chosen])
+
+
+class Missing:
+    """The outputs that one topic lacks."""
+
+    def __init__(self) -> None:
+        """Start with none."""
+        self.count = 0
+        self.first: int | None = None
+        """Stamp of the first input without its output."""
+        self.left_out: Counter[str] = Counter()
+        """Of those that are not judged, by cause."""
+        self.ended_early: float | None = None
+        """s between the last input that has its output and the last input, if that is too long."""
+        self._last_answered: int | None = None  # received, ns
+        self._tail = 0
+        self._tail_first: tuple[int, int] | None = None  # received, stamp; ns
+
+    def update(self, received: Array, stamp: Array, answered: Flags, cause: str = '') -> None:
+        """Take the next inputs.
+
+        Args:
+            received: (n,), ns.
+            stamp: (n,), ns.
+            answered: (n,): which of them have an output on this topic.
+            cause: why they are not judged, if they are not.
+        """
+        with_output = np.flatnonzero(answered)
+        if cause:
+            self.left_out[cause] += len(answered) - len(with_output)
+        else:
+            end = int(with_output[-1]) + 1 if len(with_output) else 0
+            if end:  # those behind the last output are missing only if another one follows
+                self._count_tail()
+            inner = np.flatnonzero(~answered[:end])
+            self._count(len(inner), int(stamp[inner[0]]) if len(inner) else None)
+            if not self._tail and end < len(stamp):
+                self._tail_first = int(received[end]), int(stamp[end])
+            self._tail += len(stamp) - end
+        if len(with_output):
+            self._last_answered = int(received[with_output[-1]])
+
+    def close(self, last_received: int | None, *, strict: bool) -> None:
+        """Decide on what follows the last output.
+
+        Args:
+            last_received: when the last input of all was received, ns.
+            strict: whether all of it is missing.
+        """
+        if self._last_answered is None or last_received is None:
+            self._count_tail()
+            self._count(self.left_out.total(), self.first)
+            self.left_out.clear()
+            return
+        late = self._tail_first is not None and last_received - self._tail_first[0] > _END
+        if late:
+            self.ended_early = (last_received - self._last_answered) * 1e-9
+        if late or strict:
+            self._count_tail()
+        else:
+            self.left_out[AFTER] += self._tail
+
+    def _count(self, count: int, first: int | None) -> None:
+        self.count += count
+        if count and self.first is None:
+            self.first = first
+
+    def _count_tail(self) -> None:
+        if self._tail_first:
+            self._count(self._tail, self._tail_first[1])
+        self._tail, self._tail_first = 0, None
+
+
+class Completeness:
+    """Which outputs are missing, on several topics that answer the same inputs."""
+
+    def __init__(self, topics: int, *, strict: bool) -> None:
+        """Start with no input.
+
+        Args:
+            topics: number of output topics.
+            strict: whether everything is judged, as if the recorder lost nothing.
+        """
+        self.topics = tuple(Missing() for _ in range(topics))
+        self._strict = strict
+        self._start = _ALWAYS if strict else None
+        self._first: list[Inputs] = []  # until the recorder has settled for sure
+        self._last_received: int | None = None
+
+    def begin(self, received: int) -> None:
+        """Take note of when the last of all topics began to be recorded, ns."""
+        if self._start is None:
+            self._start = received
+
+    def update(self, inputs: Inputs) -> None:
+        """Take the next inputs."""
+        received = inputs.received
+        if not len(received):
+            return
+        self._last_received = int(received[-1])
+        if self._start is None:
+            self._take(inputs, cause=BEFORE)
+            return
+        before, settled = received < self._start, received > self._start + _SETTLED
+        self._take(inputs.where(before), cause=BEFORE)
+        self._first.append(inputs.where(~(before | settled)))
+        if settled.any():
+            self._settle()
+            self._take(inputs.where(settled))
+
+    def close(self) -> None:
+        """Decide on what waits, since no input comes any more."""
+        self._settle()
+        for topic in self.topics:
+            topic.close(self._last_received, strict=self._strict)
+
+    def _take(self, inputs: Inputs, cause: str = '') -> None:
+        for topic, answered in zip(self.topics, inputs.answered.T, strict=True):
+            topic.update(inputs.received, inputs.stamp, answered, cause)
+
+    def _settle(self) -> None:
+        """Find out when the recorder had settled, and take the inputs that wait for that."""
+        if not self._first:
+            return
+        inputs = Inputs(*map(np.concatenate, zip(*self._first, strict=True)))
+        self._first.clear()
+        settled = inputs.received > _settled(inputs)
+        self._take(inputs.where(~settled), cause=SETTLING)
+        self._take(inputs.where(settled))
+
+
+def _settled(inputs: Inputs) -> int:
+    """When the last loss was that follows one before it, or the first input, at once; ns."""
+    received, stamp, answered = inputs
+    if len(received) < 2:  # noqa: PLR2004, to tell anything
+        return _ALWAYS
+    incomplete = received[~answered.all(axis=1)]
+    period = np.diff(stamp)
+    silent = np.flatnonzero(period > _SILENCE * np.median(period))
+    losses = [(moment, moment) for moment in incomplete.tolist()]
+    losses += zip(received[silent].tolist(), received[silent + 1].tolist(), strict=True)
+    settled, last = _ALWAYS, int(received[0])
+    for begin, end in sorted(losses):
+        if begin - last > _QUIET:
+            break
+        settled = last = max(last, end)
+    return settled
+
+
+class RecordedInputs:
+    """The stamps of the latest inputs in a recording, by which one is known not to be in it."""
+
+    def __init__(self, *, strict: bool) -> None:
+        """Start with none.
+
+        Args:
+            strict: whether every input is taken to have been recorded.
+        """
+        self._strict = strict
+        self._stamps = np.zeros(0, np.int64)
+        self._complete = True
+        self._first_age: int | None = None  # received less stamp, ns
+        self._last_age = 0
+
+    def update(self, received: Array, stamp: Array, rejected: Array) -> None:
+        """Take the next inputs (n,), ns, and the stamps of those that were rejected, (m,)."""
+        if len(stamp):
+            self._last_age = int(received[-1] - stamp[-1])
+            if self._first_age is None:
+                self._first_age = int(received[0] - stamp[0])
+        stamps = np.concatenate([self._stamps, stamp, rejected])
+        self._complete = self._complete and len(stamps) <= _KEPT
+        self._stamps = stamps[-_KEPT:]
+
+    def lack(self, received: Array, stamp: Array) -> Flags:
+        """Tell of outputs (n,), ns, which of them answer an input that was not recorded."""
+        if self._strict or not len(stamp):
+            return np.zeros(len(stamp), bool)
+        if self._first_age is None:
+            return np.ones(len(stamp), bool)
+        known = np.unique(self._stamps)
+        after = np.searchsorted(known, stamp)
+        bounds = np.concatenate([[known[0]], known, [known[-1]]])
+        period = np.diff(known)
+        longest = _HOLE * float(np.median(period)) if len(period) else np.inf
+        in_hole = (bounds[after + 1] - bounds[after] > longest) & (bounds[after + 1] != stamp)
+        age = received - stamp
+        too_early = (after == 0) & self._complete & (stamp < known[0])
+        too_late = after == len(known)
+        return np.asarray(
+            in_hole
+            | (too_early & (np.abs(age - self._first_age) < _DELAY))
+            | (too_late & (np.abs(age - self._last_age) < _DELAY))
+        )
