@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from io import TextIOWrapper
 from typing import NoReturn
 
+import numpy as np
+
+from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import (
     Command,
     ExitCode,
@@ -57,10 +60,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     previous = signal.signal(signal.SIGTERM, signal.default_int_handler)
     code = ExitCode.DONE
     try:
-        with closed_pipe_ignored():
+        # What overflows shows in the results.
+        with closed_pipe_ignored(), np.errstate(all='ignore'):
             code = options.run(options)
     except (ValueError, OSError, RuntimeError) as error:
         complain(error)
+        code = ExitCode.UNUSABLE
+    except Exception as error:  # noqa: BLE001, a traceback is for those who ask for it
+        complain(unexpected(error, debug=options.debug))
         code = ExitCode.UNUSABLE
     except KeyboardInterrupt:
         code = ExitCode.INTERRUPTED
@@ -75,5 +82,8 @@ def _parser() -> argparse.ArgumentParser:
     for name, command in COMMANDS.items():
         added = commands.add_parser(name, help=command.HELP, description=command.HELP)
         command.add_arguments(added)
+        added.add_argument(
+            '--debug', action='store_true', help='print the traceback of an unexpected error'
+        )
         added.set_defaults(run=command.run)
     return parser

@@ -61,14 +61,14 @@ class AngleFit:
         if self.count < 3:  # noqa: PLR2004, two points always lie on a line
             return None
         n = self.count
-        xx = self._xx - self._x**2 / n
+        xx = self._xx - self._x * self._x / n  # a power that overflows raises
         xy = self._xy - self._x * self._y / n
-        yy = self._yy - self._y**2 / n
+        yy = self._yy - self._y * self._y / n
         if xx < n * _ENOUGH_TURNING**2:
             return None
         slope = xy / xx
         scatter = max(yy - slope * xy, 0.0) / n
-        if scatter > 1e-6 * yy / n:
+        if not scatter <= 1e-6 * yy / n < math.inf:  # garbage has no line either
             return None
         # What the sums themselves lose, and what the scatter leaves open.
         return slope, abs(slope) * 1e-9 + 5.0 * math.sqrt(scatter / xx)

@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.errors import unexpected
+from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.report import BagReport, Verdict
 from gear_kinematics.validation import Message, Tolerances, Topics, Validator
@@ -61,6 +63,8 @@ class Task:
     """None: found by type and name, and so are the others."""
     output_topic: str | None = None
     poses_topic: str | None = None
+    debug: bool = False
+    """Whether tracebacks of unexpected errors go to stderr."""
 
 
 class SchedulerError(ValueError):
@@ -180,7 +184,7 @@ def validate_bag(
     progress: Progress | None = None,
     play: Callable[..., Iterable[Message]] | None = None,
 ) -> BagReport:
-    """Validate one bag. What is wrong with the bag itself is told in the report.
+    """Validate one bag. Whatever goes wrong with a recording is told in its report.
 
     Args:
         task: the bag, and what to validate it with.
@@ -202,6 +206,10 @@ def validate_bag(
             return validate_messages(task, messages, progress, topics, bag.message_count)
     except BagError as error:
         return _unusable(task, str(error))
+    except Exception as error:
+        if play or isinstance(error, MechanismError):
+            raise
+        return _unusable(task, f'{task.bag}: {unexpected(error, debug=task.debug)}')
 
 
 def validate_messages(

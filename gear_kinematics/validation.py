@@ -153,6 +153,7 @@ class Validator:
             if progress:
                 progress(count)
 
+    @np.errstate(all='ignore')  # recorded numbers can be anything; what overflows fails
     def report(self, bag: str = '', *, error: str | None = None) -> BagReport:
         """Report on everything that was fed; to be called once, at the end.
 
@@ -186,6 +187,7 @@ class Validator:
             module=self._parameters['module'],
         )
 
+    @np.errstate(all='ignore')
     def _take(self, batch: _Batch) -> None:
         if self._prefix_open and len(batch):
             self._settle_prefix(batch)

@@ -1101,6 +1101,23 @@ def described_mcap(path: Path) -> Path:
     return path
 
 
+@pytest.mark.parametrize('received', [2**63, 2**64 - 1])
+def test_a_time_beyond_what_ros_has_is_damage(tmp_path, received):
+    path = tmp_path / 'b.mcap'
+    with path.open('wb') as stream:
+        writer = mcap.writer.Writer(stream)
+        writer.start(profile='ros2')
+        schema = writer.register_schema('my_msgs/msg/Odd', 'ros2msg', ODD.encode())
+        channel = writer.register_channel('/t', 'cdr', schema)
+        for time in (1, 2**63 - 1, received):
+            writer.add_message(channel, time, b'data', time)
+        writer.finish()
+    taken = []
+    with Bag(path) as bag, pytest.raises(DamagedBagError, match='reception is out of range'):
+        taken.extend(bag.messages(['/t']))
+    assert [message[1] for message in taken] == [1, 2**63 - 1]
+
+
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_copied_topic_keeps_what_is_known_of_it(tmp_path, storage):
     names = ['/full', '/full_qos', '/idl', '/no_text', '/strange']

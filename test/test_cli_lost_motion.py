@@ -193,6 +193,23 @@ def test_unusable_recording_does_not_keep_the_others(recording, tmp_path, capsys
     assert found['recording'] == 'gear.csv'
 
 
+@pytest.mark.parametrize('value', [1.4e154, 1e200])
+@pytest.mark.parametrize('column', ['angle', 'torque'])
+def test_garbage_in_one_recording_keeps_no_other(recording, tmp_path, column, value, capsys):
+    torque = np.concatenate(
+        [np.linspace(0, 4, 99), np.linspace(4, -4, 199), np.linspace(-4, 0, 99)]
+    )
+    columns = {'angle': torque / 300.0, 'torque': torque}
+    columns[column] = columns[column].copy()
+    columns[column][150] = value
+    spoilt = write_csv(tmp_path / 'spoilt.csv', **columns)
+    assert main(['lost-motion', str(spoilt), str(recording), '--json']) in {0, 2}
+    captured = capsys.readouterr()
+    assert 'Traceback' not in captured.err
+    assert len(captured.err.splitlines()) <= 1
+    assert json.loads(captured.out)['recordings'][-1]['recording'] == 'gear.csv'
+
+
 def test_report_needs_neither_matplotlib_nor_plotly(recording):
     program = (
         'import sys; sys.modules["matplotlib"] = sys.modules["plotly"] = None\n'

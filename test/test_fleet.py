@@ -289,6 +289,35 @@ def test_a_bad_bag_is_reported_as_unusable_in_one_line(make, error, tmp_path):
     assert '\n' not in report.error
 
 
+BROKEN = """import gear_kinematics.fleet as fleet
+honest = fleet.find_topics
+def find_topics(bag, *_, **__):
+    return 1 // (bag.path.name != 'driver_faults') and honest(bag)
+fleet.find_topics = find_topics
+"""
+
+
+@pytest.mark.parametrize('options', [[], ['--debug']])
+def test_an_unexpected_error_makes_one_bag_unusable_and_no_other(options):
+    bags = [BAGS / name for name in ('driver_faults', 'constant_speed_3000rpm')]
+    done = subprocess.run(
+        [sys.executable, '-c', BROKEN + GEARKIN, 'validate', *options, *bags],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert done.returncode == 2
+    said = f'gearkin: {bags[0]}: unexpected ZeroDivisionError: '
+    lines = done.stderr.splitlines()
+    assert lines[-1].startswith(said)
+    assert lines[-1].endswith('; --debug shows where') == (not options)
+    assert ('Traceback' in done.stderr) == bool(options)
+    assert len(lines) == 1 or options
+    assert f'{bags[0]}: verdict: unusable\n' in done.stdout
+    assert f'{bags[1]}: verdict: passed\n' in done.stdout
+
+
 def test_a_bag_that_is_cut_off_is_reported_as_far_as_it_goes(tmp_path):
     path = tmp_path / 'cut.mcap'
     cut(path)

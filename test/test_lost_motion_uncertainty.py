@@ -81,6 +81,15 @@ def test_relative_uncertainty_of_the_inverse_is_the_same():
     assert inverse.degrees_of_freedom == estimate.degrees_of_freedom
 
 
+@pytest.mark.parametrize('scale', [1e-290, 1e-90, 1e90, 1e200])
+def test_no_scale_overflows(scale):
+    values = [1.0, 2.0, 4.0]
+    one = Estimate.of_mean(values, Component(0.5, 7.0))
+    scaled = Estimate.of_mean([scale * v for v in values], Component(scale * 0.5, 7.0))
+    assert scaled.standard == pytest.approx(scale * one.standard)
+    assert scaled.degrees_of_freedom == pytest.approx(one.degrees_of_freedom)
+
+
 def test_reading_in_steps_is_evenly_spread():
     # The variance of a rectangle of width 0.3, by numbers.
     rectangle = (np.arange(100_000) + 0.5) / 100_000 * 0.3

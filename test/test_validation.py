@@ -218,6 +218,38 @@ def test_a_value_that_is_not_finite_is_found(recorded, config, value):
         assert (found.non_finite, found.first_non_finite) == (1, stamp)
 
 
+@pytest.mark.parametrize('value', [1.4e154, -1e200, 1.7976931348623157e308, 5e-324])
+@pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
+@pytest.mark.parametrize('field', ['position', 'velocity', 'effort'])
+def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topic, field, value):
+    """What a flipped bit makes of a float: nothing overflows, and all else is compared."""
+
+    def spoil(message) -> None:
+        getattr(message, field)[0] = value
+
+    changed, stamp = change_one(recorded, topic, spoil)
+    for name in ('servo', 'allowed'):
+        report = validate(changed, config, allow_offset=name == 'allowed')
+        assert report.verdict == Verdict.FAIL
+        assert sum(t.compared for t in report.topics) >= 598
+        worst = {f.worst_stamp for t in report.topics for f in t.fields if not f.passed}
+        assert worst <= {stamp, None}
+
+
+@pytest.mark.parametrize('value', [1.4e154, 1e300])
+def test_garbage_in_one_pose_is_an_error_of_that_pose(recorded, config, value):
+    for edit in (
+        lambda m: setattr(m.poses[2].position, 'y', value),
+        lambda m: setattr(m.poses[2].position, 'z', -value),
+        lambda m: setattr(m.poses[0].orientation, 'w', value),
+    ):
+        changed, stamp = change_one(recorded, POSES, edit)
+        report = validate(changed, config)
+        (failed,) = (f for f in topic_of(report, POSES).fields if not f.passed)
+        assert failed.worst_stamp == stamp
+        assert failed.max_error == pytest.approx(value, rel=1.1)
+
+
 def test_a_field_that_lacks_is_found(recorded, config):
     def without_effort(message) -> None:
         message.effort = np.zeros(0)

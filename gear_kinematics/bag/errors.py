@@ -1,5 +1,6 @@
 """What is raised about a bag, whichever library noticed it."""
 
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -19,6 +20,19 @@ def cause(error: BaseException) -> str:
     # Some errors of the operating system's kind come from elsewhere and have no such text.
     text = str(getattr(error, 'strerror', None) or error)
     return ' '.join(text.split()) or type(error).__name__
+
+
+def unexpected(error: Exception, *, debug: bool) -> str:
+    """Describe an error that nothing foresaw, in one line.
+
+    Args:
+        error: being handled.
+        debug: whether to write its traceback to stderr.
+    """
+    if debug:
+        traceback.print_exception(error)
+    hint = '' if debug else '; --debug shows where'
+    return f'unexpected {type(error).__name__}: {cause(error)}{hint}'
 
 
 @contextmanager

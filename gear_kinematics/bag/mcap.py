@@ -19,6 +19,7 @@ _KNOWLEDGE = frozenset({_SCHEMA, _CHANNEL, _STATISTICS})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
 _RECORD = struct.Struct('<BQ')  # opcode, length of what follows
 _MESSAGE_START = struct.Struct('<H4xQ')  # channel, reception; the data begin at byte 22
+_LATEST = 2**63 - 1  # ns
 _BATCH = 4096  # messages outside of chunks that are handled together
 _RECEIVED = itemgetter(1)
 
@@ -150,6 +151,8 @@ class Mcap(Storage):
                 if opcode == _MESSAGE:
                     channel, received = unpack_message(records, start)
                     if channel in wanted:
+                        if received > _LATEST:
+                            raise ValueError('a time of reception is out of range')
                         batch.append((wanted[channel], received, records[start + 22 : end]))
                 elif opcode in _KNOWLEDGE:
                     self._learn(opcode, records[start:end])

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 from gear_kinematics import parameters, plotting
+from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, config_path, positive
 from gear_kinematics.commands.output import (
@@ -118,6 +119,9 @@ def run(options: argparse.Namespace) -> ExitCode:
             code = ExitCode.UNUSABLE
         except (ValueError, OSError) as error:
             complain(error)
+            code = ExitCode.UNUSABLE
+        except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
+            complain(f'{path}: {unexpected(error, debug=options.debug)}')
             code = ExitCode.UNUSABLE
     for report in reports:
         if report.recording.error:

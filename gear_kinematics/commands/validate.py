@@ -94,6 +94,7 @@ def run(options: argparse.Namespace) -> ExitCode:
                 options.rotor_topic,
                 options.output_topic,
                 options.poses_topic,
+                options.debug,
             )
         )
     order = {str(task.bag): number for number, task in enumerate(tasks)}

@@ -62,15 +62,18 @@ class Estimate:
             return cls(value, None, 0.0, 1)
         own = [
             Component(
-                abs(factor) * float(np.std(values, ddof=1)) / math.sqrt(len(values)),
+                abs(factor) * _deviation(values) / math.sqrt(len(values)),
                 len(values) - 1,
             )
             for factor, values in terms
         ]
-        variance = sum(part.standard**2 for part in (*own, *others))
-        spread = sum(part.standard**4 / part.degrees_of_freedom for part in (*own, *others))
-        degrees = variance**2 / spread if spread else math.inf
-        return cls(value, math.sqrt(variance), degrees, repeats)
+        parts = (*own, *others)
+        standard = math.hypot(*(part.standard for part in parts))
+        # Shares of the variance, since fourth powers of large numbers overflow.
+        spread = sum(
+            (part.standard / standard) ** 4 / part.degrees_of_freedom for part in parts if standard
+        )
+        return cls(value, standard, 1.0 / spread if spread else math.inf, repeats)
 
     @property
     def uncertainty(self) -> float | None:
@@ -86,6 +89,11 @@ class Estimate:
         value = 1.0 / self.value
         standard = None if self.standard is None else value * value * self.standard
         return Estimate(value, standard, self.degrees_of_freedom, self.repeats)
+
+
+def _deviation(values: Sequence[float]) -> float:
+    """Experimental standard deviation (GUM 4.2.2), without squares that overflow."""
+    return math.hypot(*(np.asarray(values) - np.mean(values))) / math.sqrt(len(values) - 1)
 
 
 def resolution(step: float) -> float:
