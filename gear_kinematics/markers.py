@@ -1,40 +1,35 @@
 """The mechanism as a visualization_msgs/MarkerArray, for RViz and Foxglove.
 
-Every pose is in the frame `stator`. Markers locked to the frames of the links would have to be
-sent only once, but could not be seen without robot_state_publisher. What moves is serialised once
-instead, outlines of teeth having thousands of points, and from then on only poses are written
-into the bytes. What stays is sent once a second, for those who come later. Stamps are zero, which
-viewers take for now.
+The outlines of the teeth have thousands of points, and no viewer moves a marker unless its points
+are sent again. So each marker is locked to the frame of its link: the shapes are sent once, and
+/tf, which robot_state_publisher computes, moves them. All are in one message, because after a jump
+in a recording Foxglove shows nothing but the last message of a topic.
 """
 
 import math
-import struct
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
-from geometry_msgs.msg import Point, Pose, Quaternion, Vector3
+from geometry_msgs.msg import Point, Pose, Vector3
 from numpy.typing import NDArray
 from rclpy.serialization import serialize_message
-from std_msgs.msg import ColorRGBA
+from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from gear_kinematics import teeth
 from gear_kinematics.description import COLOURS, FACE_WIDTH
 from gear_kinematics.drawing import roses, turned
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.motion import closed_form
-from gear_kinematics.rotor_input import RotorSample
+from gear_kinematics.kinematics import Mechanism, solve
 
 Array = NDArray[np.float64]
+Size = tuple[float, float, float]
 
-_REPEAT = 1.0  # s, after which everything is sent again
+_REPEAT_BANDWIDTH = 5e3  # bytes/s on average
 _OUTLINE_WIDTH = 0.2  # modules
 _ROSE_WIDTH = 0.03  # eccentricities
 _PETAL_POINTS = 24
 _MOST_PETALS = 100  # of a rose; more could not be told apart
-_POSE = struct.Struct('=7d')
 
 
 class Markers:
@@ -44,169 +39,107 @@ class Markers:
         """Take what is to be shown; the module is that of the teeth, m."""
         self._mechanism = mechanism
         self._module = module
-        self._frame_id = frame_prefix + 'stator'
-        self._shown: RotorSample | None = None
-        self._repeat_at = -math.inf
+        self._frame_prefix = frame_prefix
+        self._due_at = -math.inf
 
-    def due(self, sample: RotorSample | None, now: float) -> Iterator[bytes]:
-        """Yield the messages that bring every viewer up to date.
+    def due(self, now: float) -> bytes | None:
+        """Give the message if it is to be sent now.
+
+        Viewers that have it get it again from time to time: RViz drops its markers when it is
+        reset, when its fixed frame changes and when time jumps back.
 
         Args:
-            sample: the last one, if there was any.
             now: the time on any clock that does not jump, s.
         """
-        repeat = now >= self._repeat_at
-        if repeat:
-            self._repeat_at = now + _REPEAT
-            yield self._fixed
-        if sample is not None and (repeat or sample is not self._shown):
-            self._shown = sample
-            yield self._moving.encode(_places(self._mechanism, sample))
+        if now < self._due_at:
+            return None
+        self._due_at = now + len(self._message) / _REPEAT_BANDWIDTH
+        return self._message
+
+    def repeat(self) -> None:
+        """Make the message due, for a viewer that is new."""
+        self._due_at = -math.inf
 
     @cached_property
-    def _outlines(self) -> teeth.Outlines:
-        return teeth.outlines(self._mechanism, self._module)
+    def _message(self) -> bytes:
+        markers = list(self._shapes())
+        for number, marker in enumerate(markers):
+            marker.id = number
+            marker.header.frame_id = self._frame_prefix + marker.header.frame_id
+        return bytes(serialize_message(MarkerArray(markers=markers)))
 
-    @cached_property
-    def _fixed(self) -> bytes:
-        """The ring gears, and the roses on which the centres of the Oldham couplings move."""
-        line, thin = _OUTLINE_WIDTH * self._module, _ROSE_WIDTH * self._mechanism.eccentricity
-        petals = min(self._mechanism.oldham_petals, _MOST_PETALS)
-        paths = roses(self._mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
-        markers = []
-        for branch, rose in zip(self._mechanism.branches, paths, strict=True):
-            outline = turned(self._outlines.ring, teeth.ring_phase(self._mechanism, branch))
-            z = branch.axial_position
-            markers += [
-                _line('ring', 'stator', _closed(outline), line, z + 0.5 * FACE_WIDTH),
-                _line('rose', 'oldham', rose, thin, z + 1.2 * FACE_WIDTH),
-            ]
-        return self._serialised(markers)
-
-    @cached_property
-    def _moving(self) -> '_Template':
-        """Rotor and cams, satellites, Oldham couplings, output shaft and arms.
+    def _shapes(self) -> Iterator[Marker]:
+        """Yield every shape in the frame of its link, without prefix.
 
         Along the axis, each satellite carries its coupling, and that the arm.
         """
-        outline = _closed(self._outlines.satellite)
-        line, radius = _OUTLINE_WIDTH * self._module, float(np.hypot(*outline.T).min())
-        axial = [branch.axial_position for branch in self._mechanism.branches]
-        middle, length = 0.5 * (min(axial) + max(axial)), max(axial) - min(axial) + FACE_WIDTH
-        parts = [
-            ('rotor', _cylinder('rotor', 'rotor', 0.4 * radius, length, middle)),
-            ('output', _cylinder('output', 'output', 0.2 * radius, length + FACE_WIDTH, middle)),
-        ]
-        for branch in self._mechanism.branches:
-            z, face, bar = branch.axial_position, FACE_WIDTH, 0.1 * radius
-            cam, satellite, oldham = (
-                f'{kind}_{branch.name}' for kind in ('cam', 'satellite', 'oldham')
+        mechanism, face = self._mechanism, FACE_WIDTH
+        ring, satellite = teeth.outlines(mechanism, self._module)
+        line, thin = _OUTLINE_WIDTH * self._module, _ROSE_WIDTH * mechanism.eccentricity
+        radius = float(np.hypot(*satellite.T).min())
+        bar = 0.1 * radius
+        axial = [branch.axial_position for branch in mechanism.branches]
+        middle, length = 0.5 * (min(axial) + max(axial)), max(axial) - min(axial) + face
+        yield _cylinder('rotor', 'rotor', 'rotor', 0.4 * radius, length, middle)
+        yield _cylinder('output', 'output', 'output_shaft', 0.2 * radius, length + face, middle)
+        petals = min(mechanism.oldham_petals, _MOST_PETALS)
+        paths = roses(mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
+        # With the rotor at 0, the frames of rotor and stator are one.
+        cams = solve(mechanism, 0.0).satellite_centre.tolist()
+        for branch, rose, (x, y) in zip(mechanism.branches, paths, cams, strict=True):
+            z, phase = branch.axial_position, teeth.ring_phase(mechanism, branch)
+            on_satellite, on_oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
+            yield _line(
+                'ring', 'stator', 'stator', _closed(turned(ring, phase)), line, z + 0.5 * face
             )
-            parts += [
-                (cam, _cylinder('cam', 'rotor', radius, 1.1 * face, z)),
-                (satellite, _cylinder('satellite', 'satellite', 2.0 * radius, face, z)),
-                (satellite, _line('satellite', 'satellite', outline, line, z + 0.5 * face)),
-                (
-                    satellite,
-                    _box('slot', 'stator', (1.8 * radius, bar, 0.1 * face), z + 0.55 * face),
-                ),
-                (oldham, _cylinder('oldham', 'oldham', 0.7 * radius, 0.2 * face, z + 0.7 * face)),
-                ('output', _box('arm', 'output', (bar, 1.8 * radius, 0.2 * face), z + 0.9 * face)),
-            ]
-        # Orientations that no other bytes are like show where the poses are.
-        for number, (_, marker) in enumerate(parts):
-            marker.pose.orientation = Quaternion(x=1e300, y=1e300, z=1e300, w=float(number))
-        data = self._serialised([marker for _, marker in parts])
-        slots = []
-        for place, marker in parts:
-            pose = _POSE.pack(
-                0.0, 0.0, z := marker.pose.position.z, 1e300, 1e300, 1e300, marker.id
+            # On it the centre of the Oldham coupling moves.
+            yield _line('rose', 'oldham', 'stator', rose, thin, z + 1.2 * face)
+            cam = _cylinder('cam', 'rotor', 'rotor', radius, 1.1 * face, z)
+            cam.pose.position.x, cam.pose.position.y = x, y
+            yield cam
+            yield _cylinder('satellite', 'satellite', on_satellite, 2.0 * radius, face, 0.0)
+            yield _line(
+                'satellite', 'satellite', on_satellite, _closed(satellite), line, 0.5 * face
             )
-            slots.append(_Slot(place, z, data.index(pose)))
-        return _Template(bytearray(data), slots)
-
-    def _serialised(self, markers: Sequence[Marker]) -> bytes:
-        for number, marker in enumerate(markers):
-            marker.header.frame_id, marker.id = self._frame_id, number
-        return bytes(serialize_message(MarkerArray(markers=markers)))
-
-
-class _Slot(NamedTuple):
-    """A pose in the bytes of a template."""
-
-    place: str
-    z: float
-    offset: int
-
-
-class _Template(NamedTuple):
-    """A serialised MarkerArray, into which poses are written."""
-
-    buffer: bytearray
-    slots: list[_Slot]
-
-    def encode(self, places: Mapping[str, '_Place']) -> bytes:
-        """The message with every marker at its place."""
-        for name, z, offset in self.slots:
-            (x, y), angle = places[name]
-            half = 0.5 * angle
-            pose = (x, y, z, 0.0, 0.0, math.sin(half), math.cos(half))
-            _POSE.pack_into(self.buffer, offset, *pose)
-        return bytes(self.buffer)
-
-
-class _Place(NamedTuple):
-    """Where a body is in the plane."""
-
-    centre: tuple[float, float]
-    """m."""
-    angle: float
-    """rad, within the turn."""
-
-
-def _places(mechanism: Mechanism, sample: RotorSample) -> dict[str, _Place]:
-    """The place of every body by its name."""
-    form, (turns, angle) = closed_form(mechanism), sample.position
-    _, output_angle = form.output_angle(turns, angle, math)
-    places = {'rotor': _Place((0.0, 0.0), angle), 'output': _Place((0.0, 0.0), output_angle)}
-    positions = form.branches(angle, output_angle, math)
-    for branch, position in zip(mechanism.branches, positions, strict=True):
-        on_cam = position.satellite.real, position.satellite.imag
-        places[f'cam_{branch.name}'] = _Place(on_cam, angle)
-        places[f'satellite_{branch.name}'] = _Place(on_cam, output_angle)
-        on_slots = position.oldham.real, position.oldham.imag
-        places[f'oldham_{branch.name}'] = _Place(on_slots, output_angle)
-    return places
+            yield _box(
+                'slot', 'stator', on_satellite, (1.8 * radius, bar, 0.1 * face), 0.55 * face
+            )
+            yield _cylinder('oldham', 'oldham', on_oldham, 0.7 * radius, 0.2 * face, 0.7 * face)
+            yield _box(
+                'arm', 'output', 'output_shaft', (bar, 1.8 * radius, 0.2 * face), z + 0.9 * face
+            )
 
 
 def _closed(outline: Array) -> Array:
     return np.concatenate([outline, outline[:1]])
 
 
-def _line(kind: str, colour: str, points: Array, width: float, z: float) -> Marker:
-    marker = _marker(Marker.LINE_STRIP, kind, colour, (width, 0.0, 0.0), z)
+def _line(kind: str, colour: str, link: str, points: Array, width: float, z: float) -> Marker:
+    marker = _marker(Marker.LINE_STRIP, kind, colour, link, (width, 0.0, 0.0), z)
     marker.points = [Point(x=x, y=y) for x, y in points.tolist()]
     return marker
 
 
-def _cylinder(kind: str, colour: str, diameter: float, height: float, z: float) -> Marker:
-    return _marker(Marker.CYLINDER, kind, colour, (diameter, diameter, height), z)
-
-
-def _box(kind: str, colour: str, size: tuple[float, float, float], z: float) -> Marker:
-    return _marker(Marker.CUBE, kind, colour, size, z)
-
-
-def _marker(
-    shape: int, kind: str, colour: str, scale: tuple[float, float, float], z: float
+def _cylinder(
+    kind: str, colour: str, link: str, diameter: float, height: float, z: float
 ) -> Marker:
-    """A marker about the axis; viewers list it under its kind."""
+    return _marker(Marker.CYLINDER, kind, colour, link, (diameter, diameter, height), z)
+
+
+def _box(kind: str, colour: str, link: str, size: Size, z: float) -> Marker:
+    return _marker(Marker.CUBE, kind, colour, link, size, z)
+
+
+def _marker(shape: int, kind: str, colour: str, link: str, scale: Size, z: float) -> Marker:
+    """A marker on the z axis of a link, locked to it; viewers list it under its kind."""
     red, green, blue, _ = map(float, COLOURS[colour].split())
     x_scale, y_scale, z_scale = scale
     return Marker(
+        header=Header(frame_id=link),
         ns=kind,
         type=shape,
         pose=Pose(position=Point(z=z)),
         scale=Vector3(x=x_scale, y=y_scale, z=z_scale),
         color=ColorRGBA(r=red, g=green, b=blue, a=1.0),
+        frame_locked=True,
     )

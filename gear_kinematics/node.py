@@ -100,11 +100,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._next_warning = 0.0
         self._description = String()
 
-        self._description_publisher = self._create_output(
-            String,
-            'robot_description',
-            QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL),
-        )
+        self._description_publisher = self._create_output(String, 'robot_description', _latched())
         self._outputs = {
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
             for topic, name in STATE_TOPICS.items()
@@ -129,7 +125,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 1.0 / rate, self._publish_markers, clock=steady, autostart=False
             )
             self._marker_publisher = self._create_output(
-                MarkerArray, 'markers', QoSProfile(depth=10), matched=self._on_viewers
+                MarkerArray, 'markers', _latched(), matched=self._on_viewers
             )
         self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
         joint = self._value('rotor_joint')
@@ -286,14 +282,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self._publish(self._transmission_error, self._messages.transmission_error(sample))
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
-        """Let the timer of the markers run while somebody looks."""
+        """Let the timer of the markers run while somebody looks, and serve who has just come."""
+        # Not the change of the count: some executors report 0 for a viewer older than the node.
         if event.current_count:
+            self._markers.repeat()
             self._marker_timer.reset()
         else:
             self._marker_timer.cancel()
 
     def _publish_markers(self) -> None:
-        for message in self._markers.due(self._input.last, time.monotonic()):
+        if message := self._markers.due(time.monotonic()):
             self._publish(self._marker_publisher, message)
 
     def _publish(self, publisher: Publisher, message: Any) -> None:
@@ -401,6 +399,11 @@ class _Input(NamedTuple):
     subscription: Subscription
     losses: Any
     """What the middleware knows of messages that it did not deliver."""
+
+
+def _latched() -> QoSProfile:
+    """A profile of its own for each topic, since overrides of QoS change it."""
+    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:

@@ -100,9 +100,7 @@ PARAMETERS: Mapping[str, Parameter] = {
     ),
     'home_angle': Parameter('Output angle that ~/home declares, rad', -1e9, 1e9),
     'frame_prefix': Parameter('Put before every frame id and joint name'),
-    'markers_rate': Parameter(
-        'Rate of markers while somebody looks, Hz; 0: none', 0.0, 1000.0, read_only=True
-    ),
+    'markers_rate': Parameter('Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True),
     'executor': Parameter(
         'rclpy executor; auto: events where this ROS has it',
         choices=('auto', 'events', 'single_threaded'),

@@ -1,19 +1,22 @@
-"""Markers: bodies where the matrix method puts them, teeth that mesh, and no message too many."""
+"""Markers: bodies where the matrix method puts them, teeth that mesh, and hardly any messages."""
 
 import math
 
 import numpy as np
 import pytest
 import shapely
-from live import START, live_node, rotor_state
+from links import read
+from live import LATCHED, PATIENT, live_node, rotor_state
 from rclpy.qos import QoSProfile
 from shapely import affinity
-from shown_markers import MODULE, all_at, sample_at, shown
+from shown_markers import MODULE, all_at, sent
 from visualization_msgs.msg import Marker, MarkerArray
 
+from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Branch, Mechanism, matrix_method
 from gear_kinematics.markers import Markers
 
+VOLATILE = QoSProfile(depth=10)
 ANGLES = [0.0, 0.3, -2.0, 59.0, -119.0, 1e5]
 
 
@@ -71,7 +74,7 @@ def test_teeth_mesh_as_drawn(actuator, rotor_angle):
     rings, satellites = (of_kind(markers, k, Marker.LINE_STRIP) for k in ('ring', 'satellite'))
     assert len(rings) == len(satellites) == 2
     for ring, satellite in zip(rings, satellites, strict=True):
-        assert ring.pose.position.z == satellite.pose.position.z
+        assert ring.pose.position.z == pytest.approx(satellite.pose.position.z, abs=1e-12)
         space = polygon(ring)
         assert polygon(satellite).difference(space).area <= 1e-9 * MODULE**2
         assert polygon(satellite, 1e-3).difference(space).area > 1e-3 * MODULE**2
@@ -86,48 +89,86 @@ def test_couplings_are_on_their_roses(mechanism, rotor_angle):
         assert path.distance(centre) < 0.02 * mechanism.eccentricity
 
 
-def test_every_marker_is_one_of_its_own_in_the_stators_frame(mechanism):
-    markers = all_at(mechanism, 1.0, 'left_')
+def test_every_marker_is_one_of_its_own_and_locked_to_a_link(mechanism):
+    markers = sent(mechanism, 'left_')
     names = [(marker.ns, marker.id) for marker in markers]
     assert len(names) == len(set(names)) == 2 + 8 * len(mechanism.branches)
-    assert {marker.header.frame_id for marker in markers} == {'left_stator'}
+    links, _ = read(
+        urdf(mechanism, module=MODULE, output_joint='output_shaft', frame_prefix='left_')
+    )
+    assert {marker.header.frame_id for marker in markers} == set(links)
+    assert all(marker.frame_locked for marker in markers)
     assert all(marker.action == Marker.ADD and marker.color.a == 1.0 for marker in markers)
     for marker in markers:
         sizes = [marker.scale.x, marker.scale.y, marker.scale.z]
         assert min(sizes[:1] if marker.type == Marker.LINE_STRIP else sizes) > 0.0
 
 
-def test_what_stays_is_sent_once_a_second_and_what_moves_when_it_moves(actuator):
+def test_message_is_due_at_first_and_for_every_new_viewer(actuator):
     markers = Markers(actuator, module=MODULE, frame_prefix='')
-    first, second = sample_at(0.1), sample_at(0.2)
-    kinds = [
-        {marker.ns for marker in shown(markers, sample, now)}
-        for sample, now in (
-            (None, 5.0), (None, 5.1), (first, 5.2), (first, 5.3), (second, 5.4), (second, 6.1),
-        )
-    ]  # fmt: skip
-    fixed = {'ring', 'rose'}
-    moving = {'rotor', 'output', 'cam', 'satellite', 'slot', 'oldham', 'arm'}
-    assert kinds == [fixed, set(), moving, set(), moving, fixed | moving]
+    message = markers.due(5.0)
+    assert message
+    assert [markers.due(now) for now in (5.0, 5.1, 10.0)] == [None] * 3
+    markers.repeat()
+    assert markers.due(10.0) == message
+    assert markers.due(10.1) is None
+
+
+def test_viewers_are_sent_less_than_20_kilobytes_a_second(mechanism):
+    markers = Markers(mechanism, module=MODULE, frame_prefix='')
+    minutes, rate = 10, 30
+    messages = [markers.due(tick / rate) for tick in range(minutes * 60 * rate)]
+    sizes = [len(message) for message in messages if message]
+    assert sum(sizes) < 20e3 * minutes * 60
+    assert len(sizes) >= minutes, 'viewers that were reset have to wait for long'
 
 
 def test_markers_of_any_mechanism_fit_into_messages():
     many = Mechanism(100_000, 99_999, 0.0011, tuple(Branch(name) for name in 'abcd'))
-    markers = Markers(many, module=MODULE, frame_prefix='')
-    assert sum(map(len, markers.due(sample_at(1.0), 0.0))) < 2**20
+    assert len(Markers(many, module=MODULE, frame_prefix='').due(0.0)) < 2**20
 
 
 @pytest.mark.parametrize('executor', ['events', 'single_threaded'])
 def test_node_shows_the_mechanism_to_who_looks_now_or_later(executor, tmp_path, actuator):
-    expected = {(marker.ns, marker.id): marker for marker in all_at(actuator, 0.7)}
-    with live_node(tmp_path, '-p', f'executor:={executor}') as live:
-        live.peer.connect()
-        live.peer.send(rotor_state(START, ['rotor'], [0.7]))
-        for viewer in ('first', 'second'):
-            subscription = live.peer.listen(MarkerArray, viewer, QoSProfile(depth=10), 'markers')
-
-            def seen(messages=live.peer.received[viewer]) -> dict[tuple[str, int], Marker]:
-                return {(marker.ns, marker.id): marker for m in messages for marker in m.markers}
-
-            live.peer.wait_until(lambda seen=seen: seen() == expected, f'what the {viewer} sees')
+    # With so many teeth, nobody can wait for what is repeated.
+    large = Mechanism(400, 396, actuator.eccentricity, actuator.branches)
+    expected = MarkerArray(markers=sent(large))
+    teeth = '-p', 'ring_teeth:=400', '-p', 'satellite_teeth:=396'
+    with live_node(tmp_path, '-p', f'executor:={executor}', *teeth) as live:
+        for viewer, qos in (('first', VOLATILE), ('later', VOLATILE), ('latched', LATCHED)):
+            subscription = live.peer.listen(MarkerArray, viewer, qos, 'markers')
+            received = live.peer.received[viewer]
+            live.peer.wait_until(lambda messages=received: messages, f'what the {viewer} sees')
+            assert received[0] == expected
             live.peer.node.destroy_subscription(subscription)
+
+
+def test_node_sends_no_markers_for_a_turning_rotor(tmp_path):
+    with live_node(tmp_path, *PATIENT, '-p', 'markers_rate:=1000.0') as live:
+        live.peer.connect()
+        live.peer.listen(MarkerArray, 'markers', VOLATILE)
+        received = live.peer.received['markers']
+        live.peer.wait_until(lambda: received, 'markers')
+
+        def turn():
+            live.peer.send(rotor_state(stamp := live.peer.stamp(), ['rotor'], [1e-9 * stamp]))
+
+        counts = []
+        for _ in range(2):  # reports are a second apart
+            live.peer.report(meanwhile=turn)
+            counts.append((len(live.peer.received['output_state']), len(received)))
+        (outputs, markers), (more_outputs, as_many_markers) = counts
+        assert more_outputs > outputs
+        assert as_many_markers == markers
+
+
+def test_changed_prefix_reaches_who_looks(tmp_path):
+    with live_node(tmp_path) as live:
+        live.peer.listen(MarkerArray, 'markers', LATCHED)
+        received = live.peer.received['markers']
+        live.peer.wait_until(lambda: received, 'markers')
+        assert live.peer.set(frame_prefix='left_').successful
+        live.peer.wait_until(
+            lambda: {m.header.frame_id[:5] for m in received[-1].markers} == {'left_'},
+            'the new prefix',
+        )

@@ -68,8 +68,9 @@ def test_rviz_listens_to_topics_of_the_node(rviz, topics):
     assert wanted.items() <= topics.items()
 
 
-def test_rviz_gets_the_robot_description_that_was_latched(rviz):
-    [qos] = [n['Description Topic'] for n in nodes_of(rviz) if 'Description Topic' in n]
+@pytest.mark.parametrize('topic', ['markers', 'robot_description'])
+def test_rviz_gets_what_was_latched(rviz, topic):
+    [qos] = [n for n in nodes_of(rviz) if n.get('Value') == topic]
     assert qos['Durability Policy'] == 'Transient Local'
 
 
@@ -91,13 +92,13 @@ def test_every_panel_of_foxglove_has_its_place(foxglove):
     assert sorted(panels) == sorted(foxglove['configById'])
 
 
-def test_both_look_from_the_frame_of_the_markers(rviz, foxglove):
+def test_both_look_from_the_frame_of_the_stator(rviz, foxglove):
     assert rviz['Visualization Manager']['Global Options']['Fixed Frame'] == 'stator'
     assert foxglove['configById']['3D!mechanism']['followTf'] == 'stator'
 
 
 class View(NamedTuple):
-    """A camera, with angles in rad, about a point of the frame of the markers."""
+    """A camera, with angles in rad, about a point of the frame of the stator."""
 
     focus: list[float]
     distance: float
