@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -142,6 +143,23 @@ def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any
     }
 
 
+def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[str]:
+    """A fault for each name that is no parameter of a node with these branches."""
+    known = [*PARAMETERS, *branch_parameters(branches)]
+    faults = []
+    for name in names:
+        if name in known or _EVERY_NODE.fullmatch(name):
+            continue
+        branch, _, field = name.rpartition('.')
+        if branch and field in BRANCH_PARAMETERS:
+            hint = f'; `{branch}` is not in `branches`'
+        else:
+            nearest = get_close_matches(name, known, n=1)
+            hint = f'; did you mean `{nearest[0]}`?' if nearest else ''
+        faults.append(f'unknown parameter `{name}`{hint}')
+    return faults
+
+
 def load(path: Path, node: str = NODE) -> dict[str, Any]:
     """Read a node's parameters from a file as the node would; what it leaves out has its default.
 
@@ -162,11 +180,7 @@ def load(path: Path, node: str = NODE) -> dict[str, Any]:
         of_branches = branch_parameters(branches)
         faults += _faults(given, of_branches)
         known |= of_branches
-        faults += [
-            f'{name} is no parameter'
-            for name in given
-            if name not in known and not _EVERY_NODE.fullmatch(name)
-        ]
+        faults += unknown_parameters(given, branches)
     if faults:
         raise ConfigError(f'{path}: {"; ".join(faults)}')
     return {name: given.get(name, default) for name, (_, default) in known.items()}

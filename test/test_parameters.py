@@ -184,10 +184,28 @@ def test_every_fault_is_told_at_once(tmp_path):
 
 
 @pytest.mark.parametrize(
-    'name', ['ring_tooth', 'Ring_teeth', 'c.cam_phase', 'a.cam_fase', 'cam_phase']
+    ('name', 'hint'),
+    [
+        ('rotor_jiont', '; did you mean `rotor_joint`?'),
+        ('Ring_teeth', '; did you mean `ring_teeth`?'),
+        ('a.cam_fase', '; did you mean `a.cam_phase`?'),
+        ('c.cam_phase', '; `c` is not in `branches`'),
+        ('nothing_like_it', ''),
+    ],
 )
-def test_typo_is_named(tmp_path, name):
-    assert name in fault(tmp_path, **{name: 1.0})
+def test_unknown_parameter_is_refused_with_the_nearest_name(tmp_path, name, hint):
+    text = fault(tmp_path, **{name: 1.0})
+    assert text.endswith(f': unknown parameter `{name}`{hint}')
+
+
+def test_parameter_of_a_branch_that_is_left_out_is_refused(tmp_path):
+    text = fault(tmp_path, branches=['a'], **{'a.cam_phase': 0.5, 'b.cam_phase': 0.5})
+    assert text.endswith(': unknown parameter `b.cam_phase`; `b` is not in `branches`')
+
+
+def test_every_unknown_parameter_is_told_at_once(tmp_path):
+    text = fault(tmp_path, ring_tooth=80, rotor_jiont='m1')
+    assert all(f'unknown parameter `{name}`' in text for name in ('ring_tooth', 'rotor_jiont'))
 
 
 def test_shipped_file_loads_as_the_defaults():
