@@ -1,5 +1,6 @@
 """Package metadata, and what goes into the install space."""
 
+import sys
 from pathlib import Path
 
 from setuptools import find_packages, setup
@@ -16,6 +17,10 @@ def shared(folder: str, pattern: str) -> list[tuple[str, list[str]]]:
     return [(f'share/{PACKAGE}/{parent.as_posix()}', paths) for parent, paths in files.items()]
 
 
+# By setup.cfg, programs go to lib/, where `ros2 run` looks for them; bin/ is on the PATH. A wheel
+# needs nothing in it: pip installs the programs there itself.
+ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
+
 setup(
     name=PACKAGE,
     version='0.1.0',
@@ -29,6 +34,7 @@ setup(
     packages=find_packages(exclude=['test', 'test.*']),
     package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.rendering': ['*.css', '*.js']},
     data_files=[
+        *ON_PATH,
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
         (f'share/{PACKAGE}', ['package.xml']),
         *shared('config', '*'),

@@ -82,15 +82,19 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
         Raises:
             ParameterException: if a parameter is refused.
-            ValueError: if the parameters describe no mechanism.
+            ValueError: if the parameters describe no mechanism, or one is unknown.
         """
-        super().__init__('gear_state_publisher', **options)
+        super().__init__(parameters.NODE, **options)
         self.add_on_set_parameters_callback(self._check_parameters)
         for name, parameter in parameters.PARAMETERS.items():
             self._declare(name, parameter, parameters.defaults()[name])
         branches = self._value('branches')
         for name, (parameter, default) in parameters.branch_parameters(branches).items():
             self._declare(name, parameter, default)
+        # rclpy ignores what is given but not declared, and has no public way to ask for it.
+        given = getattr(self, '_parameter_overrides', ())
+        if faults := parameters.unknown_parameters(given, branches):
+            raise ValueError('; '.join(faults))
         self._mechanism = Mechanism.from_mapping(self._values())
         rotor, encoder = self._settings = self._settings_of_inputs()
         self._input = RotorInput(rotor)

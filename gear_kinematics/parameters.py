@@ -5,8 +5,9 @@ The default values stand in config/actuator.yaml and nowhere else.
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,9 +17,13 @@ import yaml
 from gear_kinematics.kinematics import Branch
 from gear_kinematics.share import share_directory
 
-_NODE_NAMES = ('gear_state_publisher', '*', '**')
-_EVERY_NODE = ('use_sim_time', 'start_type_description_service')
+NODE = 'gear_state_publisher'
+"""The node's name, unless it is started under another one."""
+
+_EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has, which mean nothing here."""
+_NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
+"""What rcl takes as a node's name in a parameter file; `*` is one token of it, `**` any number."""
 
 
 class ConfigError(ValueError):
@@ -123,7 +128,7 @@ def default_config() -> Path:
 @cache
 def defaults() -> Mapping[str, Any]:
     """Every parameter's default value by its full name, from config/actuator.yaml."""
-    return _read(default_config())
+    return _given(default_config(), NODE)
 
 
 def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any]]:
@@ -138,13 +143,36 @@ def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any
     }
 
 
-def load(path: Path) -> dict[str, Any]:
-    """Read a parameter file as the node would; what it leaves out has its default value.
+def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[str]:
+    """A fault for each name that is no parameter of a node with these branches."""
+    known = [*PARAMETERS, *branch_parameters(branches)]
+    faults = []
+    for name in names:
+        if name in known or _EVERY_NODE.fullmatch(name):
+            continue
+        branch, _, field = name.rpartition('.')
+        if branch and field in BRANCH_PARAMETERS:
+            hint = f'; `{branch}` is not in `branches`'
+        else:
+            nearest = get_close_matches(name, known, n=1)
+            hint = f'; did you mean `{nearest[0]}`?' if nearest else ''
+        faults.append(f'unknown parameter `{name}`{hint}')
+    return faults
+
+
+def load(path: Path, node: str = NODE) -> dict[str, Any]:
+    """Read a node's parameters from a file as the node would; what it leaves out has its default.
+
+    Args:
+        path: a parameter file of ROS: blocks of parameters below names of nodes.
+        node: the node's fully qualified name. Without a namespace, it is the only node of that
+            name in the file; if the file names none, the one that all its wildcards apply to.
 
     Raises:
-        ConfigError: if it cannot be read, or naming every value that is refused.
+        ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
+            meant, or naming every value and every name that is refused.
     """
-    given = _read(path)
+    given = _given(path, node)
     known = {name: (parameter, defaults()[name]) for name, parameter in PARAMETERS.items()}
     faults = _faults(given, known)
     branches = given.get('branches', known['branches'][1])
@@ -152,7 +180,7 @@ def load(path: Path) -> dict[str, Any]:
         of_branches = branch_parameters(branches)
         faults += _faults(given, of_branches)
         known |= of_branches
-        faults += [f'{name} is no parameter' for name in given if name not in known]
+        faults += unknown_parameters(given, branches)
     if faults:
         raise ConfigError(f'{path}: {"; ".join(faults)}')
     return {name: given.get(name, default) for name, (_, default) in known.items()}
@@ -167,8 +195,54 @@ def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]
     return [fault for fault in checked if fault]
 
 
-def _read(path: Path) -> dict[str, Any]:
-    """The ros__parameters that the file has for the node, flattened to dotted names."""
+def _given(path: Path, node: str) -> dict[str, Any]:
+    """The parameters that a file has for a node, by dotted names.
+
+    Those of every block that applies to the node, in the order in which the blocks begin: of two
+    values of a parameter the later one holds, whether its block has a wildcard or not.
+    """
+    blocks = _read(path)
+    if not blocks:
+        raise ConfigError(f'{path}: no ros__parameters in it')
+    name = f'/{node.lstrip("/")}' if '/' in node else _full_name(path, node, blocks)
+    applying = [parameters for pattern, parameters in blocks if _applies(pattern, name)]
+    if not applying:
+        there = ', '.join(pattern for pattern, _ in blocks)
+        raise ConfigError(f'{path}: no parameters of {name} in it, only of {there}')
+    given: dict[str, Any] = {}
+    for parameters in applying:
+        given |= parameters
+    return given
+
+
+def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
+    """The fully qualified name of the node of a name that a file is for."""
+    patterns = [
+        pattern for pattern, _ in blocks if pattern.rpartition('/')[2] in {node, '*', '**'}
+    ]
+    # A node that is named there is meant rather than what wildcards may apply to.
+    patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
+    for pattern in patterns:
+        # A namespace that it applies to: any token will do for `*`.
+        namespace = pattern.rpartition('/')[0].replace('/**', '').replace('/*', '/_')
+        name = f'{namespace}/{node}'
+        if all(_applies(other, name) for other in patterns):
+            return name
+    if len(patterns) > 1:
+        raise ConfigError(
+            f'{path}: parameters of more than one node: {", ".join(patterns)}; '
+            'choose one with --node'
+        )
+    return f'/{node}'
+
+
+def _applies(pattern: str, name: str) -> bool:
+    """Whether a block of a parameter file is for a node, as rclpy and rclcpp see it."""
+    return re.fullmatch(pattern.replace('/*', r'(/\w+)'), name, re.ASCII) is not None
+
+
+def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
+    """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
     try:
         document = yaml.load(path.read_text(encoding='utf-8'), _RosLoader)  # noqa: S506, it is safe
     except OSError as error:
@@ -177,14 +251,21 @@ def _read(path: Path) -> dict[str, Any]:
         raise ConfigError(f'{path}: {error}') from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error
-    found = _parameters_of_node(document)
-    if not found:
-        raise ConfigError(f'{path}: no ros__parameters of gear_state_publisher in it')
-    return {
-        name: value
-        for name, value in found.items()
-        if name not in _EVERY_NODE and not name.startswith('qos_overrides.')
-    }
+    blocks: dict[str, dict[str, Any]] = {}
+    for name, parameters in _blocks(document):
+        blocks.setdefault(name, {}).update(parameters)
+    # `node` and `/node` mean the same to rcl, but are two blocks.
+    found = [(f'/{name.removeprefix("/")}', parameters) for name, parameters in blocks.items()]
+    for name, _ in found:
+        if not _NODE_PATTERN.fullmatch(name):
+            raise ConfigError(f'{path}: {name} is no name of a node')
+    return found
+
+
+class _Pairs(tuple[tuple[Any, Any], ...]):
+    """A mapping, in which a key can be there twice: ROS takes both."""
+
+    __slots__ = ()
 
 
 class _RosLoader(yaml.SafeLoader):
@@ -198,6 +279,10 @@ class _RosLoader(yaml.SafeLoader):
         return super().compose_node(parent, index)
 
 
+_RosLoader.add_constructor(
+    'tag:yaml.org,2002:map',
+    lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True)),
+)
 _RosLoader.add_implicit_resolver(
     'tag:yaml.org,2002:float',
     re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
@@ -205,22 +290,18 @@ _RosLoader.add_implicit_resolver(
 )
 
 
-def _parameters_of_node(tree: Any, name: str = '') -> dict[str, Any]:
-    """Those below the node's name or a wildcard, in whatever namespace."""
-    found: dict[str, Any] = {}
-    for key, value in tree.items() if isinstance(tree, dict) else ():
-        if key == 'ros__parameters':
-            if isinstance(value, dict) and name.rpartition('/')[2] in _NODE_NAMES:
-                found |= _flatten(value)
-        else:
-            found |= _parameters_of_node(value, str(key))
-    return found
+def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:
+    for key, value in tree if isinstance(tree, _Pairs) else ():
+        if key != 'ros__parameters':
+            yield from _blocks(value, f'{name}/{key}' if name.strip('/') else f'{name}{key}')
+        elif isinstance(value, _Pairs):
+            yield name, _flatten(value)
 
 
-def _flatten(tree: Mapping[Any, Any], prefix: str = '') -> dict[str, Any]:
+def _flatten(tree: _Pairs, prefix: str = '') -> dict[str, Any]:
     flat: dict[str, Any] = {}
-    for key, value in tree.items():
-        if isinstance(value, dict):
+    for key, value in tree:
+        if isinstance(value, _Pairs):
             flat |= _flatten(value, f'{prefix}{key}.')
         else:
             flat[f'{prefix}{key}'] = value

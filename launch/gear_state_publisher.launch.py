@@ -7,10 +7,13 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
+from gear_kinematics.launch_arguments import node_arguments
+from gear_kinematics.parameters import NODE
+
 
 def start_node(context: LaunchContext) -> list[Node]:
     """Describe the node; a prefix that was not given leaves the configuration's own."""
-    parameters = [LaunchConfiguration('config')]
+    parameters = [node_arguments(context.launch_configurations).config]
     frame_prefix = LaunchConfiguration('frame_prefix')
     if frame_prefix.perform(context):
         # The type is stated, or a prefix like 1 would arrive as a number.
@@ -19,6 +22,9 @@ def start_node(context: LaunchContext) -> list[Node]:
         Node(
             package='gear_kinematics',
             executable='gear_state_publisher',
+            # With its name, launch puts the prefix into the node's own block of parameters and
+            # not into /**, over which a block of the file for this node would prevail.
+            name=NODE,
             namespace=LaunchConfiguration('namespace'),
             parameters=parameters,
             remappings=[('rotor_state', LaunchConfiguration('rotor_state'))],

@@ -1,7 +1,5 @@
 """Watch the mechanism: gear state publisher, robot_state_publisher and RViz."""
 
-from pathlib import Path
-
 from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
 from launch.conditions import IfCondition
@@ -10,22 +8,18 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from gear_kinematics import parameters
 from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.launch_arguments import node_arguments
 
 
 def start_viewers(context: LaunchContext) -> list[Node]:
     """Describe the nodes; what the gear state publisher has as parameters holds for them too."""
-    config = parameters.load(Path(LaunchConfiguration('config').perform(context)))
-    prefix = LaunchConfiguration('frame_prefix').perform(context) or config['frame_prefix']
+    _, parameters = node_arguments(context.launch_configurations)
+    names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
     # It wants the URDF as a parameter, and publishes it again: out of the way.
-    description = urdf(
-        Mechanism.from_mapping(config),
-        module=config['module'],
-        output_joint=config['output_joint'],
-        frame_prefix=prefix,
-    )
+    description = urdf(Mechanism.from_mapping(parameters), module=parameters['module'], **names)
+    fixed_frame = f'{names["frame_prefix"]}stator'
     return [
         Node(
             package='robot_state_publisher',
@@ -42,7 +36,7 @@ def start_viewers(context: LaunchContext) -> list[Node]:
             package='rviz2',
             executable='rviz2',
             namespace=LaunchConfiguration('namespace'),
-            arguments=['-d', LaunchConfiguration('rviz_config'), '-f', f'{prefix}stator'],
+            arguments=['-d', LaunchConfiguration('rviz_config'), '-f', fixed_frame],
             condition=IfCondition(LaunchConfiguration('rviz')),
             output='screen',
         ),

@@ -910,7 +910,7 @@ def test_others_read_what_is_written(recorded, tmp_path, storage, compression):
     path = write_with(tmp_path / 'bag', recorded, storage, compression)
     assert read(path) == recorded
     packed = (storage, compression) == ('sqlite3', 'zstd')
-    name = {'mcap': 'bag.mcap', 'sqlite3': 'bag.db3'}[storage] + '.zstd' * packed
+    name = {'mcap': 'bag_0.mcap', 'sqlite3': 'bag_0.db3'}[storage] + '.zstd' * packed
     assert {p.name for p in path.iterdir()} == {'metadata.yaml', name}
     definitions = {k: definition_of(k) for k in TOPIC_TYPES.values()}
     if storage == 'mcap':

@@ -12,6 +12,7 @@ from pathlib import Path
 import oracle
 import pytest
 import replaying
+import yaml
 from rosbags.convert import convert
 from rosbags.highlevel import AnyReader
 
@@ -197,6 +198,18 @@ def test_the_single_turn_recording_wraps_and_returns():
     turns = [sample.turns for sample in samples]
     assert max(turns) >= 10
     assert min(turns) <= -10
+
+
+@pytest.mark.parametrize('name', [recording.name for recording in SHIPPED])
+def test_shipped_bags_are_named_as_rosbag2_names_them(name):
+    [file] = (BAGS / name).glob(f'{name}*')
+    assert re.fullmatch(r'.+_(\d+)\.([a-zA-Z0-9])+', file.name)  # rosbag2's reindexer wants it
+    assert file.stem == f'{name}_0'
+    document = yaml.safe_load((BAGS / name / 'metadata.yaml').read_text())
+    metadata = document['rosbag2_bagfile_information']
+    assert metadata['relative_file_paths'] == [file.name]
+    assert [part['path'] for part in metadata['files']] == [file.name]
+    assert f'relative_file_paths:\n- {file.name}\n'.encode() in file.read_bytes()  # its own copy
 
 
 def test_shipped_bags_are_small_and_as_their_readme_says():

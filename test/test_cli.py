@@ -4,12 +4,15 @@ import json
 import math
 import subprocess
 import sys
+from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
 
-from gear_kinematics.cli import main
+from gear_kinematics.cli import COMMANDS, main
 
+ROOT = Path(__file__).resolve().parents[1]
+SINGLE_TURN = str(ROOT / 'bags' / 'single_turn_encoder')
 GEARKIN = 'import sys; from gear_kinematics.cli import main; sys.exit(main())'
 
 
@@ -92,6 +95,70 @@ def test_urdf_is_written_for_a_given_configuration(capsys, tmp_path):
     assert main(['urdf', '--config', str(config)]) == 0
     robot = ET.fromstring(capsys.readouterr().out)  # noqa: S314, our own
     assert 'left_output_shaft' in {link.get('name') for link in robot.iter('link')}
+
+
+@pytest.fixture
+def two_nodes(tmp_path) -> str:
+    path = tmp_path / 'two.yaml'
+    path.write_text(
+        '/left/gear_state_publisher:\n'
+        "  ros__parameters: {frame_prefix: 'left_', rotor_encoder: 'multi_turn'}\n"
+        '/right/gear_state_publisher:\n'
+        "  ros__parameters: {frame_prefix: 'right_', rotor_encoder: 'single_turn'}\n"
+    )
+    return str(path)
+
+
+@pytest.mark.parametrize('side', ['left', 'right'])
+def test_urdf_is_that_of_the_node_that_was_asked_for(capsys, two_nodes, side):
+    node = f'/{side}/gear_state_publisher'
+    assert main(['urdf', '--config', two_nodes, '--node', node]) == 0
+    robot = ET.fromstring(capsys.readouterr().out)  # noqa: S314, our own
+    assert all(link.get('name').startswith(f'{side}_') for link in robot.iter('link'))
+
+
+@pytest.mark.parametrize(('side', 'code'), [('left', 1), ('right', 0)])
+def test_bag_is_validated_for_the_node_that_was_asked_for(capsys, two_nodes, side, code):
+    """It was recorded with an encoder of a single turn, and without a prefix."""
+    Path(two_nodes).write_text(Path(two_nodes).read_text().replace(f'{side}_', ''))
+    node = ['--config', two_nodes, '--node', f'{side}/gear_state_publisher']
+    assert main(['validate', SINGLE_TURN, *node]) == code
+    capsys.readouterr()
+
+
+def test_outputs_are_computed_for_the_node_that_was_asked_for(capsys, two_nodes, tmp_path):
+    node = ['--config', two_nodes, '--node', '/right/gear_state_publisher']
+    out = str(tmp_path / 'computed')
+    assert main(['compute', SINGLE_TURN, out, *node]) == 0
+    assert main(['validate', out, *node]) == 0
+    assert main(['validate', out, *node[:-1], '/left/gear_state_publisher']) == 1
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [['urdf'], ['describe'], ['validate', SINGLE_TURN], ['compute', SINGLE_TURN, 'computed'],
+     ['lost-motion', SINGLE_TURN], ['index', '--degrees', '1'], ['plot', 'scheme', 'scheme.png']],
+    ids=lambda arguments: arguments[0],
+)  # fmt: skip
+def test_file_for_two_nodes_is_refused_naming_them(
+    capsys, two_nodes, tmp_path, monkeypatch, arguments
+):
+    monkeypatch.chdir(tmp_path)
+    assert main([*arguments, '--config', two_nodes]) == 2
+    assert capsys.readouterr().err == (
+        f'gearkin: {two_nodes}: parameters of more than one node: '
+        '/left/gear_state_publisher, /right/gear_state_publisher; choose one with --node\n'
+    )
+    assert [*tmp_path.iterdir()] == [Path(two_nodes)]
+
+
+@pytest.mark.parametrize('command', COMMANDS)
+def test_commands_that_take_a_parameter_file_take_the_name_of_a_node(capsys, command):
+    with pytest.raises(SystemExit):
+        main([command, '--help'])
+    text = capsys.readouterr().out
+    assert ('--config FILE' in text) == ('--node NAME' in text)
 
 
 @pytest.mark.parametrize(

@@ -157,7 +157,7 @@ def test_all_shipped_bags_pass_each_with_its_own_config():
 
 
 def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
-    file = SINGLE_TURN / 'single_turn_encoder.mcap'
+    file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
     done = gearkin('validate', file)
     assert done.returncode == 0, done.stdout
     assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"}\n' in done.stdout

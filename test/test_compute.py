@@ -208,6 +208,7 @@ def test_a_computed_bag_is_computed_to_itself(tmp_path):
 def test_another_implementation_reads_the_result(tmp_path):
     run(BAGS / 'single_turn_encoder', tmp_path / 'computed', compression='zstd')
     (path,) = (tmp_path / 'computed').glob('*.mcap')
+    assert path.name == 'computed_0.mcap'  # as rosbag2 names it
     with path.open('rb') as stream:
         found = [(c.topic, m.data) for _, c, m in make_reader(stream).iter_messages()]
     recorded = read(BAGS / 'single_turn_encoder')

@@ -13,6 +13,7 @@ from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 
+from gear_kinematics import parameters
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.node import GearStatePublisher, make_executor
 from gear_kinematics.output_encoder import OutputEncoder
@@ -138,6 +139,113 @@ def test_default_joint_of_the_contract(node):
 def test_unusable_parameter_makes_no_node(context, values, words):
     reason = refusal(context, **values)
     assert all(word in reason for word in words), reason
+
+
+def sections(*blocks: tuple[str, str]) -> str:
+    """Write a parameter file of blocks of one line."""
+    return ''.join(f"'{name}':\n  ros__parameters: {{{values}}}\n" for name, values in blocks)
+
+
+LEFT, RIGHT = (f'/{side}/gear_state_publisher' for side in ('left', 'right'))
+TWO_NODES = sections((LEFT, 'ring_teeth: 81'), (RIGHT, 'ring_teeth: 82'))
+NESTED = """
+left:
+  gear_state_publisher:
+    ros__parameters: {ring_teeth: 81}
+  other:
+    ros__parameters: {ring_teeth: 70}
+right:
+  gear_state_publisher:
+    ros__parameters: {ring_teeth: 82}
+"""
+
+
+@pytest.mark.parametrize(
+    ('text', 'name', 'expected'),
+    [
+        (TWO_NODES, LEFT, (81, 0.0)),
+        (TWO_NODES, RIGHT, (82, 0.0)),
+        (TWO_NODES, '/gear_state_publisher', None),
+        (TWO_NODES, '/left/gear', None),
+        (NESTED, LEFT, (81, 0.0)),
+        (NESTED, RIGHT, (82, 0.0)),
+        (sections(('gear_state_publisher', 'ring_teeth: 81')), LEFT, None),
+        (sections(('left/gear_state_publisher', 'ring_teeth: 81')), LEFT, (81, 0.0)),
+        (sections(('*', 'ring_teeth: 81')), '/gear_state_publisher', (81, 0.0)),
+        (sections(('*', 'ring_teeth: 81')), LEFT, None),
+        (sections(('**', 'ring_teeth: 81')), '/robot/left/gear', (81, 0.0)),
+        (sections(('/*/gear_state_publisher', 'ring_teeth: 81')), LEFT, (81, 0.0)),
+        (
+            sections(('/*/gear_state_publisher', 'ring_teeth: 81')),
+            '/gear_state_publisher',
+            None,
+        ),
+        (
+            sections(('/**/gear_state_publisher', 'ring_teeth: 81')),
+            '/gear_state_publisher',
+            (81, 0.0),
+        ),
+        (sections(('/left/**', 'ring_teeth: 81')), LEFT, (81, 0.0)),
+        (sections(('/left/**', 'ring_teeth: 81')), RIGHT, None),
+        (sections(('/left/*', 'ring_teeth: 81')), '/left/of/gear', None),
+        # The later block prevails, be it the more general one, ...
+        (sections(('/**', 'ring_teeth: 80'), (LEFT, 'ring_teeth: 81')), LEFT, (81, 0.0)),
+        (sections((LEFT, 'ring_teeth: 81'), ('/**', 'ring_teeth: 82')), LEFT, (82, 0.0)),
+        (sections((LEFT, 'ring_teeth: 81'), ('/**', 'rotor_zero: 2.0')), LEFT, (81, 2.0)),
+        # ... and later is what begins later.
+        (
+            sections(
+                ('/**', 'rotor_zero: 1.0'), (LEFT, 'rotor_zero: 2.0'), ('/**', 'rotor_zero: 3.0')
+            ),
+            LEFT,
+            (80, 2.0),
+        ),
+        (sections(('/**', 'ring_teeth: 81'), ('/**', 'rotor_zero: 1.0')), LEFT, (81, 1.0)),
+        (
+            sections(
+                ('gear_state_publisher', 'rotor_zero: 1.0'),
+                ('/**', 'rotor_zero: 2.0'),
+                ('/gear_state_publisher', 'rotor_zero: 3.0'),
+            ),
+            '/gear_state_publisher',
+            (80, 3.0),
+        ),
+    ],
+)
+def test_gearkin_reads_of_a_parameter_file_what_the_node_does(
+    context, tmp_path, text, name, expected
+):
+    """Where nothing is for the node, it runs on the default values; gearkin refuses the file."""
+    path = tmp_path / 'robot.yaml'
+    path.write_text(text)
+    namespace, _, last = name.rpartition('/')
+    arguments = ['--ros-args', '-r', f'__node:={last}', '--params-file', str(path)]
+    node = GearStatePublisher(
+        context=context, namespace=namespace, cli_args=arguments, use_global_arguments=False
+    )
+    assert node.get_fully_qualified_name() == name
+    names = ('ring_teeth', 'rotor_zero')
+    taken = tuple(node.get_parameter(parameter).value for parameter in names)
+    node.destroy_node()
+    assert taken == (expected or (80, 0.0))
+    if expected:
+        assert tuple(parameters.load(path, name)[parameter] for parameter in names) == expected
+    else:
+        with pytest.raises(
+            parameters.ConfigError, match=f'no parameters of {name} in it, only of'
+        ):
+            parameters.load(path, name)
+
+
+@pytest.mark.parametrize('name', ['left//gear', '/left*', '/left.gear', '/1st', '/'])
+def test_name_of_no_node_is_refused_by_both_readers_of_a_file(context, tmp_path, name):
+    path = tmp_path / 'robot.yaml'
+    path.write_text(sections((name, 'ring_teeth: 81'), ('/**', 'ring_teeth: 81')))
+    arguments = ['--ros-args', '--params-file', str(path)]
+    with pytest.raises(rclpy_implementation.RCLInvalidROSArgsError):
+        GearStatePublisher(context=context, cli_args=arguments)
+    with pytest.raises(parameters.ConfigError, match='is no name of a node'):
+        parameters.load(path)
 
 
 def test_every_fault_of_the_mechanism_is_told(context):

@@ -833,6 +833,9 @@ BAD_STARTS = [
     (['output_joint:=satellite_a'], ['output_joint', 'satellite_a']),
     (['frame_prefix:=5'], ['frame_prefix', 'STRING']),
     (['executor:=multi_threaded'], ['executor', 'auto', 'events', 'single_threaded']),
+    (['rotor_jiont:=m1'], ['unknown parameter `rotor_jiont`; did you mean `rotor_joint`?']),
+    (['ring_tooth:=90', 'nothing_like_it:=1'], ['`ring_tooth`', '`nothing_like_it`']),
+    (['branches:=[a]', 'b.cam_phase:=1.0'], ['`b.cam_phase`', '`b` is not in `branches`']),
 ]
 
 
@@ -842,6 +845,15 @@ def test_unusable_parameter_is_refused_at_the_start(tmp_path, values, words):
     [line] = refusal(tmp_path, '--ros-args', *options)
     assert line.startswith('gear_state_publisher: ')
     assert all(word in line for word in words), line
+
+
+def test_unknown_parameter_of_a_file_is_refused_at_the_start(tmp_path):
+    config = tmp_path / 'my.yaml'
+    config.write_text('/**:\n  ros__parameters:\n    rotor_jiont: m1\n')
+    [line] = refusal(tmp_path, '--ros-args', '--params-file', str(config))
+    assert line == (
+        'gear_state_publisher: unknown parameter `rotor_jiont`; did you mean `rotor_joint`?'
+    )
 
 
 @pytest.mark.parametrize(
@@ -871,6 +883,7 @@ def test_unusable_argument_is_refused_at_the_start(tmp_path, monkeypatch, argume
     [
         'qos_overrides:\n      /rotor_state: {subscription: {reliability: reliable}}',
         'use_sim_time: false',
+        'start_type_description_service: false',
         'eccentricity: 15e-4',
     ],
 )

@@ -188,6 +188,8 @@ def test_wheel_holds_types_and_share(tree, wheel):
     assert {'config/view.rviz', 'config/foxglove.json', 'launch/view.launch.py'} <= shared
     assert {f'{data}/{SHARE}/{name}' for name in shared} <= names
     assert not [name for name in names if name.startswith('test')]
+    # pip makes the program there, and would find the one of a ROS workspace in its place.
+    assert not [name for name in names if name.startswith(f'{data}/bin/')]
 
 
 def test_sdist_holds_what_its_tests_need(archives):
@@ -195,7 +197,7 @@ def test_sdist_holds_what_its_tests_need(archives):
     with tarfile.open(path) as archive:
         names = {name.partition('/')[2] for name in archive.getnames()}
     assert {'LICENSE', 'Makefile', 'package.xml', 'setup.cfg', 'requirements/test.txt'} <= names
-    assert {'config/actuator.yaml', 'test/test_packaging.py'} <= names
+    assert {'config/actuator.yaml', 'test/test_packaging.py', 'bin/gearkin'} <= names
 
 
 def test_pip_installs_programs_and_configuration(prefix):
@@ -226,6 +228,13 @@ def test_colcon_installed_node_runs(workspace):
     source_and_exec = f'. {install}/setup.sh && exec "$@"'
     command = ['sh', '-c', source_and_exec, 'sh', node]
     assert_starts_and_stops(*command, '--ros-args', '--params-file', config)
+
+
+def test_gearkin_is_on_the_path_of_a_sourced_workspace(workspace, tmp_path):
+    source_and_run = f'. {workspace}/install/setup.sh && command -v gearkin && gearkin urdf'
+    found, _, urdf = run('sh', '-c', source_and_run, cwd=tmp_path).partition('\n')
+    assert Path(found).is_relative_to(workspace)
+    assert ET.fromstring(urdf).tag == 'robot'  # noqa: S314, the project's own words
 
 
 def test_manifest_agrees_with_metadata(manifest, metadata):

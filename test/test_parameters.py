@@ -184,10 +184,28 @@ def test_every_fault_is_told_at_once(tmp_path):
 
 
 @pytest.mark.parametrize(
-    'name', ['ring_tooth', 'Ring_teeth', 'c.cam_phase', 'a.cam_fase', 'cam_phase']
+    ('name', 'hint'),
+    [
+        ('rotor_jiont', '; did you mean `rotor_joint`?'),
+        ('Ring_teeth', '; did you mean `ring_teeth`?'),
+        ('a.cam_fase', '; did you mean `a.cam_phase`?'),
+        ('c.cam_phase', '; `c` is not in `branches`'),
+        ('nothing_like_it', ''),
+    ],
 )
-def test_typo_is_named(tmp_path, name):
-    assert name in fault(tmp_path, **{name: 1.0})
+def test_unknown_parameter_is_refused_with_the_nearest_name(tmp_path, name, hint):
+    text = fault(tmp_path, **{name: 1.0})
+    assert text.endswith(f': unknown parameter `{name}`{hint}')
+
+
+def test_parameter_of_a_branch_that_is_left_out_is_refused(tmp_path):
+    text = fault(tmp_path, branches=['a'], **{'a.cam_phase': 0.5, 'b.cam_phase': 0.5})
+    assert text.endswith(': unknown parameter `b.cam_phase`; `b` is not in `branches`')
+
+
+def test_every_unknown_parameter_is_told_at_once(tmp_path):
+    text = fault(tmp_path, ring_tooth=80, rotor_jiont='m1')
+    assert all(f'unknown parameter `{name}`' in text for name in ('ring_tooth', 'rotor_jiont'))
 
 
 def test_shipped_file_loads_as_the_defaults():
@@ -238,14 +256,80 @@ def test_sections_of_other_nodes_are_passed_over(tmp_path):
     assert load(write(tmp_path, text))['ring_teeth'] == 90
 
 
+LEFT, RIGHT = (f'/{side}/gear_state_publisher' for side in ('left', 'right'))
+
+
+def blocks(folder: Path, *names: str) -> Path:
+    """Write a file with a block for each name: ring_teeth is 81 in the first, 82 in the next."""
+    text = ''.join(
+        f"'{name}':\n  ros__parameters: {{ring_teeth: {teeth}}}\n"
+        for teeth, name in enumerate(names, start=81)
+    )
+    return write(folder, text)
+
+
+@pytest.mark.parametrize(
+    ('names', 'node', 'expected'),
+    [
+        ([LEFT, RIGHT], LEFT, 81),
+        ([LEFT, RIGHT], RIGHT, 82),
+        ([LEFT, RIGHT], RIGHT[1:], 82),  # as in `ros2 param`
+        ([LEFT, '/left/gear'], 'gear', 82),
+        ([LEFT, '/left/gear'], 'gear_state_publisher', 81),
+        (['/**', '/left/gear'], 'gear', 82),
+        (['/**', '/left/gear'], 'gear_state_publisher', 81),
+        (['/**', LEFT, '/other/**'], 'gear_state_publisher', 82),
+        (['/left/*'], 'gear_state_publisher', 81),
+        (['/*/gear'], 'gear', 81),
+        (['/**', '/left/**'], 'gear_state_publisher', 82),
+    ],
+)
+def test_name_without_namespace_is_that_of_the_only_node_in_the_file(
+    tmp_path, names, node, expected
+):
+    assert load(blocks(tmp_path, *names), node)['ring_teeth'] == expected
+
+
+@pytest.mark.parametrize(
+    'names',
+    [
+        [LEFT, RIGHT],
+        ['gear_state_publisher', LEFT],
+        ['/left/**', '/right/**'],
+        ['/left/*', '/*/*/gear_state_publisher'],
+    ],
+)
+def test_file_that_leaves_open_which_node_is_meant_is_refused(tmp_path, names):
+    path = blocks(tmp_path, '/other_node', *names)
+    with pytest.raises(ConfigError) as caught:
+        load(path)
+    there = ', '.join(name if name.startswith('/') else f'/{name}' for name in names)
+    assert str(caught.value) == (
+        f'{path}: parameters of more than one node: {there}; choose one with --node'
+    )
+
+
+@pytest.mark.parametrize(
+    'node', ['/left', '/gear_state_publisher', '/left/x', 'gear', 'left', '/', 'no name', '']
+)
+def test_file_that_has_nothing_for_the_node_is_refused(tmp_path, node):
+    path = blocks(tmp_path, LEFT, RIGHT)
+    with pytest.raises(ConfigError) as caught:
+        load(path, node)
+    name = node if node.startswith('/') else f'/{node}'
+    text = f'{path}: no parameters of {name} in it, only of {LEFT}, {RIGHT}'
+    assert str(caught.value) == text
+
+
 @pytest.mark.parametrize(
     'values',
     [
         {'use_sim_time': True},
+        {'start_type_description_service': False},
         {'qos_overrides': {'/rotor_state': {'subscription': {'reliability': 'reliable'}}}},
         {'qos_overrides./rotor_state.subscription.depth': 5},
     ],
-    ids=['use_sim_time', 'nested', 'dotted'],
+    ids=['use_sim_time', 'type description', 'nested', 'dotted'],
 )
 def test_parameters_of_every_ros_node_are_no_typos(tmp_path, values):
     # gearkin takes the very file that the node takes.

@@ -19,6 +19,7 @@ from shown_markers import all_at
 from visualization_msgs.msg import Marker
 
 from gear_kinematics.node import GearStatePublisher
+from gear_kinematics.parameters import ConfigError
 
 ROOT = Path(__file__).resolve().parents[1]
 LAUNCH_FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
@@ -218,18 +219,83 @@ def test_launch_file_loads(path):
     assert description.entities
 
 
-def test_viewers_take_the_prefix_of_the_parameters(tmp_path):
-    """Needs a system ROS, as above."""
-    launch = pytest.importorskip('launch', reason='launch is not installed')
+TWO_NODES = """
+/left/gear_state_publisher:
+  ros__parameters: {frame_prefix: left_}
+/right/gear_state_publisher:
+  ros__parameters: {frame_prefix: right_}
+"""
+
+
+@pytest.fixture
+def launched(tmp_path):
+    """Give a context as it is when the launch files' arguments are known; needs a system ROS."""
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
-    config = tmp_path / 'my.yaml'
-    config.write_text("/**:\n  ros__parameters:\n    frame_prefix: 'left_'\n")
-    context = launch.LaunchContext()
+    context = pytest.importorskip('launch', reason='launch is not installed').LaunchContext()
+    config = tmp_path / 'two.yaml'
+    config.write_text(TWO_NODES)
     context.launch_configurations.update(
-        config=str(config), frame_prefix='', namespace='', rviz='false', rviz_config='view.rviz'
-    )
-    start = runpy.run_path(str(ROOT / 'launch/view.launch.py'))['start_viewers']
-    _, rviz = start(context)
+        config=str(config), frame_prefix='', namespace='left', rotor_state='rotor_state',
+        rviz='false', rviz_config='view.rviz',
+    )  # fmt: skip
+    return context
+
+
+def described(context, file: str, function: str) -> list:
+    """Give the nodes that a function of a launch file describes."""
+    return runpy.run_path(str(ROOT / 'launch' / file))[function](context)
+
+
+def parameters_of(context, node) -> tuple[dict | Path, ...]:
+    """Give the parameters and parameter files that a node is started with."""
+    launch_ros = pytest.importorskip('launch_ros')
+    return launch_ros.utilities.evaluate_parameters(context, node._Node__parameters)
+
+
+def fixed_frame(context, rviz) -> str:
+    """Give the frame that RViz is told to look from."""
+    launch = pytest.importorskip('launch')
     words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd[1:]]
-    assert words[words.index('-f') + 1] == 'left_stator'
-    assert not rviz.condition.evaluate(context)
+    return words[words.index('-f') + 1]
+
+
+@pytest.mark.parametrize('side', ['left', 'right'])
+def test_viewers_show_the_node_of_their_namespace(launched, side):
+    launched.launch_configurations['namespace'] = side
+    publisher, rviz = described(launched, 'view.launch.py', 'start_viewers')
+    [given] = parameters_of(launched, publisher)
+    robot = ET.fromstring(given['robot_description'])  # noqa: S314, our own
+    assert {link.get('name').partition('_')[0] for link in robot.iter('link')} == {side}
+    assert fixed_frame(launched, rviz) == f'{side}_stator'
+    assert not rviz.condition.evaluate(launched)
+
+
+def test_prefix_that_was_given_prevails_over_that_of_the_file(launched):
+    launched.launch_configurations['frame_prefix'] = 'my_'
+    _, rviz = described(launched, 'view.launch.py', 'start_viewers')
+    assert fixed_frame(launched, rviz) == 'my_stator'
+    [node] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
+    _, given = parameters_of(launched, node)
+    assert given == {'frame_prefix': 'my_'}
+    # launch writes it to a block of the node's full name, or to /** if it does not know that.
+    node._perform_substitutions(launched)
+    assert node.is_node_name_fully_specified()
+    assert node.node_name == '/left/gear_state_publisher'
+
+
+@pytest.mark.parametrize(
+    ('file', 'function'),
+    [('gear_state_publisher.launch.py', 'start_node'), ('view.launch.py', 'start_viewers')],
+)
+def test_mistyped_parameter_file_is_refused(launched, file, function):
+    launched.launch_configurations['config'] = 'nope.yaml'
+    with pytest.raises(ConfigError, match=r'^nope\.yaml: No such file or directory$'):
+        described(launched, file, function)
+
+
+def test_parameter_file_in_the_home_directory_is_found(launched, tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    launched.launch_configurations['config'] = '~/two.yaml'
+    [node] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
+    [found] = parameters_of(launched, node)
+    assert found == tmp_path / 'two.yaml'

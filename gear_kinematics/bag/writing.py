@@ -75,10 +75,11 @@ class BagWriter:
         with bag_errors(self.path), ExitStack() as stack:
             if self.path.exists() or self.path.is_symlink():
                 raise ValueError('exists already')
-            # rosbags names the file after its folder, which has to have the final name already.
             folder = tempfile.mkdtemp(prefix=f'.{self.path.name}.', dir=self.path.parent)
             stack.callback(shutil.rmtree, folder)
-            self._partial = Path(folder, self.path.name)
+            # rosbags names the file after the folder it writes to. rosbag2 numbers the files of a
+            # bag, and its reindexer finds no others.
+            self._partial = Path(folder, f'{self.path.name}_0')
             self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)
             self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
             self._writer.open()

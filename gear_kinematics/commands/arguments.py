@@ -29,6 +29,13 @@ def add_config(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='parameters of the node as YAML (default: config/actuator.yaml)',
     )
+    parser.add_argument(
+        '--node',
+        default=parameters.NODE,
+        metavar='NAME',
+        help='whose parameters to take from a file for several nodes: fully qualified, as '
+        f'/left/{parameters.NODE}, or without namespace (default: %(default)s)',
+    )
 
 
 def add_topics(parser: argparse.ArgumentParser) -> None:
@@ -46,6 +53,15 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
         return default
     beside = (bag if bag.is_dir() else bag.parent) / default.name
     return beside if beside.is_file() else default
+
+
+def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
+    """The parameters in the file that `config_path` gives.
+
+    Raises:
+        ValueError: for what the node would refuse.
+    """
+    return parameters.load(config_path(options, bag), options.node)
 
 
 def add_mechanism(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +83,7 @@ def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
     Raises:
         ValueError: for what the node would refuse.
     """
-    config = parameters.load(config_path(options, getattr(options, 'bag', None)))
+    config = load_config(options, getattr(options, 'bag', None))
     for name in ('ring_teeth', 'satellite_teeth', 'eccentricity', 'module'):
         if (given := getattr(options, name, None)) is None:
             continue

@@ -3,10 +3,9 @@
 import argparse
 from pathlib import Path
 
-from gear_kinematics import parameters
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, add_topics, config_path
+from gear_kinematics.commands.arguments import add_config, add_topics, load_config
 from gear_kinematics.commands.output import message_progress
 from gear_kinematics.compute import compute
 from gear_kinematics.fleet import find_topics
@@ -26,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the bag, and say what is in it."""
-    config = parameters.load(config_path(options, options.bag))
+    config = load_config(options, options.bag)
     with Bag(options.bag) as bag, message_progress(options.bag.name) as progress:
         rotor = options.rotor_topic or find_topics(bag, outputs=False).rotor
         namespace = rotor.rpartition('/')[0]

@@ -4,10 +4,10 @@ import argparse
 import math
 from pathlib import Path
 
-from gear_kinematics import parameters, plotting
+from gear_kinematics import plotting
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, config_path, positive
+from gear_kinematics.commands.arguments import add_config, load_config, positive
 from gear_kinematics.commands.output import (
     Console,
     closed_pipe_ignored,
@@ -133,7 +133,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
-    config = parameters.load(config_path(options, path))
+    config = load_config(options, path)
     if options.max_gap is not None:
         config['transmission_error_max_gap'] = options.max_gap
     if options.travel is not None:

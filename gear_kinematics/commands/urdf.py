@@ -2,9 +2,8 @@
 
 import argparse
 
-from gear_kinematics import parameters
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, config_path
+from gear_kinematics.commands.arguments import add_config, load_config
 from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Mechanism
 
@@ -18,7 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Print the URDF."""
-    config = parameters.load(config_path(options))
+    config = load_config(options)
     names = {name: config[name] for name in ('module', 'output_joint', 'frame_prefix')}
     print(urdf(Mechanism.from_mapping(config), **names), end='')
     return ExitCode.DONE

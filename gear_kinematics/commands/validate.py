@@ -81,7 +81,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     tasks = []
     for bag in find_bags(options.bags):
         config = config_path(options, bag)
-        loaded = parameters.load(config)
+        loaded = parameters.load(config, options.node)
         Mechanism.from_mapping(loaded)  # what is wrong with it is no fault of the bag
         tasks.append(
             Task(
