@@ -218,18 +218,28 @@ def test_launch_file_loads(path):
     assert description.entities
 
 
-def test_viewers_take_the_prefix_of_the_parameters(tmp_path):
+def test_viewers_take_their_arguments_and_the_prefix_of_the_parameters(tmp_path):
     """Needs a system ROS, as above."""
     launch = pytest.importorskip('launch', reason='launch is not installed')
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
+    from launch_ros.utilities import evaluate_parameters  # noqa: PLC0415
+
     config = tmp_path / 'my.yaml'
     config.write_text("/**:\n  ros__parameters:\n    frame_prefix: 'left_'\n")
     context = launch.LaunchContext()
     context.launch_configurations.update(
-        config=str(config), frame_prefix='', namespace='', rviz='false', rviz_config='view.rviz'
+        config=str(config),
+        frame_prefix='',
+        namespace='',
+        rviz='false',
+        rviz_config='view.rviz',
+        publish_frequency='100',
     )
     start = runpy.run_path(str(ROOT / 'launch/view.launch.py'))['start_viewers']
-    _, rviz = start(context)
+    publisher, rviz = start(context)
+    [parameters] = evaluate_parameters(context, publisher._Node__parameters)
+    frequency = parameters['publish_frequency']
+    assert (frequency, type(frequency)) == (100.0, float)  # it refuses an integer
     words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd[1:]]
     assert words[words.index('-f') + 1] == 'left_stator'
     assert not rviz.condition.evaluate(context)
