@@ -382,7 +382,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         message.status = [
             DiagnosticStatus(
                 level=bytes([report.level]),
-                name=f'{self.get_name()}: {subject}',
+                name=f'{self.get_fully_qualified_name().removeprefix("/")}: {subject}',
                 hardware_id=self.get_fully_qualified_name(),
                 message=report.message,
                 values=[KeyValue(key=key, value=value) for key, value in report.values.items()],

@@ -202,6 +202,20 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
     node.destroy_node()
 
 
+@pytest.mark.parametrize(('namespace', 'prefix'), [('', ''), ('left', 'left/')])
+def test_status_is_named_after_node_and_namespace(context, monkeypatch, namespace, prefix):
+    node = GearStatePublisher(context=context, namespace=namespace)
+    published = []
+    monkeypatch.setattr(Publisher, 'publish', lambda _, message: published.append(message))
+    node._on_output_encoder(rotor_bytes(1, position=[1.0]))
+    node._report()
+    assert [status.name for status in published[-1].status] == [
+        f'{prefix}gear_state_publisher: rotor input',
+        f'{prefix}gear_state_publisher: transmission error',
+    ]
+    node.destroy_node()
+
+
 def test_timer_of_the_markers_stands_still_before_somebody_looks(node):
     [other] = [timer for timer in node.timers if timer is not node._marker_timer]
     assert node._marker_timer.is_canceled()

@@ -363,7 +363,7 @@ def test_diagnostics_come_once_a_second_under_their_name(start):
     peer = start().peer
     before = peer.node.get_clock().now().nanoseconds
     message, status = peer.report()
-    assert status.name == 'gear_state_publisher: rotor input'
+    assert status.name == f'{peer.namespace[1:]}/gear_state_publisher: rotor input'
     assert status.hardware_id == f'{peer.namespace}/gear_state_publisher'
     # On a busy machine one comes late now and then.
     stamps = deque([stamp_of(message)], maxlen=3)
