@@ -127,6 +127,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._marker_publisher = self._create_output(
                 MarkerArray, 'markers', _latched(), matched=self._on_viewers
             )
+        self._unheard: set[str] = set()  # inputs of which the first message is still to come
         self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
@@ -195,6 +196,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
         That is what best available means; it is decided when the subscription is made.
         """
+        self._unheard.add(topic)
         on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
         subscription = self.create_subscription(
             JointState,
@@ -257,6 +259,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
+        if _ROTOR in self._unheard:
+            self._begin_to_count_losses(_ROTOR)
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
@@ -271,6 +275,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
+        if _ENCODER in self._unheard:
+            self._begin_to_count_losses(_ENCODER)
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
@@ -324,6 +330,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         else:
             self._on_incompatible_qos(topic, event)
 
+    def _begin_to_count_losses(self, topic: str) -> None:
+        """Forget what the middleware calls lost before the first message came.
+
+        It was sent before driver and node had found each other, or while they did.
+        """
+        self._count_losses(topic)
+        self._unheard.remove(topic)
+
     def _count_losses(self, topic: str) -> None:
         """Ask the middleware what it has lost since the last time.
 
@@ -333,8 +347,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         losses = self._inputs[topic].losses
         with losses:
             status = losses.take_event()
-        monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
-        monitor.lost += status.total_count_change
+        if topic not in self._unheard:
+            monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
+            monitor.lost += status.total_count_change
 
     def _on_incompatible_qos(
         self,
@@ -367,8 +382,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return response
 
     def _report(self) -> None:
-        for topic in self._inputs:
+        for topic, topic_input in self._inputs.items():
             self._count_losses(topic)
+            if not topic_input.subscription.get_publisher_count():
+                self._unheard.add(topic)
         self._monitor.drivers = self._inputs[_ROTOR].subscription.get_publisher_count()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {
