@@ -23,7 +23,6 @@ from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.event_handler import (
     PublisherEventCallbacks,
-    QoSOfferedIncompatibleQoSInfo,
     QoSPublisherMatchedInfo,
     QoSRequestedIncompatibleQoSInfo,
     QoSSubscriptionEventType,
@@ -35,13 +34,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import (
-    DurabilityPolicy,
-    QoSPolicyKind,
-    QoSProfile,
-    ReliabilityPolicy,
-    qos_policy_name_from_kind,
-)
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
@@ -54,6 +47,7 @@ from visualization_msgs.msg import MarkerArray
 from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import EncoderMonitor, InputMonitor
+from gear_kinematics.graph import find_faults
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.markers import Markers
@@ -100,6 +94,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._next_warning = 0.0
         self._description = String()
 
+        self._all_outputs: list[Publisher] = []
         self._description_publisher = self._create_output(String, 'robot_description', _latched())
         self._outputs = {
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
@@ -166,16 +161,18 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         qos: QoSProfile,
         matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
     ) -> Publisher:
-        return self.create_publisher(
+        publisher = self.create_publisher(
             message_type,
             topic,
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
-                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event),
+                incompatible_qos=lambda _: None,  # the next report names the listener
                 matched=matched or (lambda _: self._note_listeners()),
             ),
         )
+        self._all_outputs.append(publisher)
+        return publisher
 
     def _note_listeners(self) -> None:
         """Note which outputs have listeners."""
@@ -327,8 +324,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             losses.destroy_when_not_in_use()
             self.destroy_subscription(subscription)
             self._inputs[topic] = self._listen(topic)
-        else:
-            self._on_incompatible_qos(topic, event)
 
     def _begin_to_count_losses(self, topic: str) -> None:
         """Forget what the middleware calls lost before the first message came.
@@ -350,15 +345,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         if topic not in self._unheard:
             monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
             monitor.lost += status.total_count_change
-
-    def _on_incompatible_qos(
-        self,
-        topic: str,
-        event: QoSOfferedIncompatibleQoSInfo | QoSRequestedIncompatibleQoSInfo,
-    ) -> None:
-        policy = qos_policy_name_from_kind(event.last_policy_kind)
-        self._monitor.incompatible_qos[topic] = policy
-        self._warn(f'an endpoint on {topic} is incompatible with this node: {policy}')
 
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until the reliable listeners have what was published; `timeout` is in s."""
@@ -387,6 +373,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if not topic_input.subscription.get_publisher_count():
                 self._unheard.add(topic)
         self._monitor.drivers = self._inputs[_ROTOR].subscription.get_publisher_count()
+        self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {
             'rotor input': self._monitor.report(self._input, self._mechanism, timeout, now),
@@ -408,6 +395,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if report
         ]
         self._publish(self._diagnostics, message)
+
+    def _look_at_graph(self) -> None:
+        """Note what is wrong between this node and others, and log what was not before."""
+        known = self._monitor.graph
+        inputs = (topic_input.subscription for topic_input in self._inputs.values())
+        found = self._monitor.graph = find_faults(
+            self, inputs, self._all_outputs, exclusive=STATE_TOPICS
+        )
+        for fault in (*found.errors, *found.warnings):
+            if fault not in (*known.errors, *known.warnings):
+                self.get_logger().warning(fault)
 
 
 class _Input(NamedTuple):
