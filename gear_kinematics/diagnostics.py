@@ -1,7 +1,9 @@
 """What the node says of its inputs once a second, without ROS."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from gear_kinematics.kinematics import Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -22,6 +24,13 @@ class Report:
     values: dict[str, str]
 
 
+class GraphFaults(NamedTuple):
+    """What is wrong between the node and others, each in words."""
+
+    errors: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+
+
 @dataclass(slots=True)
 class InputMonitor:
     """Watches the rotor input; times are of a steady clock, s."""
@@ -36,8 +45,8 @@ class InputMonitor:
     """Messages that the middleware did not take."""
     last_input: float | None = None
     """When the last message came, valid or not."""
-    incompatible_qos: dict[str, str] = field(default_factory=dict)
-    """The offending policy by topic, as long as the node runs."""
+    graph: GraphFaults = field(default_factory=GraphFaults)
+    """As of the last look at the graph."""
     _reported: float = 0.0
     _received: int = 0
     _lost: int = 0
@@ -69,8 +78,7 @@ class InputMonitor:
             errors.append(f'no input for {age:.1f} s')
         if not rotor_input.referenced:
             errors.append('not referenced')
-        for topic, policy in self.incompatible_qos.items():
-            errors.append(f'incompatible QoS on {topic}: {policy}')
+        errors += self.graph.errors
         if newly_rejected:
             warnings.append(_rejections(newly_rejected))
         if newly_lost:
@@ -79,6 +87,7 @@ class InputMonitor:
             warnings.append(f'not sent {newly_unsent}')
         if self.drivers > 1:
             warnings.append(f'{self.drivers} drivers')
+        warnings += self.graph.warnings
         level = ERROR if errors else WARN if warnings else OK
         values = {
             'rate (Hz)': f'{rate:.1f}',

@@ -22,6 +22,7 @@ import yaml
 from geometry_msgs.msg import PoseArray
 from rclpy.context import Context
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
@@ -271,10 +272,19 @@ class Replay:
 
 @contextmanager
 def replay_node(namespace: str) -> Iterator[Node]:
-    """A ROS node in a context of its own, which leaves the process's signals alone."""
+    """A ROS node in a context of its own, which leaves the process's signals alone.
+
+    It offers no services: nobody answers them while messages are played.
+    """
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    node = Node('gear_kinematics_replay', context=context, namespace=namespace)
+    node = Node(
+        'gear_kinematics_replay',
+        context=context,
+        namespace=namespace,
+        start_parameter_services=False,
+        parameter_overrides=[Parameter('start_type_description_service', value=False)],
+    )
     try:
         yield node
     finally:

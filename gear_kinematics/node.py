@@ -23,7 +23,6 @@ from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.event_handler import (
     PublisherEventCallbacks,
-    QoSOfferedIncompatibleQoSInfo,
     QoSPublisherMatchedInfo,
     QoSRequestedIncompatibleQoSInfo,
     QoSSubscriptionEventType,
@@ -35,13 +34,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import (
-    DurabilityPolicy,
-    QoSPolicyKind,
-    QoSProfile,
-    ReliabilityPolicy,
-    qos_policy_name_from_kind,
-)
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
@@ -54,6 +47,7 @@ from visualization_msgs.msg import MarkerArray
 from gear_kinematics import parameters
 from gear_kinematics.description import joint_names, urdf
 from gear_kinematics.diagnostics import EncoderMonitor, InputMonitor
+from gear_kinematics.graph import find_faults
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.markers import Markers
@@ -104,6 +98,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._next_warning = 0.0
         self._description = String()
 
+        self._all_outputs: list[Publisher] = []
         self._description_publisher = self._create_output(String, 'robot_description', _latched())
         self._outputs = {
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
@@ -131,6 +126,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._marker_publisher = self._create_output(
                 MarkerArray, 'markers', _latched(), matched=self._on_viewers
             )
+        self._unheard: set[str] = set()  # inputs of which the first message is still to come
         self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
@@ -169,16 +165,18 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         qos: QoSProfile,
         matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
     ) -> Publisher:
-        return self.create_publisher(
+        publisher = self.create_publisher(
             message_type,
             topic,
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
-                incompatible_qos=lambda event: self._on_incompatible_qos(topic, event),
+                incompatible_qos=lambda _: None,  # the next report names the listener
                 matched=matched or (lambda _: self._note_listeners()),
             ),
         )
+        self._all_outputs.append(publisher)
+        return publisher
 
     def _note_listeners(self) -> None:
         """Note which outputs have listeners."""
@@ -199,6 +197,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
         That is what best available means; it is decided when the subscription is made.
         """
+        self._unheard.add(topic)
         on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
         subscription = self.create_subscription(
             JointState,
@@ -261,6 +260,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
+        if _ROTOR in self._unheard:
+            self._begin_to_count_losses(_ROTOR)
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
@@ -275,6 +276,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
+        if _ENCODER in self._unheard:
+            self._begin_to_count_losses(_ENCODER)
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
@@ -325,8 +328,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             losses.destroy_when_not_in_use()
             self.destroy_subscription(subscription)
             self._inputs[topic] = self._listen(topic)
-        else:
-            self._on_incompatible_qos(topic, event)
+
+    def _begin_to_count_losses(self, topic: str) -> None:
+        """Forget what the middleware calls lost before the first message came.
+
+        It was sent before driver and node had found each other, or while they did.
+        """
+        self._count_losses(topic)
+        self._unheard.remove(topic)
 
     def _count_losses(self, topic: str) -> None:
         """Ask the middleware what it has lost since the last time.
@@ -337,17 +346,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         losses = self._inputs[topic].losses
         with losses:
             status = losses.take_event()
-        monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
-        monitor.lost += status.total_count_change
-
-    def _on_incompatible_qos(
-        self,
-        topic: str,
-        event: QoSOfferedIncompatibleQoSInfo | QoSRequestedIncompatibleQoSInfo,
-    ) -> None:
-        policy = qos_policy_name_from_kind(event.last_policy_kind)
-        self._monitor.incompatible_qos[topic] = policy
-        self._warn(f'an endpoint on {topic} is incompatible with this node: {policy}')
+        if topic not in self._unheard:
+            monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
+            monitor.lost += status.total_count_change
 
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until the reliable listeners have what was published; `timeout` is in s."""
@@ -371,9 +372,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return response
 
     def _report(self) -> None:
-        for topic in self._inputs:
+        for topic, topic_input in self._inputs.items():
             self._count_losses(topic)
+            if not topic_input.subscription.get_publisher_count():
+                self._unheard.add(topic)
         self._monitor.drivers = self._inputs[_ROTOR].subscription.get_publisher_count()
+        self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {
             'rotor input': self._monitor.report(self._input, self._mechanism, timeout, now),
@@ -386,7 +390,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         message.status = [
             DiagnosticStatus(
                 level=bytes([report.level]),
-                name=f'{self.get_name()}: {subject}',
+                name=f'{self.get_fully_qualified_name().removeprefix("/")}: {subject}',
                 hardware_id=self.get_fully_qualified_name(),
                 message=report.message,
                 values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
@@ -395,6 +399,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if report
         ]
         self._publish(self._diagnostics, message)
+
+    def _look_at_graph(self) -> None:
+        """Note what is wrong between this node and others, and log what was not before."""
+        known = self._monitor.graph
+        inputs = (topic_input.subscription for topic_input in self._inputs.values())
+        found = self._monitor.graph = find_faults(
+            self, inputs, self._all_outputs, exclusive=STATE_TOPICS
+        )
+        for fault in (*found.errors, *found.warnings):
+            if fault not in (*known.errors, *known.warnings):
+                self.get_logger().warning(fault)
 
 
 class _Input(NamedTuple):

@@ -25,7 +25,14 @@ def start_viewers(context: LaunchContext) -> list[Node]:
             package='robot_state_publisher',
             executable='robot_state_publisher',
             namespace=LaunchConfiguration('namespace'),
-            parameters=[{'robot_description': ParameterValue(description, value_type=str)}],
+            parameters=[
+                {
+                    'robot_description': ParameterValue(description, value_type=str),
+                    'publish_frequency': ParameterValue(
+                        LaunchConfiguration('publish_frequency'), value_type=float
+                    ),
+                }
+            ],
             remappings=[
                 ('joint_states', 'mechanism_joint_states'),
                 ('robot_description', '~/robot_description'),
@@ -44,7 +51,7 @@ def start_viewers(context: LaunchContext) -> list[Node]:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Declare two arguments more than the gear state publisher has, and start everything."""
+    """Declare three arguments more than the gear state publisher has, and start everything."""
     share = FindPackageShare('gear_kinematics')
     return LaunchDescription(
         [
@@ -53,6 +60,11 @@ def generate_launch_description() -> LaunchDescription:
                 'rviz_config',
                 default_value=PathJoinSubstitution([share, 'config', 'view.rviz']),
                 description='saved configuration of RViz',
+            ),
+            DeclareLaunchArgument(
+                'publish_frequency',
+                default_value='60.0',  # frames a second of RViz's configuration
+                description='Hz, greatest rate of /tf',
             ),
             # Its arguments are declared there, and known from here on.
             IncludeLaunchDescription(

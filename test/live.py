@@ -213,13 +213,21 @@ class Peer(Listener):
         assert all(stamp_of(message) == stamp_of(messages[-1]) for message in output)
         return output
 
-    def report(self, condition=bool, what='diagnostics', meanwhile=lambda: None, since=None):
+    def report(
+        self,
+        condition=bool,
+        what='diagnostics',
+        meanwhile=lambda: None,
+        since=None,
+        node='gear_state_publisher',
+    ):
         """Wait for the first report on this peer's node that meets a condition, and take it.
 
         It was published after the time `since`, ns, which is now unless given: what is still on
-        its way tells of what was before. `meanwhile` is done again and again until then.
+        its way tells of what was before. `meanwhile` is done again and again until then. `node`
+        names another one in the namespace.
         """
-        name = f'{self.namespace}/gear_state_publisher'
+        name = f'{self.namespace}/{node}'
         since = since or time.time_ns()
 
         def found():
@@ -235,9 +243,9 @@ class Peer(Listener):
 
         return self.wait_until(found, what)
 
-    def status(self, condition=bool, what='diagnostics', meanwhile=lambda: None, since=None):
-        """Wait for the first status that meets a condition, as level, message and values."""
-        _, status = self.report(condition, what, meanwhile, since)
+    def status(self, *arguments, **options):
+        """Wait for a report in the same way, and take its status as level, message and values."""
+        _, status = self.report(*arguments, **options)
         values = {pair.key: pair.value for pair in status.values}
         return status.level[0], status.message, values
 

@@ -8,7 +8,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from live import SECOND, rotor_bytes
 
 from gear_kinematics import diagnostics
-from gear_kinematics.diagnostics import ERROR, OK, WARN, InputMonitor
+from gear_kinematics.diagnostics import ERROR, OK, WARN, GraphFaults, InputMonitor
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import solve
 from gear_kinematics.rotor_input import InputSettings, RotorInput
@@ -151,21 +151,31 @@ def test_unreferenced_encoder_is_an_error_until_home(actuator):
     assert report.values['referenced'] == 'true'
 
 
-def test_incompatible_qos_is_an_error_that_names_topic_and_policy(bench):
+@pytest.mark.parametrize(
+    ('faults', 'level', 'message'),
+    [
+        (GraphFaults(errors=['deaf']), ERROR, 'deaf'),
+        (GraphFaults(warnings=['mute', 'double']), WARN, 'mute; double'),
+        (GraphFaults(errors=['deaf'], warnings=['mute']), ERROR, 'deaf; mute'),
+    ],
+)
+def test_fault_in_the_graph_is_told_as_long_as_it_lasts(bench, faults, level, message):
     bench.feed(START + 0.5, good())
-    bench.monitor.incompatible_qos['output_state'] = 'DURABILITY'
+    bench.monitor.graph = faults
+    for _ in range(2):
+        report = bench.report(START + 1.0)
+        assert (report.level, report.message) == (level, message)
+    bench.monitor.graph = GraphFaults()
     report = bench.report(START + 1.0)
-    assert report.level == ERROR
-    assert 'output_state' in report.message
-    assert 'DURABILITY' in report.message
+    assert (report.level, report.message) == (OK, 'ok')
 
 
 def test_error_outranks_warning_and_both_are_told(bench):
     bench.feed(START + 0.5, BAD)
-    bench.monitor.incompatible_qos['rotor_state'] = 'RELIABILITY'
+    bench.monitor.graph = GraphFaults(warnings=['listener out of reach'])
     report = bench.report(START + 3.0)
     assert report.level == ERROR
-    for part in ('no input', 'rotor_state', 'position not finite 1'):
+    for part in ('no input', 'listener out of reach', 'position not finite 1'):
         assert part in report.message
 
 

@@ -1,7 +1,9 @@
 """The node within the test's own process: what needs no middleware between two processes."""
 
+import itertools
 import math
 import sys
+from types import SimpleNamespace
 
 import pytest
 import rclpy
@@ -12,6 +14,7 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
 
 from gear_kinematics import parameters
 from gear_kinematics.kinematics import MechanismError
@@ -307,6 +310,74 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(con
     node._report()
     [status] = published['/diagnostics'].status
     assert 'not sent 1' in status.message
+    node.destroy_node()
+
+
+@pytest.mark.parametrize(('namespace', 'prefix'), [('', ''), ('left', 'left/')])
+def test_status_is_named_after_node_and_namespace(context, monkeypatch, namespace, prefix):
+    node = GearStatePublisher(context=context, namespace=namespace)
+    published = []
+    monkeypatch.setattr(Publisher, 'publish', lambda _, message: published.append(message))
+    node._on_output_encoder(rotor_bytes(1, position=[1.0]))
+    node._report()
+    assert [status.name for status in published[-1].status] == [
+        f'{prefix}gear_state_publisher: rotor input',
+        f'{prefix}gear_state_publisher: transmission error',
+    ]
+    node.destroy_node()
+
+
+class Losses:
+    """What the middleware says it has lost, in place of what it knows."""
+
+    def __init__(self) -> None:
+        self.new = 0
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *_) -> None:
+        pass
+
+    def take_event(self):
+        status = SimpleNamespace(total_count_change=self.new)
+        self.new = 0
+        return status
+
+    def destroy_when_not_in_use(self) -> None:
+        pass
+
+
+def test_what_is_lost_before_the_first_message_of_a_driver_is_not_counted(context, monkeypatch):
+    node = GearStatePublisher(context=context, namespace='unheard')
+    losses = Losses()
+    node._inputs['rotor_state'] = node._inputs['rotor_state']._replace(losses=losses)
+    drivers = 1
+    monkeypatch.setattr(Subscription, 'get_publisher_count', lambda _: drivers)
+    monkeypatch.setattr(Publisher, 'publish', lambda *_: None)
+    stamps = itertools.count(1)
+
+    def lost(new, happens):
+        losses.new += new
+        happens()
+        return node._monitor.lost
+
+    def message():
+        node._on_rotor_state(rotor_bytes(next(stamps), position=[1.0]))
+
+    # The count goes on from the first message on.
+    assert lost(3, node._report) == 0
+    assert lost(4, message) == 0
+    assert lost(5, message) == 0
+    assert lost(0, node._report) == 5
+    assert lost(6, node._report) == 11
+    # The driver has ended, and another begins.
+    drivers = 0
+    assert lost(7, node._report) == 18
+    drivers = 1
+    assert lost(8, node._report) == 18
+    assert lost(9, message) == 18
+    assert lost(10, node._report) == 28
     node.destroy_node()
 
 

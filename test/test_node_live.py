@@ -9,7 +9,7 @@ import sys
 import time
 import xml.etree.ElementTree as ET
 from collections import deque
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from itertools import pairwise
 
 import oracle
@@ -21,6 +21,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 
+from gear_kinematics.live_node import running_node
 from gear_kinematics.parameters import default_config
 
 OK, WARN, ERROR = 0, 1, 2
@@ -363,7 +364,7 @@ def test_diagnostics_come_once_a_second_under_their_name(start):
     peer = start().peer
     before = peer.node.get_clock().now().nanoseconds
     message, status = peer.report()
-    assert status.name == 'gear_state_publisher: rotor input'
+    assert status.name == f'{peer.namespace[1:]}/gear_state_publisher: rotor input'
     assert status.hardware_id == f'{peer.namespace}/gear_state_publisher'
     # On a busy machine one comes late now and then.
     stamps = deque([stamp_of(message)], maxlen=3)
@@ -429,14 +430,18 @@ def test_single_turn_encoder_is_an_error_until_home(start):
     assert level == ERROR
 
 
-def test_subscriber_that_wants_old_outputs_is_reported(start):
-    live = start()
-    live.peer.listen(JointState, 'latched', LATCHED, 'output_state')
-    level, message, _ = live.peer.status(lambda s: 'incompatible' in s.message, 'a report')
-    assert level == ERROR
-    assert 'output_state' in message
-    assert 'DURABILITY' in message
-    assert [line for line in live.lines('WARN') if 'output_state' in line.text]
+def test_subscriber_that_wants_old_outputs_is_reported_as_long_as_it_is_there(start):
+    live = start(*PATIENT)
+    peer = live.peer
+    fault = f'incompatible QoS on output_state: DURABILITY (listener {peer.namespace}/peer)'
+    latched = peer.listen(JointState, 'latched', LATCHED, 'output_state')
+    level, _, _ = peer.status(lambda s: s.message == fault, 'a warning')
+    assert level == WARN
+    peer.status(lambda s: s.message == fault, 'another')
+    peer.node.destroy_subscription(latched)
+    level, message, _ = peer.status(lambda s: 'incompatible' not in s.message, 'its end')
+    assert (level, message) == (OK, 'ok')
+    assert [line.text for line in live.lines('WARN')].count(fault) == 1
 
 
 def test_volatile_subscriber_to_the_description_is_no_fault(start):
@@ -462,15 +467,18 @@ def qos_override(topic, end, **policies) -> list[str]:
 def test_driver_that_does_best_effort_is_reported_where_reliable_is_asked_for(start):
     namespace = f'/strict_{os.getpid()}'
     live = start(
+        *PATIENT,
         *qos_override(f'{namespace}/rotor_state', 'subscription', reliability='reliable'),
         namespace=namespace,
     )
+    fault = f'incompatible QoS on rotor_state: RELIABILITY (driver {namespace}/peer)'
     driver = best_effort_driver(live.peer)
-    level, message, _ = live.peer.status(lambda s: 'incompatible' in s.message, 'a report')
+    level, _, _ = live.peer.status(lambda s: s.message == fault, 'an error')
     assert level == ERROR
-    assert 'rotor_state' in message
-    assert 'RELIABILITY' in message
-    driver.destroy()
+    live.peer.node.destroy_publisher(driver)
+    level, message, _ = live.peer.status(lambda s: 'incompatible' not in s.message, 'its end')
+    assert (level, message) == (OK, 'ok')
+    assert [line.text for line in live.lines('WARN')].count(fault) == 1
 
 
 @pytest.mark.parametrize('reliable_first', [True, False])
@@ -492,6 +500,57 @@ def test_driver_that_does_best_effort_is_heard(start, reliable_first):
     level, message, _ = peer.status(lambda s: 'incompatible' not in s.message)
     assert 'incompatible' not in message
     assert level != ERROR
+
+
+@contextmanager
+def another_node(live, *arguments):
+    """Run another node in the namespace of a first one, and give the path of its log."""
+    log = live.log.with_suffix('.another.log')
+    command = ['--ros-args', '-r', f'__ns:={live.peer.namespace}', *PATIENT, *arguments]
+    environment = {**os.environ, 'ROS_LOG_DIR': str(log.parent)}
+    with (
+        log.open('w', encoding='utf-8') as stream,
+        running_node(command, stdout=stream, stderr=stream, env=environment),
+    ):
+        yield log
+
+
+def test_two_nodes_of_one_name_both_warn_until_one_ends(start):
+    live = start(*PATIENT)
+    peer = live.peer
+    fault = f'another node is named {peer.namespace}/gear_state_publisher'
+    with another_node(live) as log:
+        peer.wait_until(
+            lambda: fault in live.text() and fault in log.read_text(), 'warnings in both logs'
+        )
+        for new in (True, False):
+
+            def concerns(status, new=new):
+                values = {pair.key: pair.value for pair in status.values}
+                return fault in status.message and (values['received'] == '0') == new
+
+            level, message, _ = peer.status(concerns, 'a warning of either')
+            assert (level, message) == (WARN, fault)
+    level, message, _ = peer.status(lambda s: fault not in s.message, 'the end of the other')
+    assert (level, message) == (OK, 'ok')
+    assert [line.text for line in live.lines('WARN')].count(fault) == 1
+
+
+def test_two_nodes_that_publish_on_one_topic_name_each_other_until_one_ends(start):
+    live = start(*PATIENT)
+    peer = live.peer
+    remapped = ('-r', '__node:=second', '-r', 'output_state:=elsewhere')
+    with another_node(live, *remapped) as log:
+        for node, other in (
+            ('gear_state_publisher', 'second'),
+            ('second', 'gear_state_publisher'),
+        ):
+            fault = f'{peer.namespace}/{other} also publishes body_poses, mechanism_joint_states'
+            level, _, _ = peer.status(lambda s, f=fault: s.message == f, fault, node=node)
+            assert level == WARN
+        assert fault in log.read_text()
+    level, message, _ = peer.status(lambda s: 'publishes' not in s.message, 'the end of it')
+    assert (level, message) == (OK, 'ok')
 
 
 # Homing.

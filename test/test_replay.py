@@ -26,7 +26,7 @@ from sensor_msgs.msg import JointState
 
 from gear_kinematics import live_node, parameters
 from gear_kinematics.bag import Bag, BagError, BagWriter, DamagedBagError
-from gear_kinematics.live_node import ReplayError, live_messages
+from gear_kinematics.live_node import ReplayError, live_messages, replay_node
 from gear_kinematics.replay import play
 from gear_kinematics.schedule import due_messages
 
@@ -266,6 +266,11 @@ def test_a_signal_ends_the_wait(bag_path, listener):
 
 
 # In this process.
+
+
+def test_the_node_offers_no_services_that_nobody_would_answer():
+    with replay_node('') as node:
+        assert not list(node.services)
 
 
 def test_without_a_wait_nobody_needs_to_listen(bag_path):

@@ -12,7 +12,7 @@ from sensor_msgs.msg import JointState
 MS = SECOND // 1000
 PLAY = 0.002  # rad
 COUNT = 800
-SUBJECT = 'gear_state_publisher: transmission error'
+SUBJECT = 'transmission error'
 TOPIC = 'transmission_error'
 
 
@@ -42,7 +42,9 @@ class Encoder:
         self._driver.publish(rotor_state(stamp, ['shaft'], position))
 
     def status(self, condition=bool, meanwhile=lambda: None):
-        return self.peer.status(lambda s: s.name == SUBJECT and condition(s), SUBJECT, meanwhile)
+        return self.peer.status(
+            lambda s: s.name.endswith(f': {SUBJECT}') and condition(s), SUBJECT, meanwhile
+        )
 
 
 @pytest.fixture
@@ -151,7 +153,7 @@ def test_without_an_encoder_there_is_no_word_of_it(tmp_path):
         live.peer.connect()
         report, _ = live.peer.report()
         names = [s.name for s in report.status if s.hardware_id.startswith(live.peer.namespace)]
-    assert names == ['gear_state_publisher: rotor input']
+    assert names == [f'{live.peer.namespace[1:]}/gear_state_publisher: rotor input']
 
 
 def test_bad_input_is_counted_and_the_node_goes_on(start):

@@ -236,7 +236,7 @@ def launched(tmp_path):
     config.write_text(TWO_NODES)
     context.launch_configurations.update(
         config=str(config), frame_prefix='', namespace='left', rotor_state='rotor_state',
-        rviz='false', rviz_config='view.rviz',
+        rviz='false', rviz_config='view.rviz', publish_frequency='100',
     )  # fmt: skip
     return context
 
@@ -266,6 +266,8 @@ def test_viewers_show_the_node_of_their_namespace(launched, side):
     [given] = parameters_of(launched, publisher)
     robot = ET.fromstring(given['robot_description'])  # noqa: S314, our own
     assert {link.get('name').partition('_')[0] for link in robot.iter('link')} == {side}
+    frequency = given['publish_frequency']
+    assert (frequency, type(frequency)) == (100.0, float)  # it refuses an integer
     assert fixed_frame(launched, rviz) == f'{side}_stator'
     assert not rviz.condition.evaluate(launched)
 
