@@ -224,7 +224,10 @@ UNUSABLE_CONFIGS = {
     'missing.yaml': (None, 'No such file'),
     'broken.yaml': ('{', 'not YAML'),
     'empty.yaml': ('', 'no ros__parameters'),
-    'unknown.yaml': ('/**:\n  ros__parameters:\n    teeth: 3\n', 'teeth is no parameter'),
+    'unknown.yaml': (
+        '/**:\n  ros__parameters:\n    teeth: 3\n',
+        'unknown parameter `teeth`; did you mean `ring_teeth`?',
+    ),
     'impossible.yaml': (
         '/**:\n  ros__parameters:\n    satellite_teeth: 80\n',
         'satellite_teeth (80) must be less than',
