@@ -1,11 +1,13 @@
 """One joint out of sensor_msgs/JointState messages, and why a message may be of no use."""
 
+import math
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from operator import itemgetter
 from typing import Any, Self
 
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.messages import (
     STAMP,
     STAMP_OFFSET,
@@ -19,10 +21,11 @@ MALFORMED = 'not a JointState'
 JOINT_MISSING = 'joint missing'
 POSITION_MISSING = 'position missing'
 POSITION_NOT_FINITE = 'position not finite'
+POSITION_TOO_LARGE = 'position too large'
 OUT_OF_ORDER = 'out of order'
 
 GREATEST = 1e300
-"""Beyond it a number counts as not finite: what is computed from it might not be."""
+"""Beyond it a velocity or effort counts as not finite: what is computed from it might not be."""
 _MAX_KEPT = 65_536  # bytes of a message whose layout is kept: far more than any driver sends
 
 
@@ -65,7 +68,7 @@ class JointReader:
             absent or not finite.
 
         Raises:
-            RejectedInputError: if it has no finite position of the joint.
+            RejectedInputError: if it has no usable position of the joint.
         """
         try:
             if len(data) != self._size:
@@ -80,8 +83,9 @@ class JointReader:
             raise RejectedInputError(MALFORMED) from error
         if position is None:
             raise RejectedInputError(self._fault)
-        if not abs(position) <= GREATEST:  # NaN compares false
-            raise RejectedInputError(POSITION_NOT_FINITE)
+        if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
+            finite = math.isfinite(position)
+            raise RejectedInputError(POSITION_TOO_LARGE if finite else POSITION_NOT_FINITE)
         if velocity is not None and not abs(velocity) <= GREATEST:
             velocity = None
         if effort is not None and not abs(effort) <= GREATEST:

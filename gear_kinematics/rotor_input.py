@@ -17,11 +17,13 @@ from gear_kinematics.joint_input import (
     OUT_OF_ORDER,
     POSITION_MISSING,
     POSITION_NOT_FINITE,
+    POSITION_TOO_LARGE,
     JointReader,
     RejectedInputError,
     Settings,
 )
 from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.message_batches import decode_joint_states
 
 Array = NDArray[Any]
@@ -172,7 +174,8 @@ class RotorInput:
             (states.malformed, MALFORMED),
             (~states.joint_found, JOINT_MISSING),
             (~states.present[:, 0], POSITION_MISSING),
-            (~(np.abs(states.values[:, 0]) <= GREATEST), POSITION_NOT_FINITE),
+            (~np.isfinite(states.values[:, 0]), POSITION_NOT_FINITE),
+            (np.abs(states.values[:, 0]) > LARGEST_ANGLE, POSITION_TOO_LARGE),
         ):
             if count := int(np.count_nonzero(faulty & usable)):
                 self.rejected[cause] += count

@@ -8,7 +8,7 @@ import math
 from collections import Counter, deque
 from typing import NamedTuple
 
-from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.rotor_input import CLOCK_RESET
 
 _DEPTH = 8192
@@ -127,8 +127,8 @@ class TransmissionError:
         Returns:
             The errors that are known now, in the order of their stamps.
         """
-        if not math.isfinite(angle):
-            self.unmatched['not finite'] += 1
+        if not abs(angle) <= LARGEST_ANGLE:  # NaN compares false
+            self.unmatched['not finite, or too large'] += 1
             return []
         if self._last_measured is not None and stamp < self._last_measured:
             if self._last_measured - stamp <= CLOCK_RESET:

@@ -59,7 +59,9 @@ class UnseenTurns:
 
     def _learn(self, stretch: Stretches, turns: Array) -> None:
         whole = np.round(turns)
-        fits = (np.abs(turns - whole) <= self._tolerance) & ~np.isin(stretch, self._stretches)
+        # Numbers so large that they have no fraction are garbage, whole or not.
+        wrong = np.maximum(np.abs(turns - whole), np.spacing(np.abs(turns)))
+        fits = (wrong <= self._tolerance) & ~np.isin(stretch, self._stretches)
         stretches, rows = np.unique(stretch[fits], return_index=True)
         if not len(stretches):
             return

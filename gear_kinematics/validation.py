@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gear_kinematics.diagnosis import diagnose
 from gear_kinematics.input_health import InputHealth
 from gear_kinematics.kinematics import Mechanism, solve
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.matching import WINDOW, Window
 from gear_kinematics.messages import (
     MalformedMessageError,
@@ -271,6 +271,8 @@ class Validator:
             return
         direction, zero = self._parameters['rotor_direction'], self._parameters['rotor_zero']
         moved = {'rotor_zero': zero - direction * self._mechanism.rotor_angle(offset)}
+        if abs(moved['rotor_zero']) > LARGEST_ANGLE:  # garbage, which no homing leaves
+            return
         homed = self._trial(batch, moved)
         if homed.poses.worst_error <= trial.poses.worst_error:
             self._input.settings = replace(self._input.settings, **moved)

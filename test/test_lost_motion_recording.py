@@ -113,10 +113,10 @@ def test_other_delimiters_byte_order_marks_and_line_ends(tmp_path, actuator, ang
 
 def test_rows_that_are_not_finite_are_left_out_and_told(tmp_path, actuator, angle):
     holes = angle.copy()
-    holes[[10, 500]] = math.nan
+    holes[[10, 500]] = math.nan, 1e17
     recording = read(write_csv(tmp_path / 'r.csv', angle=holes, torque=TORQUE), actuator)
     assert len(recording.loading.angle) == len(angle) - 2
-    assert recording.remarks == ('2 rows were left out: not finite',)
+    assert recording.remarks == ('2 rows were left out: not finite, or too large',)
 
 
 @pytest.mark.parametrize(

@@ -149,13 +149,14 @@ def test_unusable_measured_angles_are_counted():
     for stamp, angle in (
         (START + 5 * MS, math.nan),
         (START + 5 * MS, math.inf),
+        (START + 5 * MS, -1.5e16),
         (START + 5 * MS, 0.0),
         (START + 4 * MS, 0.0),
         (START + 5 * MS, 0.0),
     ):
         comparison.add_measured(stamp, angle)
     assert comparison.matched == 2
-    assert comparison.unmatched == {'not finite': 2, 'out of order': 1}
+    assert comparison.unmatched == {'not finite, or too large': 3, 'out of order': 1}
 
 
 @pytest.mark.parametrize('first', ['ideal', 'measured'])

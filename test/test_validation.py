@@ -236,6 +236,31 @@ def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topi
         assert worst <= {stamp, None}
 
 
+@pytest.mark.parametrize('value', [1e17, 1e100])
+def test_garbage_in_the_first_output_tells_no_turns(value):
+    """Of a single-turn encoder, whose turns before the recording the next output tells."""
+    config = parameters.load(BAGS.parent / 'config' / 'single_turn.yaml')
+    messages = read('single_turn_encoder')
+    index = index_of(messages, OUTPUT, 1)
+    topic, received, data = messages[index]
+    messages[index] = topic, received, edited(data, topic, lambda m: m.position.fill(value))
+    report = validate(messages, config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.compared for t in report.topics] == [2500, 2500]
+    errors = field_of(report, OUTPUT, 'position')
+    assert errors.max_error == pytest.approx(value)
+    assert errors.rms_error == pytest.approx(value / math.sqrt(2500))
+    assert not any('turns' in finding for finding in report.findings)
+
+
+@pytest.mark.parametrize('value', [1e17, 1e300])
+def test_garbage_in_the_only_output_is_no_offset(recorded, config, value):
+    changed = change_all(recorded[:3], OUTPUT, lambda m: m.position.fill(value))
+    report = validate(changed, config, allow_offset=True)
+    assert report.verdict == Verdict.FAIL
+    assert not any('accepted' in finding for finding in report.findings)
+
+
 @pytest.mark.parametrize('value', [1.4e154, 1e300])
 def test_garbage_in_one_pose_is_an_error_of_that_pose(recorded, config, value):
     for edit in (

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import MotionState
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.kinematics.rotor_turns import TURN, whole_turns
 from gear_kinematics.kinematics.transforms import (
     cam_translation,
     output_turn,
@@ -68,9 +68,11 @@ def solve(
     """Solve the motion of all bodies; arguments and result as of `motion.solve`.
 
     The turns are added to the angle as they are, so that many of them cost its last digits.
+
+    Raises:
+        ValueError: if `rotor_turns` are no such integers.
     """
-    turns: Array = np.asarray(rotor_turns, dtype=np.float64)
-    angle: Array = np.asarray(rotor_angle, dtype=np.float64) + TURN * turns
+    angle = np.asarray(rotor_angle, dtype=np.float64) + TURN * whole_turns(rotor_turns)
     inputs = (angle, rotor_velocity, rotor_acceleration)
     rotor = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
     output = [output_turn(mechanism, value) for value in rotor]

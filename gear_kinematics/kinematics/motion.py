@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.mechanism import Mechanism
-from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN, split_turns, whole_turns
 
 Array = NDArray[np.float64]
 
@@ -232,15 +232,19 @@ def solve(
 
     Args:
         mechanism: the mechanism.
-        rotor_angle: φ2, rad. Inputs broadcast to any shape `(...)`. What is not finite gives NaN.
+        rotor_angle: φ2, rad. Inputs broadcast to any shape `(...)`. What is not finite, or beyond
+            ±`LARGEST_ANGLE`, gives NaN.
         rotor_velocity: rad/s.
         rotor_acceleration: rad/s².
-        rotor_turns: whole turns to be added to `rotor_angle`, integers up to ±2^53: the way to
-            large angles without loss.
+        rotor_turns: whole turns to be added to `rotor_angle`, integers up to ±`MOST_TURNS`: the
+            way to large angles without loss.
+
+    Raises:
+        ValueError: if `rotor_turns` are no such integers.
     """
     form = closed_form(mechanism)
     moving = bool(np.any(rotor_velocity) or np.any(rotor_acceleration))
-    inputs = (rotor_turns, rotor_angle, rotor_velocity, rotor_acceleration)
+    inputs = (whole_turns(rotor_turns), rotor_angle, rotor_velocity, rotor_acceleration)
     arrays = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
     shape, branches = arrays[0].shape, len(mechanism.branches)
     turns, angle, velocity, acceleration = (array.reshape(-1) for array in arrays)

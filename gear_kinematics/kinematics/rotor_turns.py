@@ -11,10 +11,18 @@ from types import ModuleType
 from typing import Any, NamedTuple, overload
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 TURN = 2.0 * math.pi
 TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: what the float64 leaves out
+LARGEST_ANGLE = 2**51 * TURN
+"""rad. Up to here `split_turns` finds the turn: the two roundings of its quotient, of up to 2^51
+turns, are at most 3/8 of a turn together, less than the half that rounding to the nearest allows.
+And up to here a float64 tells where in the turn an angle is: its spacing is 2 rad, and from
+2^54 rad = 1.8e16 rad on 4 rad, more than half a turn."""
+MOST_TURNS = 2**52
+"""With the turns of an angle up to `LARGEST_ANGLE` they make a whole number below 2^53, which a
+float64 holds exactly."""
 _MANY = 2**25  # turns: up to so many, their products with either part of TURN fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
@@ -35,16 +43,29 @@ def split_turns(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArra
 def split_turns(angle: Any) -> Any:
     """Split an angle into the nearest whole turns and the rest in [-π, π], both exact.
 
-    Exact means: of 2π itself, not of its float64, up to 2^51 turns; the rest is rounded once.
-    Near half a turn it can exceed π by what the float64 of so many turns leaves out.
+    Exact means: of 2π itself, not of its float64; the rest is rounded once. Near half a turn it
+    can exceed π by what the float64 of so many turns leaves out.
 
     Args:
-        angle: rad; a finite float, or an array of any shape.
+        angle: rad, up to ±`LARGEST_ANGLE`; a float, or an array of any shape.
 
     Returns:
-        Turns (an int; for arrays whole numbers as float64) and the rest in rad.
+        Turns (an int; for arrays whole numbers as float64) and the rest in rad. In arrays both
+        are NaN for any other angle.
+
+    Raises:
+        ValueError: if a float is any other angle.
     """
-    xp: ModuleType = np if isinstance(angle, np.ndarray) else math
+    xp: ModuleType
+    if isinstance(angle, np.ndarray):
+        xp = np
+        inside = np.abs(angle) <= LARGEST_ANGLE  # NaN compares false
+        if not inside.all():
+            angle = np.where(inside, angle, np.nan)
+    else:
+        xp = math
+        if not abs(angle) <= LARGEST_ANGLE:
+            raise ValueError(f'an angle is at most {LARGEST_ANGLE:g} rad, not {angle:g}')
     # All is exact here. fmod alone would do, but is slow where it takes something off.
     rest = xp.fmod(angle, _MANY * TURN)
     whole = xp.floor(rest / TURN + 0.5)  # rounded: one turn more may have to be taken off
@@ -52,6 +73,20 @@ def split_turns(angle: Any) -> Any:
     rest = rest - TURN * xp.floor(rest / TURN + 0.5)
     turns = xp.floor((angle - rest) / TURN + 0.5)
     return RotorPosition(turns, rest - turns * TURN_TAIL)
+
+
+def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
+    """Take numbers of turns as float64.
+
+    Raises:
+        ValueError: if one is no integer up to ±`MOST_TURNS`.
+    """
+    array = np.asarray(turns, np.float64)
+    # What is not finite leaves NaN, which counts as true.
+    if np.fmod(array, 1.0).any() or np.abs(array).max(initial=0.0) > MOST_TURNS:
+        given = np.array2string(array, threshold=4)
+        raise ValueError(f'rotor_turns must be integers up to ±2^52, not {given}')
+    return array
 
 
 _split_zero = lru_cache(maxsize=1)(split_turns)  # the same for many samples
@@ -93,7 +128,7 @@ class RotorTurns:
         """Take the encoder's next sample.
 
         Args:
-            position: finite, rad; of a single-turn encoder in any range.
+            position: rad, up to ±`LARGEST_ANGLE`; of a single-turn encoder in any range.
             stamp: ns, not earlier than the last.
             velocity: rad/s, or None where it is not known.
         """

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
-from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.transmission_error import TransmissionError
@@ -79,14 +79,14 @@ def read_csv(
     header, rows = _table(path)
     found = _find(path, header, columns)
     values = _numbers(path, header, rows, list(found.values()))
-    finite = np.all(np.isfinite(values), axis=1)
-    data = dict(zip(found, values[finite].T, strict=True))
-    left_out = int(np.count_nonzero(~finite))
-    remarks = (f'{left_out} rows were left out: not finite',) if left_out else ()
     unit, why = _unit(path, header, columns, found)
-    for role in ('angle', 'rotor', 'output'):
-        if role in data:
-            data[role] *= UNITS[unit]
+    for column, role in enumerate(found):
+        if role != 'torque':
+            values[:, column] *= UNITS[unit]
+    usable = np.all(np.abs(values) <= LARGEST_ANGLE, axis=1)  # NaN compares false
+    data = dict(zip(found, values[usable].T, strict=True))
+    left_out = int(np.count_nonzero(~usable))
+    remarks = (f'{left_out} rows were left out: not finite, or too large',) if left_out else ()
     loading = motion = None
     if columns.on_rotor and 'torque' in data:
         data['torque'] *= float(mechanism.gear_ratio)
@@ -99,7 +99,7 @@ def read_csv(
     return Recording(
         path.name,
         tuple(_described(found, unit, why, on_rotor=columns.on_rotor)),
-        len(finite),
+        len(usable),
         loading,
         motion,
         remarks,

@@ -41,8 +41,9 @@ def turned(mechanism: Mechanism, rotor_angle: Sequence[float]) -> dict[str, list
     Returns:
         Degrees of `rotor` and `output`, less the whole turns of the first sample.
     """
-    turns, angle = split_turns(_finite(rotor_angle))
-    state = solve(mechanism, angle, rotor_turns=turns)
+    angles = np.asarray(rotor_angle, np.float64)
+    turns, angle = split_turns(angles)
+    state = solve(mechanism, angles)
     output_turns = np.round((state.output_angle - state.output_turn_angle) / TURN)
     return {
         'rotor': _degrees(turns, angle),
