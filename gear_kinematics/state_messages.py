@@ -86,8 +86,8 @@ class StateMessages:
         centres = [branch.satellite for branch in branches]
         centres += [branch.oldham for branch in branches]
         numbers: list[float] = []
-        for centre, z in zip(centres, self._axial_positions, strict=True):
-            numbers += (centre.real, centre.imag, z, 0.0, 0.0, sine, cosine)
+        for (x, y), z in zip(centres, self._axial_positions, strict=True):
+            numbers += (x, y, z, 0.0, 0.0, sine, cosine)
         return self._body_poses.encode(sample.stamp, numbers)
 
     def _joint_state(
@@ -97,13 +97,13 @@ class StateMessages:
         rotor_angle = TURN * sample.position.turns + sample.position.angle
         on_cam = output_angle - rotor_angle
         positions = [rotor_angle, *(on_cam for _ in branches)]
-        positions += [branch.slides.imag for branch in branches]
+        positions += [branch.satellite_slide for branch in branches]
         positions.append(output_angle)
         velocity = sample.velocity
         if velocity is None:
             return self._joint_states[False].encode(sample.stamp, positions)
         output_velocity = self._form.output_rate(velocity)
         velocities = [velocity, *(output_velocity - velocity for _ in branches)]
-        velocities += [self._form.slide_velocities(branch, velocity).imag for branch in branches]
+        velocities += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
         velocities.append(output_velocity)
         return self._joint_states[True].encode(sample.stamp, positions, velocities)

@@ -12,7 +12,7 @@ from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.kinematics import RotorPosition, split_turns
+from gear_kinematics.kinematics import RotorPosition, solve, split_turns
 from gear_kinematics.rotor_input import RotorSample
 from gear_kinematics.state_messages import StateMessages
 
@@ -186,3 +186,17 @@ def test_no_number_is_too_large_to_be_encoded(mechanism, position, velocity):
     state, poses, _ = encode(mechanism, sample_at(position, velocity, velocity))
     assert math.isfinite(state.position[0])
     assert len(poses.poses) == 2 * len(mechanism.branches)
+
+
+@given(mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(-1e4, 1e4))
+def test_messages_have_the_bits_of_a_batch(mechanism, position, velocity):
+    sample = sample_at(position, velocity)
+    state, poses, joints = encode(mechanism, sample)
+    batch = solve(mechanism, [position], velocity, rotor_turns=[0.0])
+    assert state.position[0] == joints.position[-1] == batch.output_angle[0]
+    assert state.velocity[0] == joints.velocity[-1] == batch.output_velocity[0]
+    places = [[pose.position.x, pose.position.y] for pose in poses.poses]
+    assert places == [*batch.satellite_centre[0].tolist(), *batch.oldham_centre[0].tolist()]
+    slides = slice(1 + len(mechanism.branches), -1)
+    assert joints.position[slides].tolist() == batch.satellite_slide[0].tolist()
+    assert joints.velocity[slides].tolist() == batch.satellite_slide_velocity[0].tolist()

@@ -105,40 +105,44 @@ class MotionState:
 
 
 class BranchPosition(NamedTuple):
-    """Where the bodies of one branch are, m: complex numbers or arrays of them."""
+    """Where the bodies of one branch are, m: floats or arrays; points are pairs x, y."""
 
-    satellite: Any
-    """O3 as x + iy."""
-    oldham: Any
-    """O4 as x + iy."""
-    slides: Any
-    """y_k + i x_k: the slide on the arm, and i times the slide on the satellite."""
+    satellite: tuple[Any, Any]
+    """O3."""
+    oldham: tuple[Any, Any]
+    """O4."""
+    satellite_slide: Any
+    """x_k."""
+    arm_slide: Any
+    """y_k."""
 
 
 class BranchRates(NamedTuple):
     """The time derivatives of a `BranchPosition`, m/s and m/s²."""
 
-    satellite_velocity: Any
-    oldham_velocity: Any
-    slide_velocities: Any
-    satellite_acceleration: Any
-    oldham_acceleration: Any
+    satellite_velocity: tuple[Any, Any]
+    oldham_velocity: tuple[Any, Any]
+    satellite_slide_velocity: Any
+    arm_slide_velocity: Any
+    satellite_acceleration: tuple[Any, Any]
+    oldham_acceleration: tuple[Any, Any]
 
 
 class ClosedForm:
     """The formulas with the constants of one mechanism; `xp` is `math` for floats, else numpy.
 
-    Vectors in the plane are complex numbers x + iy here. Turning by an angle q multiplies them
-    by exp(iq), so that u(q) = i exp(iq), whose time derivative is i q' u(q).
+    Floats and arrays give the same bits. Hence no complex numbers here, whose products numpy
+    rounds once where the processor can, and Python twice.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
         """Take what the formulas need from the mechanism."""
         ratio = -1 / mechanism.gear_ratio
-        self._p, self._q = ratio.numerator, ratio.denominator
+        # p is a float so that its product with many turns is rounded as in arrays.
+        self._p, self._q = float(ratio.numerator), ratio.denominator
         self._eccentricity = mechanism.eccentricity
         self._cams = tuple(  # u(α)
-            complex(-math.sin(b.cam_phase), math.cos(b.cam_phase)) for b in mechanism.branches
+            (-math.sin(b.cam_phase), math.cos(b.cam_phase)) for b in mechanism.branches
         )
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
         self._kappa = -2.0 * float(ratio) - 1.0
@@ -154,7 +158,7 @@ class ClosedForm:
         whole = xp.ceil(steps / q - 0.5)
         rest = (TURN * (steps - q * whole) + p * angle) / -q
         wraps = xp.floor(rest / TURN + 0.5)
-        return wraps - (p * cycles + whole), rest - TURN * wraps
+        return xp.trunc(wraps - (p * cycles + whole)), rest - TURN * wraps
 
     def output_rate(self, rotor_rate: Any) -> Any:
         """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
@@ -162,16 +166,17 @@ class ClosedForm:
 
     def branches(self, angle: Any, output_angle: Any, xp: ModuleType) -> list[BranchPosition]:
         """Positions of the bodies, branch by branch; both angles within their turn."""
-        e = self._eccentricity
-        rotor, arm = _direction(angle, xp), 1j * _direction(output_angle, xp)
-        from_arm = arm.conjugate()
+        e, cosine, sine = self._eccentricity, xp.cos(angle), xp.sin(angle)
+        arm_x, arm_y = -xp.sin(output_angle), xp.cos(output_angle)  # u(φ5)
         positions = []
-        for cam in self._cams:
-            turned = rotor * cam  # u(θ)
-            satellite = e * turned  # eqs. (9), (10)
-            slides = e * (turned * from_arm)  # eqs. (19), (20): e exp(iβ), β = θ - φ5
-            oldham = slides.real * arm  # eqs. (21), (22): y u(φ5)
-            positions.append(BranchPosition(satellite, oldham, slides))
+        for cam_x, cam_y in self._cams:
+            x = cosine * cam_x - sine * cam_y  # u(θ)
+            y = sine * cam_x + cosine * cam_y
+            satellite_slide = e * (y * arm_x - x * arm_y)  # eq. (19): e sin β, β = θ - φ5
+            arm_slide = e * (x * arm_x + y * arm_y)  # eq. (20): e cos β
+            oldham = arm_slide * arm_x, arm_slide * arm_y  # eqs. (21), (22): y u(φ5)
+            # The satellite by eqs. (9), (10).
+            positions.append(BranchPosition((e * x, e * y), oldham, satellite_slide, arm_slide))
         return positions
 
     def rates(self, positions: Iterable[BranchPosition], w: Any, a: Any) -> Iterator[BranchRates]:
@@ -179,35 +184,28 @@ class ClosedForm:
 
         O4 is the sum of two vectors, which turn with θ and with 2 φ5 - θ: at w and at κ w.
         """
-        kappa = self._kappa
-        first = 1j * w
-        square = first * first
-        second = 1j * a + square  # u(θ)' = first u(θ), u(θ)'' = second u(θ)
+        kappa, square, minus_w, minus_a = self._kappa, w * w, -w, -a
         for position in positions:
-            along = 0.5 * position.satellite  # (e/2) u(θ)
-            counter = kappa * (position.oldham - along)  # κ (e/2) u(2 φ5 - θ)
-            both = along + counter
+            (x, y), (oldham_x, oldham_y) = position.satellite, position.oldham
+            along_x, along_y = 0.5 * x, 0.5 * y  # (e/2) u(θ)
+            counter_x = kappa * (oldham_x - along_x)  # κ (e/2) u(2 φ5 - θ)
+            counter_y = kappa * (oldham_y - along_y)
+            rate_x, rate_y = along_x + counter_x, along_y + counter_y
             yield BranchRates(
-                satellite_velocity=position.satellite * first,
-                oldham_velocity=both * first,
-                slide_velocities=self.slide_velocities(position, w),
-                satellite_acceleration=position.satellite * second,
-                oldham_acceleration=both * second + (kappa - 1.0) * counter * square,
+                (minus_w * y, w * x),
+                (minus_w * rate_y, w * rate_x),
+                *self.slide_velocities(position, w),
+                (minus_a * y - square * x, a * x - square * y),
+                (
+                    minus_a * rate_y - square * (along_x + kappa * counter_x),
+                    a * rate_x - square * (along_y + kappa * counter_y),
+                ),
             )
 
-    def slide_velocities(self, position: BranchPosition, w: Any) -> Any:
-        """y' + i x', m/s, for the rotor velocity w: β' = w zk/zs."""
-        return 1j * self._slide_ratio * w * position.slides
-
-
-def _direction(angle: Any, xp: ModuleType) -> Any:
-    """exp(i angle)."""
-    if xp is math:
-        return complex(math.cos(angle), math.sin(angle))
-    direction = np.empty(angle.shape, np.complex128)
-    np.cos(angle, out=direction.real)
-    np.sin(angle, out=direction.imag)
-    return direction
+    def slide_velocities(self, position: BranchPosition, w: Any) -> tuple[Any, Any]:
+        """x' and y', m/s, for the rotor velocity w: β' = w zk/zs."""
+        beta_rate = self._slide_ratio * w
+        return beta_rate * position.arm_slide, -beta_rate * position.satellite_slide
 
 
 @lru_cache
@@ -252,8 +250,8 @@ def solve(
     # The first axis is the order of the derivative.
     orders, size = 3 if moving else 1, angle.size
     output, turn_angle = np.empty((orders, size)), np.empty(size)
-    satellite, oldham = np.empty((2, orders, size, branches), np.complex128)
-    slides = np.empty((min(orders, 2), size, branches), np.complex128)
+    satellite, oldham = np.empty((2, orders, size, branches, 2))
+    satellite_slide, arm_slide = np.empty((2, min(orders, 2), size, branches))
     for start in range(0, size, _CHUNK):
         part = slice(start, start + _CHUNK)
         own_turns, rest = split_turns(angle[part])
@@ -262,27 +260,32 @@ def solve(
         output[0, part] = TURN * output_turns + output_rest
         positions = form.branches(rest, output_rest, np)
         for k, position in enumerate(positions):
-            satellite[0, part, k] = position.satellite
-            oldham[0, part, k] = position.oldham
-            slides[0, part, k] = position.slides
+            _put(satellite[0, part, k], position.satellite)
+            _put(oldham[0, part, k], position.oldham)
+            satellite_slide[0, part, k] = position.satellite_slide
+            arm_slide[0, part, k] = position.arm_slide
         if not moving:
             continue
         w, a = velocity[part], acceleration[part]
         output[1, part], output[2, part] = form.output_rate(w), form.output_rate(a)
         for k, rates in enumerate(form.rates(positions, w, a)):
-            satellite[1, part, k] = rates.satellite_velocity
-            satellite[2, part, k] = rates.satellite_acceleration
-            oldham[1, part, k] = rates.oldham_velocity
-            oldham[2, part, k] = rates.oldham_acceleration
-            slides[1, part, k] = rates.slide_velocities
+            _put(satellite[1, part, k], rates.satellite_velocity)
+            _put(satellite[2, part, k], rates.satellite_acceleration)
+            _put(oldham[1, part, k], rates.oldham_velocity)
+            _put(oldham[2, part, k], rates.oldham_acceleration)
+            satellite_slide[1, part, k] = rates.satellite_slide_velocity
+            arm_slide[1, part, k] = rates.arm_slide_velocity
 
-    vectors = (orders, *shape, branches, 2)
-    slides = slides.reshape(len(slides), *shape, branches)
+    vectors, slides = (orders, *shape, branches, 2), (min(orders, 2), *shape, branches)
     return MotionState.from_orders(
         output=output.reshape(orders, *shape),
         output_turn_angle=turn_angle.reshape(shape),
-        satellite=satellite.view(np.float64).reshape(vectors),
-        oldham=oldham.view(np.float64).reshape(vectors),
-        satellite_slide=slides.imag,
-        arm_slide=slides.real,
+        satellite=satellite.reshape(vectors),
+        oldham=oldham.reshape(vectors),
+        satellite_slide=satellite_slide.reshape(slides),
+        arm_slide=arm_slide.reshape(slides),
     )
+
+
+def _put(points: Array, point: tuple[Array, Array]) -> None:
+    points[:, 0], points[:, 1] = point

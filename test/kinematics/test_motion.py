@@ -1,6 +1,7 @@
 """The closed form against 50-digit matrix products, and the properties of the motion."""
 
 import math
+import re
 import tracemalloc
 from dataclasses import fields
 
@@ -24,11 +25,19 @@ from properties import (
     speed_up,
 )
 
-from gear_kinematics.kinematics import Branch, Mechanism, MotionState, solve, split_turns
-from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics import (
+    Branch,
+    Mechanism,
+    MotionState,
+    matrix_method,
+    solve,
+    split_turns,
+)
+from gear_kinematics.kinematics.motion import BranchRates, closed_form
 
 EPS = float(np.finfo(np.float64).eps)
 MOST_TURNS = 2**51  # up to here float64 angles are split exactly
+LARGEST_ANGLE = 2.0 * math.pi * MOST_TURNS
 
 
 def test_hand_computed_motion():
@@ -361,44 +370,113 @@ def test_rotor_at_rest_has_no_rates(mechanism):
         np.testing.assert_array_equal(getattr(state, name), np.zeros_like(getattr(state, name)))
 
 
-@given(
-    mechanisms(),
-    st.floats(-math.pi, math.pi),
-    st.integers(-(10**11), 10**11),
-    st.floats(-1000.0, 1000.0),
-    st.floats(-1e6, 1e6),
-)
-def test_plain_floats_follow_the_same_formulas(mechanism, angle, turns, velocity, acceleration):
-    """`ClosedForm` with `math` beside `solve` with numpy: sines may differ in their last bit."""
+def one_by_one(mechanism, angle, turns, velocity, acceleration) -> dict[str, object]:
+    """Go through `ClosedForm` with plain floats and ints; returns what a state has."""
     form = closed_form(mechanism)
     own_turns, rest = split_turns(angle)
-    output_turns, output_angle = form.output_angle(turns + own_turns, rest, math)
-    state = solve(mechanism, angle, velocity, acceleration, rotor_turns=turns)
+    output_turns, output_rest = form.output_angle(turns + own_turns, rest, math)
     assert isinstance(output_turns, int)
-    spacing = math.ulp(math.pi)
-    assert_close(state.output_turn_angle, output_angle, spacing)
-    total = 2.0 * math.pi * output_turns + output_angle
-    assert_close(state.output_angle, total, spacing + math.ulp(total))
-    assert_close(state.output_velocity, form.output_rate(velocity), 0.0)
-    fastest = speed_up(mechanism) * max(abs(velocity), math.sqrt(abs(acceleration)))
-    e = mechanism.eccentricity
-    positions = form.branches(rest, output_angle, math)
-    rates = form.rates(positions, velocity, acceleration)
-    for k, (position, rate) in enumerate(zip(positions, rates, strict=True)):
-        centres = (
-            (position.satellite, position.oldham),
-            (rate.satellite_velocity, rate.oldham_velocity),
-            (rate.satellite_acceleration, rate.oldham_acceleration),
-        )
-        for order, points in enumerate(centres):
-            tolerance = 8.0 * EPS * e * fastest**order
-            for name, point in zip(LENGTHS[order][:2], points, strict=True):
-                assert_close(getattr(state, name)[k], (point.real, point.imag), tolerance)
-        for order, slides in enumerate((position.slides, rate.slide_velocities)):
-            tolerance = 8.0 * EPS * e * fastest**order
-            in_slots = [getattr(state, name)[k] for name in LENGTHS[order][2:]]
-            assert_close(in_slots, (slides.imag, slides.real), tolerance)
-        assert all(type(value) is complex for value in (*position, *rate))
+    positions = form.branches(rest, output_rest, math)
+    rates = list(form.rates(positions, velocity, acceleration))
+    return {
+        'output_angle': 2.0 * math.pi * output_turns + output_rest,
+        'output_velocity': form.output_rate(velocity),
+        'output_acceleration': form.output_rate(acceleration),
+        'output_turn_angle': output_rest,
+        'satellite_centre': [position.satellite for position in positions],
+        'oldham_centre': [position.oldham for position in positions],
+        'satellite_slide': [position.satellite_slide for position in positions],
+        'arm_slide': [position.arm_slide for position in positions],
+        **{name: [getattr(rate, name) for rate in rates] for name in BranchRates._fields},
+    }
+
+
+@given(
+    mechanisms(),
+    st.floats(-LARGEST_ANGLE, LARGEST_ANGLE) | st.floats(-10.0, 10.0),
+    st.integers(-MOST_TURNS, MOST_TURNS) | st.just(0),
+    st.floats(-1000.0, 1000.0),
+    st.floats(-1e6, 1e6),
+    st.integers(0, 20),
+)
+@example(Mechanism(400, 1, 1e-3, (Branch('a', 0.3),)), 7e15, 2**51 - 1, 1.0, 1.0, 3)
+def test_batches_and_floats_agree_to_the_last_bit(
+    mechanism, angle, turns, velocity, acceleration, others
+):
+    """`solve` of one sample among others, of one alone, and the node's plain floats."""
+    inputs = (angle, velocity, acceleration)
+    among = solve(
+        mechanism,
+        *([*range(others), value] for value in inputs),
+        rotor_turns=[*range(others), turns],
+    )
+    alone = solve(mechanism, *inputs, rotor_turns=turns)
+    floats = one_by_one(mechanism, angle, turns, velocity, acceleration)
+    assert sorted(floats) == sorted(field_names(alone))
+    for name, value in floats.items():
+        np.testing.assert_array_equal(getattr(alone, name), value, name)
+        np.testing.assert_array_equal(getattr(among, name)[-1], value, name)
+
+
+@given(samples(LARGEST_ANGLE) | samples(100.0))
+def test_turns_of_batches_and_floats_agree_to_the_last_bit(angles):
+    turns, rest = split_turns(angles)
+    parts = [split_turns(angle) for angle in angles.ravel().tolist()]
+    assert turns.ravel().tolist() == [part.turns for part in parts]
+    assert rest.ravel().tolist() == [part.angle for part in parts]
+
+
+@given(mechanisms(), st.floats(-1.0, 1.0))
+def test_bodies_are_in_their_places_up_to_the_largest_angle(mechanism, share):
+    """Of the rotor, however much faster the output turns; its total is a float64 of more turns."""
+    angle = share * LARGEST_ANGLE
+    state = solve(mechanism, angle)
+    errors = position_errors(state, mechanism, [oracle.rotor_angle_of(angle)])
+    exact = oracle.rotor_angle_of(angle) / mechanism.gear_ratio.numerator
+    exact *= mechanism.gear_ratio.denominator
+    assert errors.pop('output_angle') <= 2.0 * math.ulp(float(exact))
+    assert_within(errors)
+
+
+SOLVERS = pytest.mark.parametrize('solver', [solve, matrix_method.solve], ids=['closed', 'matrix'])
+
+
+@pytest.mark.parametrize('beyond', [math.nextafter(LARGEST_ANGLE, math.inf), 1e17, 1e300])
+@pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_angles_beyond_the_largest_give_nan(actuator, beyond, sign):
+    state = solve(actuator, [0.5, sign * beyond])
+    good = solve(actuator, [0.5])
+    for name in LENGTHS[0] + ('output_angle', 'output_turn_angle'):
+        np.testing.assert_array_equal(getattr(state, name)[:1], getattr(good, name))
+        assert np.all(np.isnan(getattr(state, name)[1])), name
+
+
+@pytest.mark.parametrize(
+    ('turns', 'given_turns'),
+    [
+        (0.5, '0.5'),
+        (-1.25, '-1.25'),
+        ([1.0, 2.0, 3.5], '[1.  2.  3.5]'),
+        (math.inf, 'inf'),
+        ([0.0, math.nan], '[ 0. nan]'),
+        (2**52 + 1, '4.50359963e+15'),
+        (-(2**60), '-1.1529215e+18'),
+    ],
+)
+@SOLVERS
+def test_turns_that_are_no_integers_are_refused(actuator, solver, turns, given_turns):
+    wanted = f'rotor_turns must be integers up to ±2^52, not {given_turns}'
+    with pytest.raises(ValueError, match=f'^{re.escape(wanted)}$'):
+        solver(actuator, np.zeros(np.shape(turns)), rotor_turns=turns)
+
+
+@pytest.mark.parametrize('turns', [3, 3.0, -(2**52), 2**52, True, np.int8(3), [1, 2], []])
+@SOLVERS
+def test_turns_of_any_type_are_taken(actuator, solver, turns):
+    state = solver(actuator, 0.25, rotor_turns=turns)
+    same = solver(actuator, 0.25, rotor_turns=np.array(turns, np.float64))
+    assert_same(state, same)
+    assert state.output_angle.shape == np.shape(turns)
 
 
 def test_closed_form_is_made_once_for_a_mechanism(actuator):
