@@ -99,6 +99,7 @@ class InputMonitor:
             'drivers': str(self.drivers),
             'duplicate stamps': str(rotor_input.duplicates),
             'zero stamps': str(rotor_input.zero_stamps),
+            'unnormalised stamps': str(rotor_input.unnormalised_stamps),
             'clock resets': str(rotor_input.resets),
             'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
             'referenced': str(rotor_input.referenced).lower(),

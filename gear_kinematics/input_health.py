@@ -70,6 +70,7 @@ class InputHealth:
             rejected=dict(rotor_input.rejected),
             duplicates=rotor_input.duplicates,
             zero_stamps=rotor_input.zero_stamps,
+            unnormalised_stamps=rotor_input.unnormalised_stamps,
             resets=rotor_input.resets,
             first_stamp=self._first_stamp,
             rate=1.0 / self._median if self._median else 0.0,

@@ -9,15 +9,17 @@ from typing import Any, Self
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.messages import (
+    LATEST,
+    SECOND,
     STAMP,
     STAMP_OFFSET,
     MalformedMessageError,
     joint_index,
     joint_state_layout,
-    stamp_from,
 )
 
 MALFORMED = 'not a JointState'
+STAMP_OUT_OF_RANGE = 'stamp out of range'
 JOINT_MISSING = 'joint missing'
 POSITION_MISSING = 'position missing'
 POSITION_NOT_FINITE = 'position not finite'
@@ -55,17 +57,17 @@ class JointReader:
         """Start.
 
         Args:
-            joint: its name; '' takes the only joint of a message.
+            joint: its name, or its index where no joint has a name; '' takes the only joint.
         """
         self._joint = joint.encode()
         self._size = -1  # of the messages whose layout is known
 
-    def read(self, data: bytes) -> tuple[int, float, float | None, float | None]:
+    def read(self, data: bytes) -> tuple[int, bool, float, float | None, float | None]:
         """Read a message.
 
         Returns:
-            Stamp (ns, 0 where there is none), position, velocity and effort; None for what is
-            absent or not finite.
+            Stamp (ns, 0 where there is none), whether it has a second or more of nanoseconds,
+            position, velocity and effort; None for what is absent or not finite.
 
         Raises:
             RejectedInputError: if it has no usable position of the joint.
@@ -77,10 +79,12 @@ class JointReader:
             if self._fixed_of(fields) != self._fixed:
                 self._learn(data)
                 fields = (*self._struct.unpack(data), None)
-            seconds, nanoseconds, position, velocity, effort = self._numbers_of(fields)
-            stamp = stamp_from(seconds, nanoseconds)
         except MalformedMessageError as error:
             raise RejectedInputError(MALFORMED) from error
+        seconds, nanoseconds, position, velocity, effort = self._numbers_of(fields)
+        stamp = seconds * SECOND + nanoseconds
+        if stamp > LATEST:
+            raise RejectedInputError(STAMP_OUT_OF_RANGE)
         if position is None:
             raise RejectedInputError(self._fault)
         if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
@@ -90,12 +94,12 @@ class JointReader:
             velocity = None
         if effort is not None and not abs(effort) <= GREATEST:
             effort = None
-        return stamp, position, velocity, effort
+        return stamp, nanoseconds >= SECOND, position, velocity, effort
 
     def _learn(self, data: bytes) -> None:
         """Take the layout of a message as that of the next ones."""
         layout = joint_state_layout(data)
-        index = joint_index(layout.texts[1:], self._joint)
+        index = joint_index(layout, self._joint)
         numbers = [
             offset + 8 * index if index is not None and index < count else None
             for offset, count in layout.arrays

@@ -31,6 +31,8 @@ class JointStates:
 
     stamp: Array
     """(n,), ns."""
+    unnormalised: Array
+    """(n,): whether the stamp has a second or more of nanoseconds."""
     malformed: Array
     """(n,): no such message; all else is without meaning there."""
     joint_found: Array
@@ -58,14 +60,16 @@ class PoseArrays:
 
 
 def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
-    """Decode messages as far as a joint is concerned; '' takes the only joint of a message."""
+    """Decode messages as far as a joint is concerned, which `joint_index` looks up."""
     count = len(messages)
-    stamp, malformed = np.zeros(count, np.int64), np.ones(count, bool)
-    joint_found, present = np.zeros(count, bool), np.zeros((count, 3), bool)
-    values = np.full((count, 3), np.nan)
+    stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
+    malformed, joint_found = np.ones(count, bool), np.zeros(count, bool)
+    present, values = np.zeros((count, 3), bool), np.full((count, 3), np.nan)
     for rows, layout, table in _tables(messages, joint_state_layout):
-        stamp[rows], malformed[rows] = _stamps(table, layout)
-        index = joint_index(layout.texts[1:], joint.encode())
+        malformed[rows] = False
+        stamp[rows], nanoseconds = _stamps(table, layout)
+        unnormalised[rows] = nanoseconds >= SECOND
+        index = joint_index(layout, joint.encode())
         if index is None:
             continue
         joint_found[rows] = True
@@ -73,7 +77,7 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
             if index < size:
                 present[rows, field] = True
                 values[rows, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
-    return JointStates(stamp, malformed, joint_found, present, values)
+    return JointStates(stamp, unnormalised, malformed, joint_found, present, values)
 
 
 def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:
@@ -86,7 +90,8 @@ def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseAr
         offset, size = layout.arrays[0]
         if size != numbers:
             continue
-        stamp[rows], malformed[rows] = _stamps(table, layout)
+        malformed[rows] = False
+        stamp[rows], _ = _stamps(table, layout)
         poses[rows] = _doubles(table, layout, offset, size)
         if layout.texts[0] not in frame_ids:
             frame_ids.append(layout.texts[0])
@@ -125,11 +130,11 @@ def _tables(
 
 
 def _stamps(table: Array, layout: Layout) -> tuple[Array, Array]:
-    """The stamps in ns, and whether they are malformed."""
+    """The stamps in ns, and their part that is given in nanoseconds."""
     words = np.ascontiguousarray(table[:, STAMP_OFFSET : STAMP_OFFSET + 8])
     seconds = words.view(f'{layout.order}i4')[:, 0].astype(np.int64)
     nanoseconds = words.view(f'{layout.order}u4')[:, 1]
-    return seconds * SECOND + nanoseconds, nanoseconds >= SECOND
+    return seconds * SECOND + nanoseconds, nanoseconds
 
 
 def _doubles(table: Array, layout: Layout, offset: int, count: int) -> Array:

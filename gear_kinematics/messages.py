@@ -3,6 +3,11 @@
 Both start with a std_msgs/Header. CDR (XCDR version 1, as ROS 2 writes it): four bytes of
 encapsulation, the second of which tells the byte order; then the fields, each aligned to its
 size as counted from behind the encapsulation.
+
+Whatever rclpy's `deserialize_message` takes (Fast CDR 2.2) is a message here, with the same
+content: so the encapsulations of XCDR version 2 and of parameter lists change the alignment at
+most, a string may lack its terminating zero or be of length 0, as micro-ROS writes what is unset,
+and it ends at its first zero; bytes behind the message are ignored.
 """
 
 import struct
@@ -12,9 +17,16 @@ from typing import NamedTuple
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # behind the encapsulation
-_LITTLE_ENDIAN, _BIG_ENDIAN = b'\x00\x01', b'\x00\x00'
 STAMP = struct.Struct('<iI')
-_MAX_LEFT_OVER = 15  # bytes: DDS fills up to four, rclpy's serialize_message by up to twelve
+LATEST = 2**31 * SECOND - 1
+"""ns: beyond it a stamp's seconds do not fit into their 32 bits."""
+_LITTLE_ENDIAN = b'\x00\x01'
+_ENCAPSULATIONS = {
+    bytes((0, kind + little)): ('><'[little], alignment)
+    for kind, alignment in ((0, 8), (2, 8), (6, 4), (8, 4), (10, 4))
+    for little in (0, 1)
+}
+"""Byte order and alignment of float64, by the first two bytes: those that Fast CDR knows."""
 
 
 class MalformedMessageError(ValueError):
@@ -57,28 +69,14 @@ class Layout(NamedTuple):
     """Spans (start, end) of the bytes that make the layout: encapsulation, lengths, strings."""
 
     def stamp(self, data: bytes) -> int:
-        """Give the header's stamp, ns.
-
-        Raises:
-            MalformedMessageError: if it is none.
-        """
-        return stamp_from(*struct.unpack_from(self.order + 'iI', data, STAMP_OFFSET))
+        """Give the header's stamp, ns."""
+        seconds, nanoseconds = struct.unpack_from(self.order + 'iI', data, STAMP_OFFSET)
+        return int(seconds) * SECOND + int(nanoseconds)
 
     def numbers(self, data: bytes, array: int) -> tuple[float, ...]:
         """Give the numbers of one array."""
         offset, count = self.arrays[array]
         return struct.unpack_from(f'{self.order}{count}d', data, offset)
-
-
-def stamp_from(seconds: int, nanoseconds: int) -> int:
-    """Give a stamp in ns.
-
-    Raises:
-        MalformedMessageError: if it is none.
-    """
-    if nanoseconds >= SECOND:
-        raise MalformedMessageError('a stamp has more than a second of nanoseconds')
-    return seconds * SECOND + nanoseconds
 
 
 def decode_joint_state(data: bytes) -> JointState:
@@ -92,8 +90,18 @@ def decode_joint_state(data: bytes) -> JointState:
     return JointState(layout.stamp(data), layout.texts[1:], *arrays)
 
 
-def joint_index(names: Sequence[bytes], joint: bytes) -> int | None:
-    """Where a joint is among the names of a message; b'' takes the only one. None: nowhere."""
+def joint_index(layout: Layout, joint: bytes) -> int | None:
+    """Where a joint is in the arrays of a JointState. None: nowhere.
+
+    Args:
+        layout: of the message.
+        joint: its name; b'' takes the only joint. Where no joint has a name, as in messages of
+            many drivers on micro-ROS, each goes by its index: b'0', b'1', ...
+    """
+    _, *names = layout.texts
+    if not any(names):
+        _, positions = layout.arrays[0]
+        names = [b'%d' % index for index in range(len(names) or positions)]
     if joint:
         return names.index(joint) if joint in names else None
     return 0 if len(names) == 1 else None
@@ -145,12 +153,9 @@ class _Reader:
         self._texts: list[bytes] = []
         self._arrays: list[tuple[int, int]] = []
         self._fixed = [(0, 2)]
-        if data[:2] == _LITTLE_ENDIAN:
-            self._order = '<'
-        elif data[:2] == _BIG_ENDIAN:
-            self._order = '>'
-        else:
+        if data[:2] not in _ENCAPSULATIONS:
             raise MalformedMessageError('no CDR encapsulation')
+        self._order, self._alignment = _ENCAPSULATIONS[data[:2]]
 
     def count(self, item_size: int) -> int:
         start = self._offset + -self._offset % 4
@@ -167,27 +172,25 @@ class _Reader:
     def string(self) -> None:
         size = self.count(1)
         start, end = self._offset, self._offset + size
-        text = self._data[start:end]
-        if not text.endswith(b'\0'):
-            raise MalformedMessageError('a string does not end')
-        self._texts.append(text[:-1])
+        self._texts.append(self._data[start:end].partition(b'\0')[0])
         self._fixed[-1] = (self._fixed[-1][0], end)  # together with its length
         self._offset = end
 
     def doubles(self, count: int) -> None:
         if count:  # an empty array has not even the padding
-            self._offset += -(self._offset - STAMP_OFFSET) % 8
+            self._offset += -(self._offset - STAMP_OFFSET) % self._alignment
         self._arrays.append((self._offset, count))
         self._offset += 8 * count
         if self._offset > len(self._data):
             raise MalformedMessageError('the message is cut off')
 
     def layout(self) -> Layout:
-        size = len(self._data)
-        if size - self._offset > _MAX_LEFT_OVER:
-            raise MalformedMessageError('bytes are left over')
         return Layout(
-            self._order, size, tuple(self._texts), tuple(self._arrays), tuple(self._fixed)
+            self._order,
+            len(self._data),
+            tuple(self._texts),
+            tuple(self._arrays),
+            tuple(self._fixed),
         )
 
 

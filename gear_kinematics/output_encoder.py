@@ -76,7 +76,7 @@ class OutputEncoder:
         """
         self.received += 1
         try:
-            stamp, position, _, _ = self._reader.read(data)
+            stamp, _, position, *_ = self._reader.read(data)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise

@@ -69,7 +69,10 @@ PARAMETERS: Mapping[str, Parameter] = {
     'eccentricity': Parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True),
     'module': Parameter('Module of the teeth, m; no kinematics', 1e-6, 0.1, read_only=True),
     'branches': Parameter('Names of the branches of transmission', read_only=True),
-    'rotor_joint': Parameter("Joint to look up in rotor_state; '' takes the only one"),
+    'rotor_joint': Parameter(
+        "Joint to look up in rotor_state, or its index where no joint has a name; '' takes the "
+        'only one'
+    ),
     'rotor_direction': Parameter('1, or -1 where the encoder counts backwards', -1, 1, step=2),
     'rotor_zero': Parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15),
     'rotor_encoder': Parameter(
@@ -84,7 +87,10 @@ PARAMETERS: Mapping[str, Parameter] = {
     ),
     'input_timeout': Parameter('Silence after which diagnostics say ERROR, s', 1e-3, 1e6),
     'output_joint': Parameter('Name of the output shaft in output_state and the URDF'),
-    'output_encoder_joint': Parameter("Joint to look up in output_encoder; '' takes the only one"),
+    'output_encoder_joint': Parameter(
+        "Joint to look up in output_encoder, or its index where no joint has a name; '' takes the "
+        'only one'
+    ),
     'output_encoder_direction': Parameter(
         '1, or -1 where the encoder at the output counts backwards', -1, 1, step=2
     ),

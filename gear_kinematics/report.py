@@ -114,6 +114,8 @@ class InputReport:
     """By cause."""
     duplicates: int = 0
     zero_stamps: int = 0
+    unnormalised_stamps: int = 0
+    """Stamps with a second or more of nanoseconds; they are read as the time that they mean."""
     resets: int = 0
     first_stamp: int | None = None
     rate: float = 0.0

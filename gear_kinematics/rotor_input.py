@@ -18,6 +18,7 @@ from gear_kinematics.joint_input import (
     POSITION_MISSING,
     POSITION_NOT_FINITE,
     POSITION_TOO_LARGE,
+    STAMP_OUT_OF_RANGE,
     JointReader,
     RejectedInputError,
     Settings,
@@ -25,6 +26,7 @@ from gear_kinematics.joint_input import (
 from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.message_batches import decode_joint_states
+from gear_kinematics.messages import LATEST
 
 Array = NDArray[Any]
 
@@ -94,6 +96,8 @@ class RotorInput:
         self.rejected: Counter[str] = Counter()
         self.duplicates = 0
         self.zero_stamps = 0
+        self.unnormalised_stamps = 0
+        """Stamps with a second or more of nanoseconds; samples have the time that they mean."""
         self.resets = 0
         self.last: RotorSample | None = None
         self._settings = settings
@@ -145,7 +149,8 @@ class RotorInput:
         """
         self.received += 1
         try:
-            stamp, position, velocity, effort = self._reader.read(data)
+            stamp, unnormalised, position, velocity, effort = self._reader.read(data)
+            self.unnormalised_stamps += unnormalised
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
@@ -172,6 +177,7 @@ class RotorInput:
         # In the order in which `accept` comes upon them.
         for faulty, cause in (
             (states.malformed, MALFORMED),
+            (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
             (~states.joint_found, JOINT_MISSING),
             (~states.present[:, 0], POSITION_MISSING),
             (~np.isfinite(states.values[:, 0]), POSITION_NOT_FINITE),
@@ -180,6 +186,7 @@ class RotorInput:
             if count := int(np.count_nonzero(faulty & usable)):
                 self.rejected[cause] += count
             usable &= ~faulty
+        self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
         stamps, values = states.stamp[usable], states.values[usable]
         values[~(np.abs(values) <= GREATEST)] = np.nan
         clock = np.asarray(received, np.int64)[usable]

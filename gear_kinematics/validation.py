@@ -325,3 +325,8 @@ def _health_findings(rotor: InputReport) -> Iterable[str]:
             f'{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped their '
             'outputs itself, and they cannot be matched'
         )
+    if rotor.unnormalised_stamps:
+        yield (
+            f'{rotor.unnormalised_stamps} stamps of {rotor.topic} have a second or more of '
+            'nanoseconds: the node stamps outputs with the same time, normalised'
+        )

@@ -100,6 +100,7 @@ FAILING = replace(
         rejected={'joint missing': 3, 'position not finite': 2},
         duplicates=1,
         zero_stamps=1,
+        unnormalised_stamps=7,
         resets=1,
         gaps=2,
         jumps=1,

@@ -1,6 +1,7 @@
 """The report on the rotor input: levels, messages and values, at times of the test's own."""
 
 import math
+import struct
 from dataclasses import replace
 
 import pytest
@@ -48,6 +49,10 @@ class Bench:
 
 def good(stamp=1, position=1.0) -> bytes:
     return rotor_bytes(stamp, position=[position])
+
+
+def unnormalised(seconds, nanoseconds) -> bytes:
+    return good()[:4] + struct.pack('<iI', seconds, nanoseconds) + good()[12:]
 
 
 BAD = rotor_bytes(1, position=[math.nan])
@@ -188,22 +193,26 @@ def test_values_count_what_happened(bench):
         good(SECOND),  # out of order
         good(20 * SECOND),
         good(5 * SECOND),  # reset
+        unnormalised(5, SECOND + 1),
+        rotor_bytes(6 * SECOND, position=[1e17]),
         BAD,
         b'garbage',
     )
     values = bench.report(START + 1.25).values
     assert values == {
-        'rate (Hz)': '6.4',  # 8 messages in 1.25 s
-        'received': '8',
-        'published': '5',
+        'rate (Hz)': '8.0',  # 10 messages in 1.25 s
+        'received': '10',
+        'published': '6',
         'rejected: not a JointState': '1',
         'rejected: out of order': '1',
         'rejected: position not finite': '1',
+        'rejected: position too large': '1',
         'lost messages': '0',
         'not sent': '0',
         'drivers': '0',
         'duplicate stamps': '1',
         'zero stamps': '1',
+        'unnormalised stamps': '1',
         'clock resets': '1',
         'age of last input (s)': '0.250',
         'referenced': 'true',

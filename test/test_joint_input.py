@@ -1,19 +1,22 @@
 """One joint of messages of any layout, against the decoder that knows no layout before."""
 
 import math
+import struct
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from live import rotor_bytes
+from live import SECOND, rotor_bytes
+from wire import micro_ros_bytes
 
 from gear_kinematics.joint_input import GREATEST, JointReader, RejectedInputError
 from gear_kinematics.messages import MalformedMessageError, decode_joint_state
 
-names = st.sampled_from(['rotor', 'wheel', 'm1', ''])
-doubles = st.lists(
-    st.floats() | st.sampled_from([1e300, -1.0000000000000002e300, math.nan]), max_size=4
-)
+LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
+
+names = st.sampled_from(['rotor', 'wheel', 'm1', '', '0', '1'])
+bounds = [1e300, -1.0000000000000002e300, math.nan, LARGEST, -math.nextafter(LARGEST, math.inf)]
+doubles = st.lists(st.floats() | st.sampled_from(bounds), max_size=4)
 messages = st.builds(
     dict,
     stamp=st.integers(-(2**31) * 10**9, 2**31 * 10**9 - 1),
@@ -42,24 +45,28 @@ def expected(data, joint):
         message = decode_joint_state(data)
     except MalformedMessageError:
         return 'not a JointState'
-    found = [
-        k
-        for k, name in enumerate(message.names)
-        if (name == joint.encode() if joint else len(message.names) == 1)
-    ]
+    stamp, order = message.stamp, '<' if data[1] & 1 else '>'
+    if stamp >= 2**31 * SECOND:
+        return 'stamp out of range'
+    joints = [name.decode(errors='replace') for name in message.names]
+    if not any(joints):
+        joints = [str(k) for k in range(len(joints) or len(message.position))]
+    found = [k for k, name in enumerate(joints) if (name == joint if joint else len(joints) == 1)]
     if not found:
         return 'joint missing'
     if found[0] >= len(message.position):
         return 'position missing'
-    values = [
-        values[found[0]]
-        if found[0] < len(values)
-        and math.isfinite(values[found[0]])
-        and abs(values[found[0]]) <= GREATEST
-        else None
+    position, *rates = (
+        values[found[0]] if found[0] < len(values) else None
         for values in (message.position, message.velocity, message.effort)
-    ]
-    return 'position not finite' if values[0] is None else (message.stamp, *values)
+    )
+    if not math.isfinite(position):
+        return 'position not finite'
+    if abs(position) > LARGEST:
+        return 'position too large'
+    rates = [rate if rate is not None and abs(rate) <= GREATEST else None for rate in rates]
+    (nanoseconds,) = struct.unpack_from(f'{order}I', data, 8)
+    return stamp, nanoseconds >= SECOND, position, *rates
 
 
 @given(st.lists(st.tuples(messages, st.booleans()), max_size=8), names)
@@ -85,11 +92,11 @@ def test_every_message_is_held_against_the_layout(message, joint, data):
 
 def test_reading_goes_on_after_bytes_that_are_no_message():
     reader = JointReader('rotor')
-    for data in (b'', FULL[:50], bytes(len(FULL)), FULL + bytes(64)):
-        assert reader.read(FULL) == (12_000_000_034, 2.0, 4.0, 6.0)
+    for data in (b'', FULL[:50], b'\xff' * len(FULL)):
+        assert reader.read(FULL) == (12_000_000_034, False, 2.0, 4.0, 6.0)
         with pytest.raises(RejectedInputError, match='not a JointState'):
             reader.read(data)
-    assert reader.read(FULL) == (12_000_000_034, 2.0, 4.0, 6.0)
+    assert reader.read(FULL) == (12_000_000_034, False, 2.0, 4.0, 6.0)
 
 
 def test_padding_is_passed_over():
@@ -97,8 +104,14 @@ def test_padding_is_passed_over():
     data = rotor_bytes(1, ['rotor'], [1.0], frame_id='frame')
     start = data.index(b'frame\0') + len(b'frame\0')
     reader = JointReader('rotor')
-    assert reader.read(data) == (1, 1.0, None, None)
-    assert reader.read(data[:start] + b'\x5a\xa5' + data[start + 2 :]) == (1, 1.0, None, None)
+    assert reader.read(data) == (1, False, 1.0, None, None)
+    assert reader.read(data[:start] + b'\x5a\xa5' + data[start + 2 :]) == (
+        1,
+        False,
+        1.0,
+        None,
+        None,
+    )
 
 
 def test_messages_may_have_any_size():
@@ -106,4 +119,56 @@ def test_messages_may_have_any_size():
     data = rotor_bytes(7, [f'joint_{n}' for n in range(count)], range(count))
     reader = JointReader(f'joint_{count - 1}')
     for _ in range(2):
-        assert reader.read(data) == (7, count - 1.0, None, None)
+        assert reader.read(data) == (7, False, count - 1.0, None, None)
+
+
+CHOSEN = [  # the joint, the names and number of positions of the message, the index taken
+    ('', [], 1, 0),
+    ('', [''], 1, 0),
+    ('', ['m1'], 1, 0),
+    ('', [], 2, None),
+    ('', ['', ''], 2, None),
+    ('0', [], 1, 0),
+    ('1', [], 3, 1),
+    ('2', ['', '', ''], 3, 2),
+    ('3', ['', '', ''], 3, None),
+    ('-1', ['', ''], 2, None),
+    ('01', ['', ''], 2, None),
+    ('1', ['m1', ''], 2, None),  # who names one joint names all
+    ('1', ['1', '0'], 2, 0),  # a name, where there are names
+    ('rotor', [], 1, None),
+]
+
+
+@pytest.mark.parametrize(('joint', 'names', 'count', 'index'), CHOSEN)
+@pytest.mark.parametrize('write', [rotor_bytes, micro_ros_bytes])
+def test_joint_without_a_name_goes_by_its_index(joint, names, count, index, write):
+    position = [10.0 + k for k in range(count)]
+    data = write(1, names, position, position)
+    if index is None:
+        with pytest.raises(RejectedInputError, match='joint missing'):
+            JointReader(joint).read(data)
+    else:
+        assert JointReader(joint).read(data) == (1, False, 10.0 + index, 10.0 + index, None)
+
+
+@pytest.mark.parametrize(
+    ('seconds', 'nanoseconds', 'stamp'),
+    [
+        (12, 10**9 - 1, 12_999_999_999),
+        (12, 10**9, 13 * SECOND),
+        (1732231175, 3_158_772_736, 1_732_231_178_158_772_736),
+        (2**31 - 2, 10**9 + 7, (2**31 - 1) * SECOND + 7),
+        (-1, 2**32 - 1, 3_294_967_295),
+    ],
+)
+def test_stamp_is_the_time_that_its_parts_mean(seconds, nanoseconds, stamp):
+    data = FULL[:4] + struct.pack('<iI', seconds, nanoseconds) + FULL[12:]
+    assert JointReader('rotor').read(data) == (stamp, nanoseconds >= 10**9, 2.0, 4.0, 6.0)
+
+
+@pytest.mark.parametrize('nanoseconds', [10**9, 2**32 - 1])
+def test_stamp_that_cannot_be_normalised_is_out_of_range(nanoseconds):
+    data = FULL[:4] + struct.pack('<iI', 2**31 - 1, nanoseconds) + FULL[12:]
+    with pytest.raises(RejectedInputError, match='stamp out of range'):
+        JointReader('rotor').read(data)

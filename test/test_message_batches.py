@@ -1,12 +1,14 @@
 """Batches of messages say what the messages say one by one."""
 
 import math
+import struct
 
 import numpy as np
 import replaying
 from hypothesis import given
 from hypothesis import strategies as st
 from live import rotor_bytes
+from wire import micro_ros_bytes
 
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.message_batches import decode_joint_states, decode_pose_arrays
@@ -19,15 +21,32 @@ from gear_kinematics.messages import (
 from gear_kinematics.rotor_input import InputSettings, RotorInput
 
 SECOND = 1_000_000_000
-numbers = st.lists(st.floats(width=64), max_size=3)
-joint_states = st.builds(
-    rotor_bytes,
+LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
+bounds = st.sampled_from([LARGEST, math.nextafter(LARGEST, math.inf), -1e300])
+numbers = st.lists(st.floats(width=64) | bounds, max_size=3)
+fields = (
     st.integers(0, 50).map(lambda k: k * SECOND // 10),
-    st.lists(st.sampled_from(['rotor', 'brake', 'x']), max_size=3),
+    st.lists(st.sampled_from(['rotor', 'brake', 'x']), max_size=3) | st.just(['', '']),
     numbers,
     numbers,
     numbers,
-    little_endian=st.booleans(),
+)
+
+
+def restamped(data: bytes, seconds: int, nanoseconds: int) -> bytes:
+    """Write a stamp over another, whether or not it is normalised."""
+    return data[:4] + struct.pack('<iI' if data[1] else '>iI', seconds, nanoseconds) + data[12:]
+
+
+joint_states = (
+    st.builds(rotor_bytes, *fields, little_endian=st.booleans())
+    | st.builds(micro_ros_bytes, *fields)
+    | st.builds(
+        restamped,
+        st.builds(rotor_bytes, *fields, little_endian=st.booleans()),
+        st.integers(-4, 5) | st.just(2**31 - 1),
+        st.sampled_from([0, SECOND - 1, SECOND, 2 * SECOND + 1, 2**32 - 1]),
+    )
 )
 messages = st.lists(
     st.one_of(joint_states, joint_states, joint_states, st.binary(max_size=60)), max_size=30
@@ -38,7 +57,7 @@ def same(left: float, right: float) -> bool:
     return left == right or (math.isnan(left) and math.isnan(right))
 
 
-@given(messages, st.sampled_from(['rotor', '']))
+@given(messages, st.sampled_from(['rotor', '', '1']))
 def test_joint_states_are_decoded_as_one_by_one(messages, joint):
     batch = decode_joint_states(messages, joint)
     for row, data in enumerate(messages):
@@ -49,7 +68,12 @@ def test_joint_states_are_decoded_as_one_by_one(messages, joint):
             continue
         assert not batch.malformed[row]
         assert batch.stamp[row] == message.stamp
-        names = [name.decode() for name in message.names]
+        order = '<' if data[1] & 1 else '>'
+        (nanoseconds,) = struct.unpack_from(f'{order}I', data, 8)
+        assert batch.unnormalised[row] == (nanoseconds >= SECOND)
+        names = [name.decode(errors='replace') for name in message.names]
+        if not any(names):
+            names = [str(k) for k in range(len(names) or len(message.position))]
         if joint:
             found = joint in names
             index = names.index(joint) if found else -1
@@ -101,12 +125,13 @@ def test_padding_that_is_left_to_chance_makes_no_layout():
 
 @given(
     st.lists(messages, max_size=4),
+    st.sampled_from(['rotor', '1']),
     st.sampled_from(['multi_turn', 'single_turn']),
     st.sampled_from([1, -1]),
-    st.floats(-10.0, 10.0),
+    st.floats(-10.0, 10.0) | st.floats(-1e15, 1e15),
 )
-def test_batches_of_input_are_accepted_as_one_by_one(batches, encoder, direction, zero):
-    settings = InputSettings('rotor', direction, zero, encoder, 650.0, 6500.0)
+def test_batches_of_input_are_accepted_as_one_by_one(batches, joint, encoder, direction, zero):
+    settings = InputSettings(joint, direction, zero, encoder, 650.0, 6500.0)
     one_by_one, at_once = RotorInput(settings), RotorInput(settings)
     for batch in batches:
         clock = [7 * SECOND + k for k in range(len(batch))]
@@ -125,6 +150,9 @@ def test_batches_of_input_are_accepted_as_one_by_one(batches, encoder, direction
                 samples.velocity[k], math.nan if sample.velocity is None else sample.velocity
             )
             assert same(samples.effort[k], math.nan if sample.effort is None else sample.effort)
-        for account in ('received', 'rejected', 'duplicates', 'zero_stamps', 'resets', 'last'):
+        for account in (
+            'received', 'rejected', 'duplicates', 'zero_stamps', 'unnormalised_stamps', 'resets',
+            'last',
+        ):  # fmt: skip
             assert getattr(at_once, account) == getattr(one_by_one, account)
         assert at_once.referenced == one_by_one.referenced

@@ -4,6 +4,7 @@ import json
 import math
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
@@ -20,6 +21,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
+from wire import micro_ros_bytes
 
 from gear_kinematics.live_node import running_node
 from gear_kinematics.parameters import default_config
@@ -235,6 +237,7 @@ REJECTED = {
     'position missing': ('position missing', rotor_state(START)),
     'position array too short': ('position missing', rotor_state(START, ['a', 'rotor'], [1.0])),
     'position NaN': ('position not finite', rotor_state(START, position=[math.nan])),
+    'position too large': ('position too large', rotor_state(START, position=[1e17])),
     'position infinite': ('position not finite', rotor_state(START, position=[-math.inf])),
     'garbage': ('not a JointState', b'\xde\xad\xbe\xef' * 40),
     'only an encapsulation': ('not a JointState', b'\0\1\0\0'),
@@ -343,12 +346,32 @@ def test_zero_stamp_becomes_the_clock_and_is_counted(start):
     assert peer.status()[2]['zero stamps'] == '1'
 
 
+def test_unnormalised_stamp_is_published_normalised_and_counted(start):
+    peer = start(*PATIENT).peer
+    data = rotor_bytes(START, position=[1.5])
+    peer.send(data[:4] + struct.pack('<iI', 100, 3_000_000_007) + data[12:])
+    [output] = peer.outputs(1)
+    assert_motion(output, 1.5)
+    stamps = {(m.header.stamp.sec, m.header.stamp.nanosec) for m in output}
+    assert stamps == {(103, 7)}
+    level, _, values = peer.status()
+    assert (level, values['unnormalised stamps']) == (OK, '1')
+
+
+def test_driver_on_micro_ros_that_names_nothing_is_answered(start):
+    peer = start(*parameter('rotor_joint', '')).peer
+    peer.send(micro_ros_bytes(START, [''], [1.5], [3.8]))
+    [output] = peer.outputs(1)
+    assert_motion(output, 1.5)
+    assert list(output[0].velocity) == [3.8 / -19.0]
+
+
 def test_extreme_numbers_do_not_end_the_node(start):
     peer = start(*parameter('rotor_encoder', 'single_turn')).peer
     extremes = [
         rotor_state(START, position=[1.0], velocity=[0.0]),
         rotor_state(START + SECOND, position=[1.0], velocity=[1e200], effort=[1.7e308]),
-        rotor_state(START + 2 * SECOND, position=[1e300], velocity=[-1.7e308]),
+        rotor_state(START + 2 * SECOND, position=[1e16], velocity=[-1.7e308]),
     ]
     peer.send(*extremes, rotor_state(START + 3 * SECOND, position=[0.5]))
     peer.wait_until(

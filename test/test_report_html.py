@@ -117,7 +117,7 @@ def test_tables_show_what_is_bad():
         "//*[self::td or self::dd][contains(@class, 'bad') or contains(@class, 'notable')]"
     )
     notable = [cell.text for cell in tree.xpath("//dd[contains(@class, 'notable')]")]
-    assert notable == ['5', '3', '2', '1', '1', '1', '2', '1', '4', 'no']
+    assert notable == ['5', '3', '2', '1', '1', '7', '1', '2', '1', '4', 'no']
 
 
 def test_damage_faults_and_findings_are_told():

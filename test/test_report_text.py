@@ -73,6 +73,7 @@ def test_pipe_tells_the_health_of_the_input():
         ': rejected, position not finite: 2',
         ': duplicates: 1',
         ': zero stamps: 1',
+        ': unnormalised stamps: 7',
         ': resets: 1',
         ': rate: 1000 Hz',
         ': duration: 3.999 s',

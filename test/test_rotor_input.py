@@ -1,6 +1,8 @@
 """What the rotor input makes of messages, row by row of the contract's table of bad input."""
 
 import math
+import struct
+from contextlib import nullcontext
 from dataclasses import replace
 
 import oracle
@@ -8,6 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
+from wire import micro_ros_bytes
 
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.rotor_input import InputSettings, RotorInput
@@ -25,6 +28,7 @@ NOW = 77 * SECOND + 7
 START = 100 * SECOND
 TURN = 2.0 * math.pi
 QUARTER = 0.5 * math.pi
+LARGEST = 2**51 * TURN  # rad: beyond it a position is too large
 
 
 def clock() -> int:
@@ -63,6 +67,9 @@ REJECTED = [
     ('position not finite', {'position': [math.inf]}),
     ('position not finite', {'position': [-math.inf]}),
     ('position not finite', {'names': ['a', 'rotor'], 'position': [1.0, math.nan]}),
+    ('position too large', {'position': [math.nextafter(LARGEST, math.inf)]}),
+    ('position too large', {'position': [-1e17]}),
+    ('position too large', {'position': [1.7e308]}),
 ]
 
 
@@ -115,17 +122,28 @@ def test_joint_name_may_be_any_text():
     assert rotor_input.accept(data, no_clock).position == (0, 1.5)
 
 
-def test_empty_rotor_joint_takes_the_only_joint():
+@pytest.mark.parametrize('names', [[], [''], ['anything']])
+@pytest.mark.parametrize('write', [rotor_bytes, micro_ros_bytes])
+def test_empty_rotor_joint_takes_the_only_joint(names, write):
     rotor_input = RotorInput(replace(SETTINGS, rotor_joint=''))
-    data = rotor_bytes(START, ['anything'], [1.5], [2.5])
+    data = write(START, names, [1.5], [2.5])
     assert rotor_input.accept(data, no_clock) == (START, (0, 1.5), 2.5, None)
 
 
-@pytest.mark.parametrize('names', [[], ['rotor', 'other'], ['', '']])
-def test_empty_rotor_joint_with_none_or_many_is_rejected(names):
+@pytest.mark.parametrize(
+    ('names', 'position'), [([], []), ([], [1.0, 2.0]), (['rotor', 'other'], [1.0, 2.0])]
+)
+def test_empty_rotor_joint_with_none_or_many_is_rejected(names, position):
     rotor_input = RotorInput(replace(SETTINGS, rotor_joint=''))
     with pytest.raises(RejectedInputError, match=r'^joint missing$'):
-        rotor_input.accept(rotor_bytes(START, names, [1.0] * len(names)), no_clock)
+        rotor_input.accept(rotor_bytes(START, names, position), no_clock)
+
+
+@pytest.mark.parametrize('names', [[], ['', '', '']])
+def test_joint_without_a_name_is_looked_up_by_its_index(names):
+    rotor_input = RotorInput(replace(SETTINGS, rotor_joint='2'))
+    data = rotor_bytes(START, names, [7.0, 8.0, 1.5], [7.0, 8.0, 2.5])
+    assert rotor_input.accept(data, no_clock) == (START, (0, 1.5), 2.5, None)
 
 
 @pytest.mark.parametrize(
@@ -162,6 +180,39 @@ def test_zero_stamp_is_replaced_by_the_clock_and_counted(rotor_input):
 def test_any_other_stamp_is_kept_exactly(rotor_input, stamp):
     assert accept(rotor_input, stamp, 1.0).stamp == stamp
     assert rotor_input.zero_stamps == 0
+
+
+def test_unnormalised_stamp_is_normalised_and_counted(rotor_input):
+    def restamped(seconds, nanoseconds):
+        data = rotor_bytes(START, position=[1.0])
+        return data[:4] + struct.pack('<iI', seconds, nanoseconds) + data[12:]
+
+    assert rotor_input.accept(restamped(100, 3_158_772_736), no_clock).stamp == 103_158_772_736
+    assert rotor_input.unnormalised_stamps == 1
+    # The order is that of the times that stamps mean, not that of their seconds.
+    with pytest.raises(RejectedInputError, match=r'^out of order$'):
+        rotor_input.accept(restamped(103, 0), no_clock)
+    assert rotor_input.accept(restamped(102, 2 * SECOND), no_clock).stamp == 104 * SECOND
+    assert rotor_input.unnormalised_stamps == 2
+    with pytest.raises(RejectedInputError, match=r'^stamp out of range$'):
+        rotor_input.accept(restamped(2**31 - 1, SECOND), no_clock)
+    assert (rotor_input.unnormalised_stamps, rotor_input.zero_stamps) == (2, 0)
+    assert rotor_input.rejected == {'out of order': 1, 'stamp out of range': 1}
+
+
+@pytest.mark.parametrize('position', [LARGEST, -LARGEST, 1e15 + 0.5])
+def test_position_is_exact_up_to_the_largest(rotor_input, position):
+    sample = accept(rotor_input, START, position)
+    assert angle_error(sample, oracle.rotor_angle_of(position)) < 1e-15
+
+
+def test_mostly_rejected_is_more_than_half(rotor_input):
+    assert not rotor_input.mostly_rejected
+    for rejected, mostly in ((False, False), (True, False), (True, True), (False, False)):
+        stamp = START + rotor_input.received
+        with pytest.raises(RejectedInputError) if rejected else nullcontext():
+            accept(rotor_input, stamp, math.nan if rejected else 1.0)
+        assert rotor_input.mostly_rejected is mostly
 
 
 def test_duplicate_is_taken_and_counted(rotor_input):
