@@ -27,6 +27,8 @@ class ComputeResult:
     """Written on each output topic."""
     rejected: Mapping[str, int]
     """Rotor messages that call for no output, by cause."""
+    mostly_rejected: bool
+    """Whether more rotor messages were rejected than accepted."""
     zero_stamps: int
     """Rotor messages without a stamp: their outputs have the time of their reception."""
     copied: int
@@ -108,6 +110,7 @@ def compute(
         rotor_input.received,
         computed,
         dict(rotor_input.rejected),
+        rotor_input.mostly_rejected,
         rotor_input.zero_stamps,
         copied,
     )

@@ -134,6 +134,11 @@ class RotorInput:
         return self._turns.unknown_gaps
 
     @property
+    def mostly_rejected(self) -> bool:
+        """Whether more messages were rejected than accepted."""
+        return 2 * self.rejected.total() > self.received
+
+    @property
     def _stretch(self) -> int:
         return self._turns.unknown_gaps + self.resets
 

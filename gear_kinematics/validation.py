@@ -172,7 +172,7 @@ class Validator:
             error = 'no usable rotor states in it'
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
-        passed = all(topic.passed for topic in topics)
+        passed = all(topic.passed for topic in topics) and not self._input.mostly_rejected
         return BagReport(
             bag=bag,
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
@@ -294,6 +294,13 @@ class Validator:
         return trial
 
     def _diagnoses(self) -> Iterable[str]:
+        if self._input.mostly_rejected:
+            rejected = self._input.rejected
+            causes = ', '.join(f'{cause} {count}' for cause, count in rejected.items())
+            yield (
+                f'{rejected.total()} of {self._input.received} messages of {self._topics.rotor} '
+                f'were rejected ({causes}): the rest is too little to pass'
+            )
         if not self.output.position.passed:
             found = diagnose(self._mechanism, self.output.fit, self._tolerances.angle)
             if found:

@@ -18,6 +18,7 @@ import jsonschema
 import pytest
 import replaying
 from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
+from live import rotor_bytes
 
 from gear_kinematics.bag import Bag, BagWriter
 from gear_kinematics.cli import main
@@ -560,6 +561,22 @@ def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
     namespace = '/arm' if name == 'namespaced' else ''
     for topic in ('output_state', 'body_poses'):
         assert found[f'{namespace}/{topic}: compared'] == str(SAMPLES)
+
+
+@pytest.mark.parametrize(('bad', 'code'), [(0, 0), (5, 0), (6, 1)])
+def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code, tmp_path):
+    with BagWriter(source := tmp_path / 'source') as writer:
+        writer.add_topic('/rotor_state', JOINT_STATE)
+        for k in range(10):
+            position = 1e17 if k < bad else 1.0
+            writer.write('/rotor_state', k, rotor_bytes(k + 1, position=[position]))
+    done = gearkin('compute', source, tmp_path / 'out')
+    assert done.returncode == code
+    assert f'{10 - bad} outputs for 10 rotor states' in done.stdout
+    complaint = f'gearkin: {source}: most messages on /rotor_state were rejected\n'
+    assert done.stderr == (complaint if code else '')
+    with Bag(tmp_path / 'out') as bag:
+        assert bag.message_count == 10 + 2 * (10 - bad)
 
 
 def test_compute_uses_the_config_beside_the_bag(tmp_path):

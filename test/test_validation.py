@@ -2,6 +2,7 @@
 
 import math
 import struct
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 
@@ -594,6 +595,49 @@ def test_inputs_without_stamps_are_named(recorded, config):
     report = validate(changed, config)
     assert report.rotor.zero_stamps == 1
     assert any('no stamp' in finding for finding in report.findings)
+
+
+def restamped(data: bytes, seconds: int = 1) -> bytes:
+    """Write the time of the stamp with so many seconds among its nanoseconds."""
+    sec, nanosec = struct.unpack_from('<iI', data, 4)
+    return data[:4] + struct.pack('<iI', sec - seconds, nanosec + seconds * SECOND) + data[12:]
+
+
+def test_unnormalised_stamps_match_their_outputs_and_are_named(recorded, config):
+    changed = [
+        (topic, received, restamped(data) if topic == ROTOR else data)
+        for topic, received, data in recorded
+    ]
+    report = validate(changed, config)
+    assert report.verdict == Verdict.PASS
+    assert report.rotor.unnormalised_stamps == report.rotor.valid == 300
+    assert [topic.compared for topic in report.topics] == [300, 300]
+    assert any('300 stamps of /rotor_state' in finding for finding in report.findings)
+
+
+@pytest.mark.parametrize(
+    ('bad', 'verdict'),
+    [(150, Verdict.PASS), (151, Verdict.FAIL), (299, Verdict.FAIL), (300, Verdict.UNUSABLE)],
+)
+def test_a_recording_of_which_most_is_rejected_does_not_pass(recorded, config, bad, verdict):
+    """Though all that is left is as it should be: a node answers no message that it rejects."""
+    wrong = set(np.random.default_rng(0).permutation(300)[:bad].tolist())
+    counts, changed = Counter(), []
+    for topic, received, data in recorded:
+        number, counts[topic] = counts[topic], counts[topic] + 1
+        if number not in wrong:
+            changed.append((topic, received, data))
+        elif topic == ROTOR:
+            changed.append((topic, received, data[:-1]))
+    report = validate(changed, config)
+    assert report.rotor.rejected == {'not a JointState': bad}
+    assert [topic.missing + topic.extra for topic in report.topics] == [0, 0]
+    assert report.verdict == verdict
+    named = [finding for finding in report.findings if 'were rejected' in finding]
+    assert len(named) == (bad > 150)
+    for finding in named:
+        assert f'{bad} of 300 messages of /rotor_state' in finding
+        assert f'not a JointState {bad}' in finding
 
 
 def test_topics_may_have_other_names(recorded, config):

@@ -6,7 +6,7 @@ from pathlib import Path
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, add_topics, load_config
-from gear_kinematics.commands.output import message_progress
+from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.compute import compute
 from gear_kinematics.fleet import find_topics
 
@@ -53,4 +53,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         + (f' (rejected: {rejected})' if rejected else '')
         + f', {result.copied} other messages copied'
     )
+    if result.mostly_rejected:
+        complain(f'{options.bag}: most messages on {rotor} were rejected')
+        return ExitCode.FAILED
     return ExitCode.DONE
