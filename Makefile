@@ -20,9 +20,11 @@ help: ## Show this list
 demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and validate it
 	$(BIN)/gearkin demo
 
+# Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
+# may wait for good after that.
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest --numprocesses 2 --dist loadfile
+	$(BIN)/coverage run -m pytest --numprocesses 2 --dist loadfile --max-worker-restart 0
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 

@@ -12,6 +12,8 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
+from gear_kinematics.leaving import leave
+
 DEPTH = 100_000
 """Messages that can wait at this end of a topic: more than ever do, so that no loss is ours."""
 
@@ -30,8 +32,7 @@ def peer(name: str, arguments: list[str] | None = None) -> Iterator[Node]:
     try:
         yield node
     finally:
-        node.destroy_node()
-        rclpy.shutdown()
+        leave(node)
 
 
 def report(**values: Any) -> None:

@@ -29,6 +29,7 @@ from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import Bag, BagError, BagMessage, DamagedBagError
 from gear_kinematics.joint_input import RejectedInputError
+from gear_kinematics.leaving import leave
 from gear_kinematics.messages import JOINT_STATE, SECOND, JointStateTemplate
 from gear_kinematics.node import make_executor
 from gear_kinematics.rotor_input import InputSettings, RotorInput
@@ -288,8 +289,7 @@ def replay_node(namespace: str) -> Iterator[Node]:
     try:
         yield node
     finally:
-        node.destroy_node()
-        rclpy.try_shutdown(context=context)
+        leave(node)
 
 
 @contextmanager

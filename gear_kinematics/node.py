@@ -50,6 +50,7 @@ from gear_kinematics.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.graph import find_faults
 from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.leaving import leave
 from gear_kinematics.markers import Markers
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.output_encoder import EncoderSettings, OutputEncoder
@@ -468,8 +469,7 @@ def main(args: list[str] | None = None) -> int:
             executor.spin_until_future_complete(stopped, timeout_sec=_SPIN_TIMEOUT)
         node.wait_for_delivery(_DELIVERY_TIMEOUT)
     executor.shutdown()
-    node.destroy_node()
-    rclpy.try_shutdown()
+    leave(node)
     return 0
 
 

@@ -36,6 +36,8 @@ import pytest  # noqa: E402
 
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
 
+pytest_plugins = ['watchdog']
+
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / 'shared'
 

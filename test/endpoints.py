@@ -26,6 +26,8 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
+from gear_kinematics.leaving import leave
+
 PERIOD = SECOND // 100  # ns
 STEP = 0.3  # rad within the period
 OUTPUTS = {'output_state': JointState, 'body_poses': PoseArray}
@@ -73,8 +75,7 @@ class Endpoint:
         self._node = Node(name)
 
     def close(self) -> None:
-        self._node.destroy_node()
-        rclpy.try_shutdown()
+        leave(self._node)
 
 
 class Driver(Endpoint):

@@ -25,6 +25,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from gear_kinematics.leaving import leave
 from gear_kinematics.live_node import running_node
 
 DEADLINE = 60.0  # s: far beyond anything but a failure
@@ -100,10 +101,10 @@ class Listener:
         """Open the topics; `topics` gives those that are not at their usual place."""
         self.received: dict[str, list] = {}
         self.alive = lambda: True
-        self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node(name, context=self._context, namespace=namespace)
-        self._executor = SingleThreadedExecutor(context=self._context)
+        context = Context()
+        rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node(name, context=context, namespace=namespace)
+        self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
         self.namespace = namespace
         self._subscriptions = [
@@ -116,8 +117,7 @@ class Listener:
     def close(self) -> None:
         """Leave."""
         self._executor.shutdown()
-        self.node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        leave(self.node)
 
     def listen(self, message_type, name, qos, topic=None) -> Subscription:
         """Keep what comes on a topic in `received[name]`."""

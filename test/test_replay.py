@@ -26,6 +26,7 @@ from sensor_msgs.msg import JointState
 
 from gear_kinematics import live_node, parameters
 from gear_kinematics.bag import Bag, BagError, BagWriter, DamagedBagError
+from gear_kinematics.leaving import leave
 from gear_kinematics.live_node import ReplayError, live_messages, replay_node
 from gear_kinematics.replay import play
 from gear_kinematics.schedule import due_messages
@@ -90,16 +91,15 @@ class Listener:
 
     def __init__(self) -> None:
         self.heard: dict[str, list[tuple[float, bytes]]] = {}
-        self._context = Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node('listener', context=self._context)
-        self._executor = SingleThreadedExecutor(context=self._context)
+        context = Context()
+        rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node('listener', context=context)
+        self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
 
     def close(self) -> None:
         self._executor.shutdown()
-        self.node.destroy_node()
-        rclpy.try_shutdown(context=self._context)
+        leave(self.node)
 
     def listen(self, name, kind=JointState) -> list[tuple[float, bytes]]:
         heard = self.heard.setdefault(name, [])
