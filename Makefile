@@ -5,6 +5,13 @@ FUZZ_SECONDS ?= 300
 VENV := .venv
 BIN := $(VENV)/bin
 PIP_INSTALL := $(BIN)/pip install --quiet --disable-pip-version-check
+PIP_LOG := $(VENV)/pip.log
+# pip fails with pages of warnings, and in the same words without a network and without a wheel.
+EXPLAIN_PIP = if grep -q 'connection broken' $(PIP_LOG); then \
+	echo 'pip cannot reach the package index: see $(PIP_LOG); is there a network?'; \
+	elif test "$$(uname -sm)" != 'Linux x86_64'; then \
+	echo "ROS has no wheels for $$(uname -sm): install ROS 2 Jazzy, then colcon build"; \
+	else tail -n 1 $(PIP_LOG); fi
 LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 	--no-emit-index-url --quiet --upgrade
 
@@ -27,6 +34,7 @@ test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with
 	$(BIN)/coverage run -m pytest --numprocesses 2 --dist loadfile --max-worker-restart 0
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
+	@echo "$$(cat .pytest_cache/v/skipped)"
 
 lint: $(VENV)/test.stamp ## Check style and format
 	$(BIN)/ruff check
@@ -66,7 +74,10 @@ clean: ## Remove everything that was generated
 $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { \
 		echo 'Python 3.11 or newer is needed: make PYTHON=python3.12' >&2; exit 1; }
+	@test -x $(BIN)/pip || $(PYTHON) -c 'import ensurepip, venv' 2> /dev/null || { \
+		echo 'Python has no ensurepip: apt install $(notdir $(PYTHON))-venv' >&2; exit 1; }
 	test -x $(BIN)/pip || $(PYTHON) -m venv --clear $(VENV)
-	$(PIP_INSTALL) --require-hashes -r $<
+	@echo 'installing $< into $(VENV)'
+	@$(PIP_INSTALL) --require-hashes -r $< 2> $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
 	$(PIP_INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@

@@ -67,8 +67,8 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            f'gear_state_publisher = {PACKAGE}.node:main',
-            f'gearkin = {PACKAGE}.cli:main',
+            f'gear_state_publisher = {PACKAGE}.programs:gear_state_publisher',
+            f'gearkin = {PACKAGE}.programs:gearkin',
         ],
     },
     zip_safe=False,

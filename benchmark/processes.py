@@ -16,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, Self
 
-NODE = ('-m', 'gear_kinematics.node')
+NODE = ('-m', 'gear_kinematics.programs')
 """What Python runs as gear_state_publisher."""
 
 _FOLDER = Path(__file__).parent

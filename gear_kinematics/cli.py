@@ -1,7 +1,6 @@
 """The program `gearkin`. Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments."""
 
 import argparse
-import signal
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
@@ -26,6 +25,7 @@ from gear_kinematics.commands import (
     validate,
 )
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
+from gear_kinematics.extras import remedy
 
 COMMANDS: dict[str, Command] = {
     'validate': validate,
@@ -56,8 +56,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every pipe has a ″
     options = _parser().parse_args(arguments)
-    # What has begun is cleared away when the process is told to end, too.
-    previous = signal.signal(signal.SIGTERM, signal.default_int_handler)
     code = ExitCode.DONE
     try:
         # What overflows shows in the results.
@@ -66,13 +64,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (ValueError, OSError, RuntimeError) as error:
         complain(error)
         code = ExitCode.UNUSABLE
+    except ImportError as error:  # of an extra, where it is used
+        complain(remedy(error))
+        code = ExitCode.UNUSABLE
     except Exception as error:  # noqa: BLE001, a traceback is for those who ask for it
         complain(unexpected(error, debug=options.debug))
         code = ExitCode.UNUSABLE
-    except KeyboardInterrupt:
-        code = ExitCode.INTERRUPTED
-    finally:
-        signal.signal(signal.SIGTERM, previous)
     return code
 
 

@@ -263,6 +263,8 @@ def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagRepo
     """Each bag with its report, or None where a process died."""
     # Forking would copy the threads of a progress bar in whatever state they are.
     context = multiprocessing.get_context('spawn')
+    # The processes begin as `python -c`, which would import modules from the current folder.
+    os.environ['PYTHONSAFEPATH'] = '1'
     others = multiprocessing.active_children()
     with concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
         try:
@@ -322,12 +324,11 @@ def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagRe
         scheduler: such as tcp://host:8786.
 
     Raises:
-        SchedulerError: if there is no such cluster, or dask is not installed.
+        SchedulerError: if there is no such cluster.
+        ModuleNotFoundError: if dask is not installed.
     """
-    try:
-        import distributed  # noqa: PLC0415, an extra
-    except ImportError as error:
-        raise SchedulerError(f'{scheduler}: dask is not installed, extra `dask`') from error
+    import distributed  # noqa: PLC0415, an extra
+
     for name in ('distributed', 'distributed.client'):  # what matters is in the reports
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:

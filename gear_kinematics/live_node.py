@@ -67,7 +67,8 @@ def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subp
         arguments: its command line, such as `--ros-args -p rotor_joint:=m1`.
         options: of `subprocess.Popen`.
     """
-    command = [sys.executable, '-m', 'gear_kinematics.node', *arguments]
+    # -P: `-m` would import modules from the current folder.
+    command = [sys.executable, '-P', '-m', 'gear_kinematics.programs', *arguments]
     process = subprocess.Popen(command, text=True, **options)  # noqa: S603  # our own node
     try:
         yield process
@@ -297,6 +298,7 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
     """A node process that nobody else is connected with, and its other end."""
     # Read by the middleware when a context begins, here and in the node's process.
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    os.environ['SKIP_DEFAULT_XML_FILE'] = '1'  # Fast DDS obeys one in the current folder
     namespace = f'/gear_kinematics_{os.getpid()}'
     with TemporaryDirectory() as folder:
         config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')

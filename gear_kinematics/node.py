@@ -1,6 +1,7 @@
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
 import os
+import re
 import signal
 import sys
 import time
@@ -61,6 +62,8 @@ from gear_kinematics.transmission_error import ErrorSample
 _MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
 _ROTOR, _ENCODER = 'rotor_state', 'output_encoder'
 _DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
+_QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
+_MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
 _SPIN_TIMEOUT = 3600.0  # s; without any, the EventsExecutor of some releases does nothing
@@ -233,6 +236,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             known = parameters.PARAMETERS.get(parameter.name)
             if known and known.choices and parameter.value not in known.choices:
                 reason = f'{parameter.name} must be one of {", ".join(known.choices)}'
+                return SetParametersResult(successful=False, reason=reason)
+            if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
+                reason = f'{parameter.name} must be between 0 and {_MAX_DEPTH}'
                 return SetParametersResult(successful=False, reason=reason)
             # The first declaration comes before the mechanism, which then checks it itself.
             if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_mechanism'):
@@ -512,7 +518,3 @@ def _stopped(executor: Executor, signals: _Pipe) -> Iterator[Future]:
         ended.set()
         os.write(signals.writer, b'\0')  # in case that there was no signal
         thread.join()
-
-
-if __name__ == '__main__':
-    sys.exit(main())

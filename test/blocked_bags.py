@@ -11,7 +11,7 @@ from pathlib import Path
 
 BAGS = Path(__file__).resolve().parents[1] / 'bags'
 DEADLINE = 60.0  # s: far beyond anything but a failure
-GEARKIN = 'import sys; from gear_kinematics.cli import main; sys.exit(main())'
+GEARKIN = 'import sys; from gear_kinematics.programs import gearkin; sys.exit(gearkin())'
 
 
 def gearkin(*arguments, code=GEARKIN, **options) -> subprocess.CompletedProcess[str]:

@@ -48,6 +48,14 @@ hypothesis.settings.register_profile(
 hypothesis.settings.load_profile('ci' if 'CI' in os.environ else 'default')
 
 
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Keep a line on what was skipped, for the end of `make test`."""
+    skipped = terminalreporter.stats.get('skipped', [])
+    reasons = sorted({report.longrepr[2].removeprefix('Skipped: ') for report in skipped})
+    line = f'{len(skipped)} tests skipped' + ''.join(f'; {reason}' for reason in reasons)
+    terminalreporter.config.cache.set('skipped', line)
+
+
 @pytest.fixture(scope='session')
 def shared_path() -> Callable[[str], Path]:
     """Give the path of recorded data beside the repository, or skip the test and say why."""

@@ -8,12 +8,12 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
+from blocked_bags import GEARKIN
 
 from gear_kinematics.cli import COMMANDS, main
 
 ROOT = Path(__file__).resolve().parents[1]
 SINGLE_TURN = str(ROOT / 'bags' / 'single_turn_encoder')
-GEARKIN = 'import sys; from gear_kinematics.cli import main; sys.exit(main())'
 
 
 def run(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:

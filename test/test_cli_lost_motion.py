@@ -226,7 +226,10 @@ def test_report_needs_neither_matplotlib_nor_plotly(recording):
         check=False,
     )
     assert done.stdout.splitlines()[-1] == '2'
-    assert done.stderr == 'gearkin: a plot needs the Python package matplotlib\n'
+    assert (
+        done.stderr
+        == "gearkin: matplotlib is not installed: pip install 'gear_kinematics[plot]'\n"
+    )
 
 
 @pytest.mark.parametrize(

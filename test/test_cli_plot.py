@@ -245,7 +245,10 @@ def test_without_matplotlib_there_is_one_line_and_no_file(tmp_path):
         [sys.executable, '-c', code], cwd=tmp_path, capture_output=True, text=True, check=False
     )
     assert done.stdout == '2 2\n'
-    assert done.stderr == 2 * 'gearkin: a plot needs the Python package matplotlib\n'
+    assert (
+        done.stderr
+        == 2 * "gearkin: matplotlib is not installed: pip install 'gear_kinematics[plot]'\n"
+    )
     assert list(tmp_path.iterdir()) == []
 
 

@@ -244,7 +244,10 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         [*command, '--plot', str(tmp_path / 'a.png')], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr == 'gearkin: a plot needs the Python package matplotlib\n'
+    assert (
+        done.stderr
+        == "gearkin: matplotlib is not installed: pip install 'gear_kinematics[plot]'\n"
+    )
     assert list(tmp_path.iterdir()) == []
     assert subprocess.run(command, capture_output=True, check=False).returncode == 0
 

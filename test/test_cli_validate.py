@@ -330,7 +330,7 @@ def test_without_plotly_a_page_is_an_error_and_no_file(bags, tmp_path):
         code=f'import sys; sys.modules["plotly"] = None; {GEARKIN}',
     )
     assert done.returncode == 2
-    assert done.stderr == 'gearkin: the HTML report needs the Python package plotly\n'
+    assert done.stderr == "gearkin: plotly is not installed: pip install 'gear_kinematics[html]'\n"
     assert list(tmp_path.iterdir()) == []
 
 

@@ -7,7 +7,7 @@ import shutil
 import signal
 import subprocess
 import sys
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -375,8 +375,9 @@ def kill_readers(blocked: BlockedBag, process) -> int:
 
     def ended() -> bool:
         for reader in blocked.readers():
-            os.kill(reader, signal.SIGKILL)
-            killed.append(reader)
+            with suppress(ProcessLookupError):  # it has ended meanwhile
+                os.kill(reader, signal.SIGKILL)
+                killed.append(reader)
         return process.poll() is not None
 
     wait_until(ended, 'the end of gearkin')
@@ -575,4 +576,6 @@ def test_without_dask_a_scheduler_is_an_error():
         code=f'import sys; sys.modules["distributed"] = None; {GEARKIN}',
     )
     assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr == 'gearkin: tcp://127.0.0.1:9: dask is not installed, extra `dask`\n'
+    assert done.stderr == (
+        "gearkin: distributed is not installed: pip install 'gear_kinematics[dask]'\n"
+    )

@@ -885,7 +885,7 @@ def refusal(tmp_path, *arguments) -> list[str]:
     """Start a node that must not start; returns what it says, by line."""
     environment = {**os.environ, 'ROS_LOG_DIR': str(tmp_path)}
     done = subprocess.run(
-        [sys.executable, '-m', 'gear_kinematics.node', *arguments],
+        [sys.executable, '-m', 'gear_kinematics.programs', *arguments],
         check=False, capture_output=True, text=True, timeout=30.0, env=environment,
     )  # fmt: skip
     assert done.returncode == 2, done.stderr
@@ -918,6 +918,14 @@ BAD_STARTS = [
     (['rotor_jiont:=m1'], ['unknown parameter `rotor_jiont`; did you mean `rotor_joint`?']),
     (['ring_tooth:=90', 'nothing_like_it:=1'], ['`ring_tooth`', '`nothing_like_it`']),
     (['branches:=[a]', 'b.cam_phase:=1.0'], ['`b.cam_phase`', '`b` is not in `branches`']),
+    *(
+        ([f'{name}:={depth}'], [name, '0', '2147483647'])
+        for name in (
+            'qos_overrides./rotor_state.subscription.depth',
+            'qos_overrides./output_state.publisher.depth',
+        )
+        for depth in (2**40, -1)
+    ),
 ]
 
 

@@ -2,6 +2,7 @@
 
 import ast
 import email
+import json
 import os
 import re
 import shutil
@@ -213,6 +214,88 @@ def test_pip_installed_node_runs(prefix):
     config = prefix / SHARE / 'config/actuator.yaml'
     node = prefix / 'bin/gear_state_publisher'
     assert_starts_and_stops(node, '--ros-args', '--params-file', config, env=isolated())
+
+
+@pytest.fixture(scope='module')
+def environment_of_make(tmp_path_factory) -> Path:
+    """Return where `make` builds the virtual environment, so that it has to only once."""
+    return tmp_path_factory.mktemp('make') / 'venv'
+
+
+def words_of_make(tree: Path, *variables: str, **environment: str) -> list[str]:
+    """Run `make demo` where it fails, and give its error messages without those of make."""
+    program('make')
+    inherited = {
+        name: value
+        for name, value in os.environ.items()
+        if not name.startswith(('MAKE', 'PIP_')) and name != 'MFLAGS'
+    }
+    done = subprocess.run(
+        ['make', 'demo', *variables],
+        cwd=tree,
+        env=inherited | {'PIP_CONFIG_FILE': os.devnull} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    return [line for line in done.stderr.splitlines() if not line.startswith('make')]
+
+
+def script(path: Path, text: str) -> Path:
+    path.write_text(f'#!/bin/sh\n{text}\n')
+    path.chmod(0o755)
+    return path
+
+
+def test_make_demo_says_what_to_install_for_a_virtual_environment(tree, tmp_path):
+    """Debian and Ubuntu have ensurepip in a package of its own."""
+    (tmp_path / 'without').mkdir()
+    (tmp_path / 'without/ensurepip.py').write_text('raise ModuleNotFoundError')
+    text = f'PYTHONPATH={tmp_path}/without exec {sys.executable} "$@"'
+    python = script(tmp_path / 'python3.12', text)
+    lines = words_of_make(tree, f'PYTHON={python}', f'VENV={tmp_path}/venv')
+    assert lines == ['Python has no ensurepip: apt install python3.12-venv']
+    assert not (tmp_path / 'venv').exists()
+
+
+def test_make_demo_says_that_it_needs_a_network(tree, environment_of_make):
+    lines = words_of_make(
+        tree,
+        f'PYTHON={sys.executable}',
+        f'VENV={environment_of_make}',
+        PIP_INDEX_URL='http://127.0.0.1:9',  # nobody listens
+        PIP_RETRIES='1',
+    )
+    log = f'{environment_of_make}/pip.log'
+    assert lines == [f'pip cannot reach the package index: see {log}; is there a network?']
+
+
+def test_make_demo_says_where_ros_has_no_wheels(tree, environment_of_make, tmp_path):
+    script(tmp_path / 'uname', 'echo Linux aarch64')
+    lines = words_of_make(
+        tree,
+        f'PYTHON={sys.executable}',
+        f'VENV={environment_of_make}',
+        PIP_NO_INDEX='1',  # no wheel of any kind
+        PATH=f'{tmp_path}:{os.environ["PATH"]}',
+    )
+    assert lines == ['ROS has no wheels for Linux aarch64: install ROS 2 Jazzy, then colcon build']
+
+
+def test_skipped_tests_are_summed_up_in_a_line(tmp_path):
+    (tmp_path / 'test_skipped.py').write_text(
+        'import pytest\n'
+        'def test_one(): pytest.skip("no nft")\n'
+        'def test_two(): pytest.importorskip("launch_none", reason="no launch")\n'
+        'def test_three(): pytest.skip("no nft")\n'
+    )
+    options = ['-p', 'conftest', '-o', f'cache_dir={tmp_path}/cache', '--rootdir', tmp_path]
+    environment = os.environ | {'PYTHONPATH': str(ROOT / 'test')}
+    command = [sys.executable, '-m', 'pytest', '-c', ROOT / 'pyproject.toml', *options, tmp_path]
+    run(*command, cwd=tmp_path, env=environment)
+    line = json.loads((tmp_path / 'cache/v/skipped').read_text())
+    assert line == '3 tests skipped; no launch; no nft'
 
 
 def test_colcon_installs_share(tree, workspace):

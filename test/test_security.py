@@ -9,6 +9,8 @@ import os
 import re
 import shutil
 import sqlite3
+import stat
+import subprocess
 import sys
 import xml.etree.ElementTree as ET
 from contextlib import closing
@@ -16,6 +18,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from blocked_bags import DEADLINE, GEARKIN
 from live import live_node
 from rosbags import rosbag1
 from rosbags.typesys import Stores, get_typestore
@@ -355,11 +358,92 @@ def test_files_are_written_only_where_asked(tmp_path, monkeypatch):
 def test_a_report_is_not_written_through_a_link_that_was_laid_for_it(tmp_path, capsys):
     victim, target = tmp_path / 'victim', tmp_path / 'report.json'
     victim.write_text('precious')
-    (tmp_path / f'.report.json.{os.getpid()}.tmp').symlink_to(victim)
+    (tmp_path / f'.gearkin.{os.getpid()}.tmp').symlink_to(victim)
     assert cli.main(['validate', str(BAG), '--json', str(target)]) == 2
     assert str(target) in capsys.readouterr().err
     assert victim.read_text() == 'precious'
     assert not target.exists()
+
+
+def test_a_report_may_have_the_longest_name_there_is(tmp_path):
+    target = tmp_path / f'{"x" * 250}.json'
+    assert cli.main(['validate', str(BAG), '--json', str(target)]) == 0
+    assert list(tmp_path.iterdir()) == [target]
+    with pytest.raises(OSError, match='too long'):
+        target.with_name(f'x{target.name}').touch()
+
+
+@pytest.mark.parametrize('mode', [0o600, 0o664])
+def test_a_report_keeps_the_mode_of_the_one_it_replaces(mode, tmp_path):
+    target = tmp_path / 'report.json'
+    target.touch()
+    target.chmod(mode)
+    assert cli.main(['validate', str(BAG), '--json', str(target)]) == 0
+    assert json.loads(target.read_text())['verdict'] == 'pass'
+    assert stat.S_IMODE(target.stat().st_mode) == mode
+
+
+# The current folder, which may have come with a recording.
+
+
+@pytest.fixture
+def downloaded(tmp_path) -> Path:
+    """Return a folder with bags, and traps for who runs or obeys what else is there."""
+    folder = tmp_path / 'downloaded'
+    for name in ('one', 'two'):
+        shutil.copytree(BAG, folder / name)
+    installed = {name.partition('.')[0] for name in sys.modules if not name.startswith('_')}
+    for name in {'rclpy', 'sensor_msgs', 'sitecustomize'} | installed:
+        (folder / f'{name}.py').write_text("open('trap.sprung', 'w').close()\n")
+    for name in ('DEFAULT_FASTRTPS_PROFILES.xml', 'DEFAULT_FASTDDS_PROFILES.xml'):
+        os.mkfifo(folder / name)  # a reader hangs
+    return folder
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [['validate', '--jobs', '2', 'one', 'two'], ['validate', '--live', 'one'], ['demo']],
+    ids=['--jobs', '--live', 'demo'],
+)
+def test_nothing_in_the_current_folder_is_run_or_obeyed(
+    arguments, downloaded, tmp_path, monkeypatch
+):
+    monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE')
+    program = tmp_path / 'gearkin'  # a script, beside which Python looks and not in its folder
+    program.write_text(f"if __name__ == '__main__': {GEARKIN}")
+    done = subprocess.run(
+        [sys.executable, str(program), *arguments],
+        cwd=downloaded,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=DEADLINE,
+    )
+    assert done.returncode == 0, done.stderr
+    assert not (downloaded / 'trap.sprung').exists()
+
+
+@pytest.mark.parametrize('content', ['savefig.facecolor: ff0000', None], ids=['red', 'pipe'])
+def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, tmp_path):
+    pytest.importorskip('matplotlib')
+    for folder in ('clean', 'trapped'):
+        (tmp_path / folder).mkdir()
+    trap = tmp_path / 'trapped/matplotlibrc'
+    if content:
+        trap.write_text(content)
+    else:
+        os.mkfifo(trap)
+    clean, trapped = (
+        subprocess.run(
+            [sys.executable, '-c', GEARKIN, 'plot', 'scheme', 'scheme.svg'],
+            cwd=tmp_path / folder,
+            check=True,
+            timeout=DEADLINE,
+        )
+        and (tmp_path / folder / 'scheme.svg').read_bytes()
+        for folder in ('clean', 'trapped')
+    )
+    assert clean == trapped
 
 
 # What the documents claim.

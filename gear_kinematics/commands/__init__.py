@@ -18,8 +18,6 @@ class ExitCode(IntEnum):
     """A check failed."""
     UNUSABLE = 2
     """Of the input or the arguments, with one line on stderr."""
-    INTERRUPTED = 130
-    """As shells have it."""
 
 
 class Command(Protocol):

@@ -5,6 +5,7 @@ import argparse
 from rich.console import Console
 
 from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.output import warn_of_shared_memory
 
 HELP = 'the shipped bag through the live node, validated'
 
@@ -15,6 +16,7 @@ def add_arguments(_parser: argparse.ArgumentParser) -> None:
 
 def run(_options: argparse.Namespace) -> ExitCode:
     """Show it live, then whether it agrees."""
+    warn_of_shared_memory(participants=2)
     # Needs ROS, which most commands do without.
     from gear_kinematics import demo  # noqa: PLC0415
 

@@ -1,6 +1,7 @@
 """Where commands write and in which form: the terminal or a pipe, files, bars of progress."""
 
 import os
+import stat
 import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -20,12 +21,24 @@ from rich.text import Text
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.rendering.wording import printable
+from gear_kinematics.shared_memory import check_shared_memory
 from gear_kinematics.teeth import InterferenceError, tooth_pair
 
 
 def complain(error: object) -> None:
     """Say in one line on stderr what is wrong, whatever names come up in it."""
-    print(f'gearkin: {printable(" ".join(str(error).split()))}', file=sys.stderr)
+    with suppress(OSError):  # a full disk or a closed pipe; the exit code still tells
+        print(f'gearkin: {printable(" ".join(str(error).split()))}', file=sys.stderr)
+
+
+def warn_of_shared_memory(participants: int) -> None:
+    """Say on stderr if there is little for so many DDS participants, before ROS is imported.
+
+    Raises:
+        SharedMemoryError: if there is too little to import it.
+    """
+    if warning := check_shared_memory(participants):
+        complain(warning)
 
 
 @contextmanager
@@ -83,12 +96,14 @@ def write_file(target: str, content: bytes) -> None:
     """
     given = Path(target)
     path = given.resolve()
-    unfinished = path.with_name(f'.{path.name}.{os.getpid()}.tmp')
+    unfinished = path.with_name(f'.gearkin.{os.getpid()}.tmp')  # of a length that always fits
     try:
         if given.exists() and not given.is_file():  # a pipe, perhaps: nothing to put in its place
             given.write_bytes(content)
             return
         with unfinished.open('xb') as file:  # follows no link that is there
+            if path.exists():
+                os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
             file.write(content)
         unfinished.replace(path)
     except OSError as error:

@@ -12,6 +12,7 @@ from gear_kinematics.commands.output import (
     complain,
     message_progress,
     progress,
+    warn_of_shared_memory,
     write,
 )
 from gear_kinematics.fleet import (
@@ -97,6 +98,8 @@ def run(options: argparse.Namespace) -> ExitCode:
                 options.debug,
             )
         )
+    if options.live:
+        warn_of_shared_memory(participants=2)
     order = {str(task.bag): number for number, task in enumerate(tasks)}
     reports = sorted(_reports(options, tasks), key=lambda report: order[report.bag])
     for report in reports:

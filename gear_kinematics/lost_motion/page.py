@@ -23,7 +23,7 @@ def to_html(reports: Sequence[LostMotionReport]) -> str:
     """Write the reports as a page that holds all it needs, plotly.js included.
 
     Raises:
-        RuntimeError: if plotly is not installed.
+        ModuleNotFoundError: if plotly is not installed.
     """
     names = ', '.join(map(wording.name, reports))
     return page(f'lost motion: {names}', ''.join(_body(reports)), scripts=['page.js'])

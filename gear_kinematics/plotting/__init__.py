@@ -2,7 +2,7 @@
 
 A module for each subject; `figures` has what they share. Every plot takes the path of the file
 that is to be: its suffix says which format. All raise ValueError if there is no such format, and
-RuntimeError without matplotlib.
+ModuleNotFoundError without matplotlib.
 """
 
 from gear_kinematics.plotting.animation import animate

@@ -48,7 +48,8 @@ def animate(
 
     Raises:
         ValueError: if `path` has another suffix, or a GIF would take too much memory.
-        RuntimeError: without matplotlib; for an MP4 without ffmpeg, or if it fails.
+        ModuleNotFoundError: without matplotlib.
+        RuntimeError: for an MP4 without ffmpeg, or if it fails.
     """
     writers = {'.gif': _gif, '.mp4': _mp4}
     suffix = path.suffix.lower()

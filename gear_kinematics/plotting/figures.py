@@ -1,6 +1,7 @@
 """Figures, their colours, and the bytes of their files."""
 
 from collections.abc import Callable, Iterable
+from contextlib import chdir
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -31,13 +32,12 @@ def styled(size: tuple[float, float], use: Callable[[Any], bytes]) -> bytes:
     """Begin a figure of a size in inches, and give what is made of it in the style of the plots.
 
     Raises:
-        RuntimeError: without matplotlib.
+        ModuleNotFoundError: without matplotlib.
     """
-    try:
+    # matplotlib obeys a matplotlibrc in the current folder, which may come with a recording.
+    with chdir(Path(__file__).parent):
         from matplotlib import rc_context  # noqa: PLC0415, an extra
         from matplotlib.figure import Figure  # noqa: PLC0415, an extra
-    except ImportError as error:
-        raise RuntimeError('a plot needs the Python package matplotlib') from error
     with rc_context(_STYLE):
         return use(Figure(figsize=size, layout='constrained'))
 
@@ -47,7 +47,7 @@ def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -
 
     Raises:
         ValueError: if the suffix of the path is that of no format.
-        RuntimeError: without matplotlib.
+        ModuleNotFoundError: without matplotlib.
     """
     kind = path.suffix[1:].lower()
 

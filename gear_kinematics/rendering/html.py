@@ -36,7 +36,7 @@ def to_html(reports: Sequence[BagReport]) -> str:
     """Write the reports as a page that holds all it needs, plotly.js included.
 
     Raises:
-        RuntimeError: if there is something to plot, and plotly is not installed.
+        ModuleNotFoundError: if there is something to plot, and plotly is not installed.
     """
     title = f'{OUTCOME[wording.worst_verdict(reports)]}: {_title(reports)}'
     scripts = ['page.js', 'motion.js'] if any(map(_plotted, reports)) else []

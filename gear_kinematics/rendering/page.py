@@ -20,7 +20,7 @@ def page(title: str, body: str, *, scripts: Sequence[str] = ()) -> str:
         scripts: their names beside this module, `page.js` where there are figures.
 
     Raises:
-        RuntimeError: if there are some, and plotly is not installed.
+        ModuleNotFoundError: if there are some, and plotly is not installed.
     """
     sources = [_plotly_js(), *map(_resource, scripts)] if scripts else []
     return (
@@ -107,11 +107,9 @@ def _policy(scripts: Sequence[str]) -> str:
 
 
 def _plotly_js() -> str:
-    try:
-        # Large, and of use here only.
-        from plotly.offline import get_plotlyjs  # noqa: PLC0415
-    except ModuleNotFoundError as error:
-        raise RuntimeError('the HTML report needs the Python package plotly') from error
+    # Large, and of use here only.
+    from plotly.offline import get_plotlyjs  # noqa: PLC0415, an extra
+
     return str(get_plotlyjs())
 
 

@@ -1,0 +1,19 @@
+"""The packages that pip installs only with an extra, and what to do where one is missing."""
+
+EXTRAS = {
+    'rclpy': 'ros',
+    'matplotlib': 'plot',
+    'PIL': 'plot',
+    'plotly': 'html',
+    'distributed': 'dask',
+}
+"""The extra that brings a package; setup.py says what each installs."""
+
+
+def remedy(error: ImportError) -> str:
+    """Say in one line what is missing and how to install it."""
+    package = (error.name or '').partition('.')[0]
+    if not (isinstance(error, ModuleNotFoundError) and package in EXTRAS):
+        return ' '.join(str(error).split())
+    ros = 'source a ROS 2 installation, or ' if package == 'rclpy' else ''
+    return f"{package} is not installed: {ros}pip install 'gear_kinematics[{EXTRAS[package]}]'"

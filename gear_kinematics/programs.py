@@ -1,0 +1,128 @@
+"""The entry points of the two programs, which import nothing heavy before they handle signals.
+
+Without this, a signal during the import of ROS or numpy would raise KeyboardInterrupt anywhere in
+it, where it ends in a traceback or is even swallowed.
+"""
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Collection
+from math import inf
+from types import FrameType
+
+from gear_kinematics.extras import remedy
+from gear_kinematics.shared_memory import SharedMemoryError, check_shared_memory
+
+_INTERRUPTED = 130
+"""Exit code, as shells have it."""
+_UNUSABLE = 2
+"""Exit code: something that the program needs is missing."""
+_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_REPEATED = 1.0
+"""s within which a signal is taken for a repetition: launchers signal a process and its group."""
+_RETRY = 0.01
+"""s after which an interruption that got lost is repeated."""
+
+
+def gear_state_publisher() -> int:
+    """Run the node; returns the exit code, which is 0 after a signal."""
+
+    def load() -> Callable[[], int]:
+        if warning := check_shared_memory():
+            print(f'gear_state_publisher: {warning}', file=sys.stderr)
+        from gear_kinematics.node import main  # noqa: PLC0415, slow
+
+        return main
+
+    return _run('gear_state_publisher', load, interrupted=0, stop_signals=_STOP_SIGNALS)
+
+
+def gearkin() -> int:
+    """Run the command line; returns the exit code."""
+    # Shell scripts start background jobs with SIGINT ignored, which then holds.
+    heeded = [number for number in _STOP_SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+    heeded.append(signal.SIGALRM)
+
+    def load() -> Callable[[], int]:
+        from gear_kinematics.cli import main  # noqa: PLC0415, slow
+
+        interruption = _Interruption()
+        _handle(heeded, interruption.raise_once)
+        sys.unraisablehook = interruption.repeat
+        return main
+
+    return _run('gearkin', load, interrupted=_INTERRUPTED, stop_signals=heeded)
+
+
+def _run(
+    program: str,
+    load: Callable[[], Callable[[], int]],
+    *,
+    interrupted: int,
+    stop_signals: Collection[signal.Signals],
+) -> int:
+    """Load a program and run it; returns its exit code, or `interrupted` after a signal."""
+    _handle(stop_signals, lambda *_: os._exit(interrupted))  # nothing has begun
+    _open_closed_streams()
+    try:
+        return load()()
+    except KeyboardInterrupt:
+        return interrupted
+    except SharedMemoryError as error:
+        print(f'{program}: {error}', file=sys.stderr)
+        return _UNUSABLE
+    except ImportError as error:
+        print(f'{program}: {remedy(error)}', file=sys.stderr)
+        return _UNUSABLE
+    finally:
+        # Before it ends, Python restores the default, which kills, in place of other handlers.
+        _handle(stop_signals, signal.SIG_IGN)
+
+
+def _handle(
+    numbers: Collection[signal.Signals],
+    handler: Callable[[int, FrameType | None], object] | signal.Handlers,
+) -> None:
+    for number in numbers:
+        signal.signal(number, handler)
+
+
+class _Interruption:
+    """Raises KeyboardInterrupt once for signals that come together, and so that it has effect."""
+
+    def __init__(self) -> None:
+        self._raised = -inf  # time.monotonic()
+
+    def raise_once(self, _number: int, _frame: FrameType | None) -> None:
+        """Handle a signal; one that repeats another does not disturb the clean-up after it."""
+        now = time.monotonic()
+        if now - self._raised > _REPEATED:
+            self._raised = now
+            raise KeyboardInterrupt
+
+    def repeat(self, unraisable: 'sys.UnraisableHookArgs') -> None:
+        """Raise again what Python drops: exceptions in destructors and in callbacks of imports."""
+        if unraisable.exc_type is KeyboardInterrupt:
+            self._raised = -inf
+            signal.setitimer(signal.ITIMER_REAL, _RETRY)  # SIGALRM
+        else:
+            sys.__unraisablehook__(unraisable)
+
+
+def _open_closed_streams() -> None:
+    """Open the null device for each standard stream that is closed (`2>&-`).
+
+    Python has None in its place, and its file descriptor would go to the next file or socket
+    opened, into which libraries would then print.
+    """
+    for name, mode in (('stdin', 'r'), ('stdout', 'w'), ('stderr', 'w')):
+        if getattr(sys, name) is None:
+            stream = open(os.devnull, mode)  # noqa: PTH123, SIM115, open until the end
+            os.set_inheritable(stream.fileno(), True)  # noqa: FBT003
+            setattr(sys, name, stream)
+
+
+if __name__ == '__main__':
+    sys.exit(gear_state_publisher())  # as `live_node` starts it
