@@ -263,10 +263,11 @@ def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagRepo
     """Each bag with its report, or None where a process died."""
     # Forking would copy the threads of a progress bar in whatever state they are.
     context = multiprocessing.get_context('spawn')
-    # The processes begin as `python -c`, which would import modules from the current folder.
-    os.environ['PYTHONSAFEPATH'] = '1'
     others = multiprocessing.active_children()
-    with concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool:
+    with (
+        _current_folder_shunned(),
+        concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool,
+    ):
         try:
             with _interrupts_blocked():
                 futures = {_submit(pool, task): task for task in tasks}
@@ -310,6 +311,18 @@ def _interrupts_blocked() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextmanager
+def _current_folder_shunned() -> Iterator[None]:
+    """Start processes, which begin as `python -c`, that import nothing from the current folder."""
+    name = 'PYTHONSAFEPATH'
+    before = os.environ.get(name, '')  # empty is not set
+    os.environ[name] = '1'
+    try:
+        yield
+    finally:
+        os.environ[name] = before
 
 
 def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagReport]:

@@ -68,7 +68,7 @@ def slow_discovery(tmp_path_factory):
 
 @pytest.mark.parametrize(
     ('arguments', 'words'),
-    [(['-m', 'gear_kinematics.node'], 'gear ratio'), (['-c', REPLAY], 'here')],
+    [(['-m', 'gear_kinematics.programs'], 'gear ratio'), (['-c', REPLAY], 'here')],
     ids=['node', 'replay'],
 )
 def test_participant_leaves_while_it_discovers(slow_discovery, arguments, words):
