@@ -199,6 +199,9 @@ def _check_rotor_input(messages: Sequence[bytes], encoder: str) -> None:
         'referenced',
     ):  # fmt: skip
         assert getattr(one_by_one, account) == getattr(at_once, account)
+    outputs = _STATES.encode_outputs(batch)
+    expected = [dict(_STATES.encode(sample, outputs)) for sample in samples]
+    assert outputs == {topic: [each[topic] for each in expected] for topic in outputs}
     for sample in samples:
         for _, message in _STATES.encode(sample):
             assert _decoded(decode_joint_state, message) or _decoded(decode_pose_array, message)

@@ -1,20 +1,21 @@
 """The outputs that the node gives for a recorded rotor topic, written to a new bag without ROS."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
-from functools import partial
+from itertools import repeat
 from pathlib import Path
 from typing import Any, Literal
 
-from gear_kinematics.bag import Bag, BagError, BagWriter
+import numpy as np
+
+from gear_kinematics.bag import Bag, BagError, BagWriter, in_batches, listed
 from gear_kinematics.description import urdf
-from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.messages import JOINT_STATE
 from gear_kinematics.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state_messages import BODY_POSES, OUTPUT_STATE, STATE_TOPICS, StateMessages
 
-_PROGRESS_EVERY = 1000  # messages
+_BATCH = 1024  # messages
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +34,10 @@ class ComputeResult:
     """Rotor messages without a stamp: their outputs have the time of their reception."""
     copied: int
     """On other topics."""
+    left_out: tuple[str, ...]
+    """Topics that were not to be copied."""
+    undefined: tuple[str, ...]
+    """Topics that were copied without a definition of their type, because the bag has none."""
 
 
 def compute(
@@ -43,6 +48,7 @@ def compute(
     rotor_topic: str = '/rotor_state',
     output_topic: str = '/output_state',
     poses_topic: str = '/body_poses',
+    topics: Collection[str] | None = None,
     storage: Literal['mcap', 'sqlite3'] = 'mcap',
     compression: Literal['none', 'zstd'] = 'none',
     progress: Callable[[int], None] = lambda _: None,
@@ -59,6 +65,7 @@ def compute(
         rotor_topic: name of the input in the bag.
         output_topic: name of the node's output_state in the bag.
         poses_topic: name of the node's body_poses in the bag.
+        topics: others to copy; None copies all.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
         progress: called now and then with the number of messages read.
@@ -77,33 +84,32 @@ def compute(
         raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: a name is there twice')
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
     outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
-    _check_topics(source, {rotor_topic: JOINT_STATE}, outputs)
+    chosen = {rotor_topic, *(source.topics if topics is None else topics)}
+    _check_topics(source, chosen, {rotor_topic: JOINT_STATE, **outputs})
+    kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
 
-    computed = copied = 0
+    computed = copied = read = 0
     with BagWriter(target, storage=storage, compression=compression) as writer:
-        for topic in source.topics:
-            if topic not in outputs:
-                writer.copy_topic(source, topic)
+        written = [writer.copy_topic(source, topic) for topic in kept]
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
-        count = 0
-        for count, (topic, received, data) in enumerate(source.messages(source.topics), start=1):
-            if count % _PROGRESS_EVERY == 0:
-                progress(count)
-            if topic in outputs:
-                continue
-            writer.write(topic, received, data)
-            if topic != rotor_topic:
-                copied += 1
-                continue
-            try:
-                sample = rotor_input.accept(data, partial(int, received))
-            except RejectedInputError:
-                continue
-            for state, message in state_messages.encode(sample, topic_of):
-                writer.write(topic_of[state], received, message)
-            computed += 1
-        progress(count)
+        for batch in in_batches(source.messages({*kept, *outputs}), _BATCH):
+            messages = [message for message in batch if message[0] not in outputs]
+            rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
+            samples = rotor_input.accept_batch(
+                [messages[place][2] for place in rotor], [messages[place][1] for place in rotor]
+            )
+            answered = [rotor[row] for row in samples.row.tolist()]
+            computed += len(answered)
+            copied += len(messages) - len(rotor)
+            # A stable sort by these puts each output right behind its rotor message.
+            places = [*range(len(messages)), *answered, *answered]
+            received = [messages[place][1] for place in answered]
+            for state, encoded in state_messages.encode_outputs(samples).items():
+                messages += zip(repeat(topic_of[state]), received, encoded)
+            writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
+            read += len(batch)
+            progress(read)
         if not computed:
             raise BagError(_nothing_computed(source, rotor_topic, rotor_input))
     return ComputeResult(
@@ -113,17 +119,20 @@ def compute(
         rotor_input.mostly_rejected,
         rotor_input.zero_stamps,
         copied,
+        left_out=tuple(topic for topic in source.topics if topic not in {*kept, *outputs}),
+        undefined=tuple(topic.name for topic in written if not topic.syntax),
     )
 
 
-def _check_topics(source: Bag, needed: Mapping[str, str], replaced: Mapping[str, str]) -> None:
-    for topic, message_type in (*needed.items(), *replaced.items()):
-        found = source.topics.get(topic)
-        if found is None and topic in needed:
-            there = ', '.join(sorted(source.topics)) or 'no topics'
+def _check_topics(source: Bag, needed: Collection[str], types: Mapping[str, str]) -> None:
+    for topic in sorted(needed):
+        if topic not in source.topics:
+            there = listed(source.topics) or 'no topics'
             raise BagError(f'{source.path}: no {topic} in it; there are {there}')
+    for topic, message_type in types.items():
         # A topic of another type is somebody else's, not an output of old.
-        if found not in {None, message_type}:
+        found = source.topics.get(topic, message_type)
+        if found != message_type:
             raise BagError(f'{source.path}: {topic} is of type {found}, not {message_type}')
 
 

@@ -16,7 +16,7 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag import Bag, BagError, listed
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.messages import JOINT_STATE, POSE_ARRAY
@@ -175,7 +175,7 @@ def _find_topic(path: Path, available: Mapping[str, str], name: str, kind: str) 
     if not candidates:
         raise BagError(f'{path}: no topic {name} of type {kind} in it')
     if len(candidates) > 1:
-        raise BagError(f'{path}: which topic is {name}? {", ".join(candidates)}')
+        raise BagError(f'{path}: which topic is {name}? {listed(candidates)}')
     return candidates[0]
 
 

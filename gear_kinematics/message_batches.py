@@ -1,4 +1,4 @@
-"""Raw messages in batches: what `messages` reads one by one, as arrays.
+"""Raw messages in batches: what `messages` reads and writes one by one, as arrays.
 
 Messages of one layout have everything at the same place, so that a batch of them is a table of
 bytes. A recording has one layout for a topic, or few; any others only cost time.
@@ -16,6 +16,7 @@ from gear_kinematics.messages import (
     STAMP_OFFSET,
     Layout,
     MalformedMessageError,
+    Template,
     joint_index,
     joint_state_layout,
     pose_array_layout,
@@ -99,6 +100,31 @@ def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseAr
     return PoseArrays(
         stamp, malformed, tuple(frame_ids), frame, poses.reshape(count, count_of_poses, 7)
     )
+
+
+def encode(template: Template, stamps: Array, *arrays: Sequence[Array | float]) -> list[bytes]:
+    """Encode n messages, as `template.encode` does one by one.
+
+    Args:
+        template: what they have in common.
+        stamps: (n,), ns.
+        arrays: the numbers of each array, each number as an array (n,) or alike in all messages.
+    """
+    blank = template.encode(0, *(count * [0.0] for _, count in template.arrays))
+    fields = {'seconds': ('<i4', STAMP_OFFSET), 'nanoseconds': ('<u4', STAMP_OFFSET + 4)}
+    for index, (offset, count) in enumerate(template.arrays):
+        fields[f'array {index}'] = (f'({count},)<f8', offset)
+    formats, offsets = zip(*fields.values(), strict=True)
+    table = np.frombuffer(
+        bytearray(len(stamps) * blank),
+        {'names': list(fields), 'formats': formats, 'offsets': offsets, 'itemsize': len(blank)},
+    )
+    table['seconds'], table['nanoseconds'] = np.divmod(stamps, SECOND)
+    for index, numbers in enumerate(arrays):
+        for place, number in enumerate(numbers):
+            table[f'array {index}'][:, place] = number
+    data = table.tobytes()
+    return [data[start : start + len(blank)] for start in range(0, len(data), len(blank))]
 
 
 def _tables(

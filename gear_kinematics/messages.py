@@ -202,6 +202,11 @@ class Template:
         self._arrays: list[tuple[int, struct.Struct]] = []
         self._string(frame_id)
 
+    @property
+    def arrays(self) -> list[tuple[int, int]]:
+        """Offset and count of the float64 of each array."""
+        return [(offset, layout.size // 8) for offset, layout in self._arrays]
+
     def encode(self, stamp: int, *arrays: Sequence[float]) -> bytes:
         """Give the message's bytes.
 

@@ -79,6 +79,8 @@ class RotorSamples(NamedTuple):
     """rad/s; NaN where the message has none."""
     effort: Array
     """N·m; NaN where the message has none."""
+    row: Array
+    """Which of the messages."""
     received: Array
     """ns."""
     stretch: Array
@@ -192,13 +194,14 @@ class RotorInput:
                 self.rejected[cause] += count
             usable &= ~faulty
         self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
-        stamps, values = states.stamp[usable], states.values[usable]
+        rows = np.flatnonzero(usable)
+        stamps, values = states.stamp[rows], states.values[rows]
         values[~(np.abs(values) <= GREATEST)] = np.nan
-        clock = np.asarray(received, np.int64)[usable]
+        clock = np.asarray(received, np.int64)[rows]
         rejected = states.stamp[~(usable | states.malformed)]
         if self._settings.single_turn or not self._in_order(stamps):
-            return self._one_by_one(stamps, values, clock, rejected)
-        return self._all_at_once(stamps, values, clock, rejected)
+            return self._one_by_one(rows, stamps, values, clock, rejected)
+        return self._all_at_once(rows, stamps, values, clock, rejected)
 
     def _in_order(self, stamps: Array) -> bool:
         in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
@@ -206,7 +209,7 @@ class RotorInput:
         return bool(in_order and follows)
 
     def _all_at_once(
-        self, stamps: Array, values: Array, received: Array, rejected: Array
+        self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
         zero_turns, zero_angle = split_turns(self._settings.rotor_zero)
@@ -217,6 +220,7 @@ class RotorInput:
             direction * (angle - zero_angle),
             direction * values[:, 1],
             direction * values[:, 2],
+            rows,
             received,
             np.full(len(stamps), self._stretch),
             rejected,
@@ -230,32 +234,34 @@ class RotorInput:
         return samples
 
     def _one_by_one(
-        self, stamps: Array, values: Array, received: Array, rejected: Array
+        self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         taken: list[RotorSample] = []
-        columns: list[tuple[int, int]] = []  # received, stretch
+        columns: list[tuple[int, int, int]] = []  # row, received, stretch
         disordered: list[int] = []
-        for stamp, row, now in zip(
-            stamps.tolist(), values.tolist(), received.tolist(), strict=True
+        for row, stamp, numbers, now in zip(
+            rows.tolist(), stamps.tolist(), values.tolist(), received.tolist(), strict=True
         ):
             try:
-                sample = self._take_row(stamp or self._clock(partial(int, now)), row)
+                sample = self._take_row(stamp or self._clock(partial(int, now)), numbers)
             except RejectedInputError as rejection:
                 self.rejected[str(rejection)] += 1
                 disordered.append(stamp)
                 continue
             taken.append(sample)
-            columns.append((now, self._stretch))
+            columns.append((row, now, self._stretch))
+        count = len(taken)
         # None becomes NaN.
-        rows = [(*sample.position, sample.velocity, sample.effort) for sample in taken]
-        turns, angle, velocity, effort = np.array(rows, np.float64).reshape(len(rows), 4).T
-        clock, stretch = np.array(columns, np.int64).reshape(len(rows), 2).T
+        motion = [(*sample.position, sample.velocity, sample.effort) for sample in taken]
+        turns, angle, velocity, effort = np.array(motion, np.float64).reshape(count, 4).T
+        row_of, clock, stretch = np.array(columns, np.int64).reshape(count, 3).T
         return RotorSamples(
             np.array([sample.stamp for sample in taken], np.int64),
             turns,
             angle,
             velocity,
             effort,
+            row_of,
             clock,
             stretch,
             np.append(rejected, np.array(disordered, np.int64)),
@@ -268,7 +274,10 @@ class RotorInput:
     def _clock(self, now: Callable[[], int]) -> int:
         """The stamp of a message that has none."""
         self.zero_stamps += 1
-        return now()
+        stamp = now()
+        if stamp > LATEST:
+            raise RejectedInputError(STAMP_OUT_OF_RANGE)
+        return stamp
 
     def _take(
         self, stamp: int, position: float, velocity: float | None, effort: float | None

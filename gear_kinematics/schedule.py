@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable, Collection, Iterator
 from itertools import chain
 
-from gear_kinematics.bag import Bag, BagError, RawMessage
+from gear_kinematics.bag import Bag, BagError, RawMessage, listed
 from gear_kinematics.messages import SECOND
 
 _PROGRESS_PERIOD = 0.1  # s
@@ -75,7 +75,7 @@ def type_of(source: Bag, topic: str) -> str:
     try:
         return source.topics[topic]
     except KeyError:
-        there = ', '.join(sorted(source.topics)) or 'no topics'
+        there = listed(source.topics) or 'no topics'
         raise BagError(f'{source.path}: no {topic} in it; there are {there}') from None
 
 

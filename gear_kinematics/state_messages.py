@@ -2,18 +2,23 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import ModuleType
+from typing import Any
+
+import numpy as np
 
 from gear_kinematics.description import joint_names
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.message_batches import encode
 from gear_kinematics.messages import (
     JOINT_STATE,
     POSE_ARRAY,
     JointStateTemplate,
     PoseArrayTemplate,
 )
-from gear_kinematics.rotor_input import RotorSample
+from gear_kinematics.rotor_input import RotorSample, RotorSamples
 from gear_kinematics.transmission_error import ErrorSample
 
 OUTPUT_STATE, BODY_POSES, JOINT_STATES = 'output_state', 'body_poses', 'mechanism_joint_states'
@@ -65,30 +70,66 @@ class StateMessages:
             else:
                 yield topic, self._joint_state(sample, output_angle, branches)
 
+    @np.errstate(over='ignore')  # an effort can exceed all floats, as that of a single sample
+    def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
+        """Give the messages of OUTPUT_STATE and BODY_POSES for many samples, as `encode` does."""
+        output_turns, output_rest = self._form.output_angle(samples.turns, samples.angle, np)
+        output_angle = TURN * output_turns + output_rest
+        output_states = len(samples.stamp) * [b'']
+        for present, template in self._output_states.items():
+            absent = np.isnan([samples.velocity, samples.effort])
+            rows = np.flatnonzero(np.all(present != absent.T, axis=1))
+            numbers = self._output_numbers(
+                present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
+            )
+            encoded = encode(template, samples.stamp[rows], *([number] for number in numbers))
+            for row, message in zip(rows.tolist(), encoded, strict=True):
+                output_states[row] = message
+        branches = self._form.branches(samples.angle, output_rest, np)
+        poses = encode(
+            self._body_poses, samples.stamp, self._pose_numbers(output_rest, branches, np)
+        )
+        return {OUTPUT_STATE: output_states, BODY_POSES: poses}
+
     def transmission_error(self, sample: ErrorSample) -> bytes:
         """Give the message for a transmission error: the position of the output's joint."""
         return self._output_states[False, False].encode(sample.stamp, (sample.error,))
 
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
-        arrays = [(output_angle,)]
-        if sample.velocity is not None:
-            arrays.append((self._form.output_rate(sample.velocity),))
-        if sample.effort is not None:
-            arrays.append((self._ratio * sample.effort,))
-        template = self._output_states[sample.velocity is not None, sample.effort is not None]
-        return template.encode(sample.stamp, *arrays)
+        present = sample.velocity is not None, sample.effort is not None
+        numbers = self._output_numbers(present, output_angle, sample.velocity, sample.effort)
+        template = self._output_states[present]
+        return template.encode(sample.stamp, *((number,) for number in numbers))
+
+    def _output_numbers(
+        self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any
+    ) -> list[Any]:
+        """The numbers of an output_state: floats or arrays of them."""
+        numbers = [output_angle]
+        if present[0]:
+            numbers.append(self._form.output_rate(velocity))
+        if present[1]:
+            numbers.append(self._ratio * effort)
+        return numbers
 
     def _poses(
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
     ) -> bytes:
+        numbers = self._pose_numbers(output_angle, branches, math)
+        return self._body_poses.encode(sample.stamp, numbers)
+
+    def _pose_numbers(
+        self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
+    ) -> list[Any]:
+        """The numbers of body_poses: floats or arrays of them."""
         # Every body but the rotor has the angle φ5; within the turn its quaternion has w >= 0.
-        sine, cosine = math.sin(0.5 * output_angle), math.cos(0.5 * output_angle)
+        sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
         centres = [branch.satellite for branch in branches]
         centres += [branch.oldham for branch in branches]
-        numbers: list[float] = []
+        numbers: list[Any] = []
         for (x, y), z in zip(centres, self._axial_positions, strict=True):
             numbers += (x, y, z, 0.0, 0.0, sine, cosine)
-        return self._body_poses.encode(sample.stamp, numbers)
+        return numbers
 
     def _joint_state(
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]

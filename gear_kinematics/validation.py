@@ -3,12 +3,12 @@
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.bag import in_batches
 from gear_kinematics.diagnosis import diagnose
 from gear_kinematics.input_health import InputHealth
 from gear_kinematics.kinematics import Mechanism, solve
@@ -138,20 +138,15 @@ class Validator:
             messages: in the order of their reception.
             progress: called with the number of messages of each batch.
         """
-        source = iter(messages)
-        count = 1
-        while count:
+        for raw in in_batches(messages, _BATCH):
             batch = _Batch()
             by_topic = dict(zip(self._topics.names(), batch.topics(), strict=True))
-            try:
-                for topic, received, data in islice(source, _BATCH):
-                    by_topic[topic].data.append(data)
-                    by_topic[topic].received.append(received)
-            finally:
-                self._take(batch)
-            count = len(batch)
+            for topic, received, data in raw:
+                by_topic[topic].data.append(data)
+                by_topic[topic].received.append(received)
+            self._take(batch)
             if progress:
-                progress(count)
+                progress(len(raw))
 
     @np.errstate(all='ignore')  # recorded numbers can be anything; what overflows fails
     def report(self, bag: str = '', *, error: str | None = None) -> BagReport:

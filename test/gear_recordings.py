@@ -1,7 +1,9 @@
 """Recordings of gears that are known, simulated without anything of the code under test."""
 
 import csv
-from collections.abc import Sequence
+import sqlite3
+from collections.abc import Iterable, Sequence
+from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
@@ -95,3 +97,27 @@ def _messages(joint: str, samples: Samples):
     columns = [samples.positions, *([] if samples.efforts is None else [samples.efforts])]
     for stamp, *numbers in zip(samples.stamps, *columns, strict=True):
         yield int(stamp), template.encode(int(stamp), *([float(number)] for number in numbers))
+
+
+def old_recording(
+    path: Path,
+    types: Sequence[tuple[str, str]],
+    messages: Iterable[tuple[str, int, bytes]],
+) -> Path:
+    """Write a database as ROS 2 Humble does: without definitions of types, and hashes."""
+    numbers = {topic: number for number, (topic, _) in enumerate(types, start=1)}
+    with closing(sqlite3.connect(path)) as rows, rows:
+        rows.execute(
+            'CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,'
+            ' serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)'
+        )
+        rows.execute(
+            'CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,'
+            ' timestamp INTEGER NOT NULL, data BLOB NOT NULL)'
+        )
+        rows.executemany("INSERT INTO topics VALUES (NULL, ?, ?, 'cdr', '')", types)
+        rows.executemany(
+            'INSERT INTO messages VALUES (NULL, ?, ?, ?)',
+            ((numbers[topic], received, data) for topic, received, data in messages),
+        )
+    return path

@@ -20,6 +20,7 @@ ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
     'arguments',
     [
         ['kinematics.py', '--samples', '1000', '--rounds', '1'],
+        ['compute.py', '--messages', '300', '--rounds', '1'],
         ['validation.py', '--messages', '300', '--rounds', '1', '--memory', '300'],
     ],
     ids=lambda arguments: arguments[0],

@@ -6,10 +6,11 @@ import pty
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import threading
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack, closing, suppress
 from pathlib import Path
 from types import MappingProxyType
 from xml.etree import ElementTree as ET
@@ -18,6 +19,7 @@ import jsonschema
 import pytest
 import replaying
 from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
+from gear_recordings import old_recording
 from live import rotor_bytes
 
 from gear_kinematics.bag import Bag, BagWriter
@@ -577,6 +579,41 @@ def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code
     assert done.stderr == (complaint if code else '')
     with Bag(tmp_path / 'out') as bag:
         assert bag.message_count == 10 + 2 * (10 - bad)
+
+
+def test_compute_says_what_it_left_out_and_what_it_did_not_understand(tmp_path):
+    types = [('/rotor_state', JOINT_STATE), ('/grip', 'a/msg/Grip'), ('/nod', 'a/msg/Nod')]
+    messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0])), ('/nod', 2, b'who knows')]
+    bag = old_recording(tmp_path / 'b.db3', types, messages)
+    undefined = 'copied without a definition of the type'
+    for number, (options, said) in enumerate((
+        ([], [f'{undefined}: /grip, /nod']),
+        (['--topics', '/nod'], ['left out: /grip', f'{undefined}: /nod']),
+        (['--topics'], ['left out: /grip, /nod']),
+    )):  # fmt: skip
+        out = tmp_path / f'out {number}'
+        done = gearkin('compute', bag, out, *options)
+        assert (done.returncode, done.stderr) == (0, '')
+        assert done.stdout.splitlines() == [
+            f'{out}: 1 outputs for 1 rotor states, {1 - number // 2} other messages copied',
+            *said,
+        ]
+
+
+def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
+    types = [('/rotor_state', JOINT_STATE), ('/text', 'std_msgs/msg/String')]
+    messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0]))]
+    bag = old_recording(tmp_path / 'b.db3', types, messages)
+    with closing(sqlite3.connect(bag)) as rows, rows:
+        rows.execute("UPDATE topics SET serialization_format = 'json' WHERE id = 2")
+    given = ('compute', bag, tmp_path / 'out')
+    done = gearkin(*given)
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == (
+        f"gearkin: {bag}: /text cannot be copied: its messages are 'json', not CDR; "
+        '--topics says which topics to copy\n'
+    )
+    assert gearkin(*given, '--topics').returncode == 0
 
 
 def test_compute_uses_the_config_beside_the_bag(tmp_path):

@@ -5,6 +5,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from gear_recordings import old_recording
 from live import rotor_bytes
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
@@ -160,6 +161,32 @@ def test_other_topics_survive_with_their_unknown_types(rotor_only, tmp_path):
         assert (message.log_time, message.data) == (received, data)
 
 
+def test_topics_of_types_that_nobody_defines_are_copied_and_named(tmp_path):
+    """As in recordings of Humble and older, which have no definitions."""
+    types = [*TYPES.items(), ('/grip', 'acme_msgs/msg/Grip')]
+    stamps = range(SECOND, SECOND + 3)
+    messages = [('/rotor_state', stamp, rotor_bytes(stamp, position=[1.0])) for stamp in stamps]
+    source = old_recording(tmp_path / 'b.db3', types, [*messages, ('/grip', 2 * SECOND, UNKNOWN)])
+    for storage in ('mcap', 'sqlite3'):
+        result = run(source, tmp_path / storage, config(), storage=storage)
+        assert (result.computed, result.copied) == (3, 1)
+        assert (result.left_out, result.undefined) == ((), ('/grip',))
+        assert of_topic(read(tmp_path / storage), '/grip') == [UNKNOWN]
+
+
+def test_topics_are_left_out_and_named(rotor_only, tmp_path):
+    for topics, left_out in (([], ('/grip',)), (['/grip'], ()), (['/rotor_state'], ('/grip',))):
+        target = tmp_path / f'computed {len(left_out)} {len(topics)}'
+        result = run(rotor_only, target, config(), topics=topics)
+        assert result.left_out == left_out
+        assert result.copied == (0 if left_out else 4)
+        assert {topic for topic, *_ in read(target)} == {
+            '/rotor_state',
+            *OUTPUTS,
+            *({'/grip'} - set(left_out)),
+        }
+
+
 def test_topics_have_the_names_that_were_asked_for(rotor_only, tmp_path):
     renamed = write(
         tmp_path / 'renamed',
@@ -182,6 +209,14 @@ def test_an_input_without_a_stamp_gets_the_time_of_its_reception(tmp_path):
         outputs = of_topic(read(tmp_path / 'computed'), topic)
         stamps = [typestore.deserialize_cdr(d, TYPES[topic]).header.stamp for d in outputs]
         assert [stamp.sec * SECOND + stamp.nanosec for stamp in stamps] == times
+
+
+def test_a_time_of_reception_that_no_stamp_can_hold_gives_no_output(tmp_path):
+    times = [5 * SECOND, 2**31 * SECOND - 1, 2**31 * SECOND, 2**63 - 1]
+    messages = [('/rotor_state', time, rotor_bytes(0, position=[1.0])) for time in times]
+    result = run(write(tmp_path / 'source', messages), tmp_path / 'computed', config())
+    assert (result.computed, result.rejected) == (2, {'stamp out of range': 2})
+    assert Counter(topic for topic, *_ in read(tmp_path / 'computed'))['/rotor_state'] == 4
 
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
@@ -268,8 +303,9 @@ def joint_states(path: Path, count: int, joint: str = 'rotor') -> Path:
         ({'rotor_topic': '/body_poses', 'poses_topic': '/p'}, ['PoseArray', 'JointState']),
         ({'output_topic': '/body_poses', 'poses_topic': '/p'}, ['/body_poses', 'PoseArray']),
         ({'output_topic': '/rotor_state'}, ['/rotor_state', 'twice']),
+        ({'topics': ['/rotor_state', '/grip']}, ['no /grip in it', '/rotor_state']),
     ],
-    ids=['missing', 'wrong type', 'not an output', 'twice'],
+    ids=['missing', 'wrong type', 'not an output', 'twice', 'other missing'],
 )
 def test_an_unusable_topic_is_named_and_nothing_is_written(options, words, tmp_path):
     with pytest.raises(ValueError, match=words[0]) as caught:

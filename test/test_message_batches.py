@@ -135,13 +135,15 @@ def test_batches_of_input_are_accepted_as_one_by_one(batches, joint, encoder, di
     one_by_one, at_once = RotorInput(settings), RotorInput(settings)
     for batch in batches:
         clock = [7 * SECOND + k for k in range(len(batch))]
-        expected = []
-        for data, now in zip(batch, clock, strict=True):
+        expected, rows = [], []
+        for row, (data, now) in enumerate(zip(batch, clock, strict=True)):
             try:
                 expected.append(one_by_one.accept(data, lambda now=now: now))
             except RejectedInputError:
                 continue
+            rows.append(row)
         samples = at_once.accept_batch(batch, clock)
+        assert samples.row.tolist() == rows
         assert samples.stamp.tolist() == [sample.stamp for sample in expected]
         for k, sample in enumerate(expected):
             assert samples.turns[k] == float(sample.position.turns)

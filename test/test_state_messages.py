@@ -2,18 +2,20 @@
 
 import math
 from itertools import combinations
+from operator import itemgetter
 
 import oracle
 import pytest
 from geometry_msgs.msg import PoseArray
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
+from live import SECOND, rotor_bytes
 from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.kinematics import RotorPosition, solve, split_turns
-from gear_kinematics.rotor_input import RotorSample
+from gear_kinematics.kinematics import Branch, Mechanism, RotorPosition, solve, split_turns
+from gear_kinematics.rotor_input import InputSettings, RotorInput, RotorSample
 from gear_kinematics.state_messages import StateMessages
 
 STAMP = 12_345_678_901
@@ -25,6 +27,7 @@ TYPES = {
 }
 DIGITS = 1e-12  # of the eccentricity, of a radian within the turn
 LARGEST_ANGLE = 2**51 * math.tau  # rad: the node takes no position beyond
+OUTPUTS = ('output_state', 'body_poses')
 TINY = 1e-20  # rates below: the oracle differentiates numerically, at 50 digits
 
 
@@ -200,3 +203,35 @@ def test_messages_have_the_bits_of_a_batch(mechanism, position, velocity):
     slides = slice(1 + len(mechanism.branches), -1)
     assert joints.position[slides].tolist() == batch.satellite_slide[0].tolist()
     assert joints.velocity[slides].tolist() == batch.satellite_slide_velocity[0].tolist()
+
+
+rates = st.none() | st.floats(-1e300, 1e300)
+
+
+@given(
+    mechanisms(),
+    st.lists(
+        st.tuples(
+            st.integers(0, 2**31 * SECOND - 1),
+            st.floats(-LARGEST_ANGLE, LARGEST_ANGLE) | st.floats(-1e3, 1e3),
+            rates,
+            rates,
+        ),
+        max_size=20,
+    ),
+    st.sampled_from([1, -1]),
+)
+@example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0)] * 2, -1)
+def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction):
+    """To the last bit, by way of the input, which gives numbers for turns and NaN for None."""
+    settings = InputSettings('', direction, 0.0, 'multi_turn', 650.0, 6500.0)
+    messages = [
+        rotor_bytes(stamp, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both))
+        for stamp, angle, *both in sorted(inputs, key=itemgetter(0))
+    ]
+    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
+    states = StateMessages(mechanism, **NAMES)
+    samples = [one_by_one.accept(data, lambda: 1) for data in messages]
+    expected = [dict(states.encode(sample, OUTPUTS)) for sample in samples]
+    found = states.encode_outputs(at_once.accept_batch(messages, [1] * len(messages)))
+    assert found == {topic: [each[topic] for each in expected] for topic in OUTPUTS}

@@ -4,10 +4,10 @@
 rosbags refuses unfinished and damaged files as a whole and takes longer over each message.
 """
 
-from gear_kinematics.bag.errors import BagError, DamagedBagError
+from gear_kinematics.bag.errors import BagError, DamagedBagError, TopicError
 from gear_kinematics.bag.reading import Bag, BagMessage, read_bag
-from gear_kinematics.bag.storage import RawMessage
-from gear_kinematics.bag.topics import TOPIC_TYPES, Topic
+from gear_kinematics.bag.storage import RawMessage, in_batches
+from gear_kinematics.bag.topics import TOPIC_TYPES, Topic, listed
 from gear_kinematics.bag.writing import BagWriter, write_bag
 
 __all__ = [
@@ -19,6 +19,9 @@ __all__ = [
     'DamagedBagError',
     'RawMessage',
     'Topic',
+    'TopicError',
+    'in_batches',
+    'listed',
     'read_bag',
     'write_bag',
 ]

@@ -9,6 +9,7 @@ from typing import IO, Any
 import lz4.frame  # type: ignore[import-untyped]
 
 from gear_kinematics.bag.errors import cause
+from gear_kinematics.bag.limits import CHUNK_EXPANSION, FILE_EXPANSION, Budget, expanded_size
 
 if sys.version_info >= (3, 14):
     from compression import zstd
@@ -19,11 +20,6 @@ Decompressor = Callable[[bytes, int], tuple[bytes, bool]]
 """Decompresses at most so many bytes of a frame, and tells whether that was all of it."""
 
 FileOpener = Callable[[IO[bytes]], Any]
-
-MAX_RECORD = 2**30
-"""Bytes, of a chunk or message, also once decompressed."""
-
-_MAX_EXPANSION = 1000  # of a compressed file; recordings reach about 20
 
 
 def _unzstd(data: bytes, limit: int) -> tuple[bytes, bool]:
@@ -37,15 +33,26 @@ def _unlz4(data: bytes, limit: int) -> tuple[bytes, bool]:
     return decompressor.decompress(data, min(limit, 256 * len(data))), decompressor.eof
 
 
+def expanded(decompress: Decompressor, data: bytes, budget: Budget) -> tuple[bytes, bool]:
+    """Decompress a chunk or message as far as it may expand, and tell whether that was all.
+
+    Raises:
+        ValueError: if the bag holds too much.
+    """
+    content, whole = decompress(data, expanded_size(len(data), CHUNK_EXPANSION))
+    budget.expand(len(content))
+    return content, whole
+
+
 def decompress_file(source: IO[bytes], target: Path, opener: FileOpener) -> str:
     """Decompress as much as there is, and tell what stopped it early, if anything."""
-    left = _MAX_EXPANSION * os.fstat(source.fileno()).st_size
+    limit = left = expanded_size(os.fstat(source.fileno()).st_size, FILE_EXPANSION)
     with target.open('wb') as output, opener(source) as expanded:
         try:
             while piece := expanded.read1(2**18):  # what there is, unlike read()
                 left -= output.write(piece)
                 if left < 0:
-                    raise ValueError(f'decompresses to more than {_MAX_EXPANSION} times its size')
+                    raise ValueError(f'it expands to more than {limit} bytes')
         except Exception as error:  # noqa: BLE001, of two libraries
             return cause(error)
     return ''

@@ -6,11 +6,21 @@ from typing import Any, NamedTuple
 
 import yaml
 
+try:
+    from yaml import CSafeLoader as SafeLoader
+except ImportError:  # PyYAML was built without libyaml
+    from yaml import SafeLoader  # type: ignore[assignment]
+
 from gear_kinematics.bag.compression import DECOMPRESSORS
 from gear_kinematics.bag.errors import bag_errors
 from gear_kinematics.bag.topics import Topic
 
 _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
+
+_MAX_YAML = 2**22  # characters: metadata of ten thousand topics or files
+_MAX_EVENTS = 400_000  # of the parser, likewise
+_MAX_DEPTH = 20
+_MAX_FILES = 50_000
 
 
 class Contents(NamedTuple):
@@ -42,7 +52,8 @@ def find_contents(path: Path) -> Contents:
         with bag_errors(metadata):
             if not metadata.is_file():  # a device may have no end
                 raise ValueError('not a regular file')
-            return _listed_contents(path, parse_yaml(metadata.read_text('utf-8')))
+            with metadata.open(encoding='utf-8') as file:
+                return _listed_contents(path, parse_yaml(file.read(_MAX_YAML + 1)))
     # A recorder that is killed writes none.
     files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
     if not files:
@@ -52,7 +63,7 @@ def find_contents(path: Path) -> Contents:
     return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(SafeLoader):
     """Takes no merge keys (`<<`), by which a few lines can stand for endlessly many."""
 
     def flatten_mapping(self, _node: yaml.MappingNode) -> None:
@@ -60,7 +71,21 @@ class _Loader(yaml.SafeLoader):
 
 
 def parse_yaml(text: str) -> Any:
-    """Parse what a bag says in YAML."""
+    """Parse what a bag says in YAML.
+
+    Raises:
+        ValueError: if that is more than any recorder writes.
+    """
+    if len(text) > _MAX_YAML:
+        raise ValueError(f'more than {_MAX_YAML} characters of YAML')
+    depth = 0
+    for number, event in enumerate(yaml.parse(text, _Loader), start=1):
+        depth += isinstance(event, yaml.CollectionStartEvent)
+        depth -= isinstance(event, yaml.CollectionEndEvent)
+        if number > _MAX_EVENTS:
+            raise ValueError(f'more than {_MAX_EVENTS} values in YAML')
+        if depth > _MAX_DEPTH:  # libyaml is not stopped by a limit of recursion
+            raise ValueError(f'YAML is nested deeper than {_MAX_DEPTH} levels')
     return yaml.load(text, _Loader)  # noqa: S506, it is a SafeLoader
 
 
@@ -79,9 +104,12 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     for entry in information['topics_with_message_count']:
         topic = _listed_topic(entry['topic_metadata'])
         topics.setdefault(topic.name, topic)
-    files = [_listed_file(path, name) for name in information['relative_file_paths']]
-    if not files:
+    names = information['relative_file_paths']
+    if not names:
         raise ValueError('no files are listed')
+    if len(names) > _MAX_FILES:
+        raise ValueError(f'more than {_MAX_FILES} files are listed')
+    files = [_listed_file(path, name) for name in names]
     if len(set(files)) < len(files):
         raise ValueError('a file is listed more than once')
     return Contents(files, topics, message_count)

@@ -13,6 +13,10 @@ class DamagedBagError(BagError):
     """A bag that is damaged behind messages that could be read; the text also says where."""
 
 
+class TopicError(BagError):
+    """A topic that cannot be copied; the text names it, its bag and the cause."""
+
+
 def cause(error: BaseException) -> str:
     """Put an error of any library into one line."""
     if isinstance(error, KeyError):
@@ -36,11 +40,11 @@ def unexpected(error: Exception, *, debug: bool) -> str:
 
 
 @contextmanager
-def bag_errors(name: object) -> Iterator[None]:
+def bag_errors(name: object, kind: type[BagError] = BagError) -> Iterator[None]:
     """Turn whatever a library raises about bytes on disk into a BagError that names the file."""
     try:
         yield
     except BagError:
         raise
     except Exception as error:
-        raise BagError(f'{name}: {cause(error)}') from error
+        raise kind(f'{name}: {cause(error)}') from error

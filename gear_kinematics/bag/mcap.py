@@ -8,19 +8,28 @@ from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
-from gear_kinematics.bag.compression import DECOMPRESSORS, MAX_RECORD
+from gear_kinematics.bag.compression import DECOMPRESSORS
+from gear_kinematics.bag.limits import (
+    CHUNK_EXPANSION,
+    MAX_RECORD,
+    Budget,
+    Descriptions,
+    expanded_size,
+)
 from gear_kinematics.bag.storage import RawMessage, Storage
 from gear_kinematics.bag.topics import Topic, check_encoding
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
-_FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _STATISTICS, _DATA_END = 2, 3, 4, 5, 6, 11, 15
-_DATA = frozenset({_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK})
-_KNOWLEDGE = frozenset({_SCHEMA, _CHANNEL, _STATISTICS})
+_FOOTER, _SCHEMA, _CHANNEL, MESSAGE, _CHUNK, _STATISTICS, _DATA_END = 2, 3, 4, 5, 6, 11, 15
+_DATA = frozenset({_SCHEMA, _CHANNEL, MESSAGE, _CHUNK})
+_DESCRIPTIONS = frozenset({_SCHEMA, _CHANNEL})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
-_RECORD = struct.Struct('<BQ')  # opcode, length of what follows
+RECORD = struct.Struct('<BQ')  # opcode, length of what follows
 _MESSAGE_START = struct.Struct('<H4xQ')  # channel, reception; the data begin at byte 22
 _LATEST = 2**63 - 1  # ns
 _BATCH = 4096  # messages outside of chunks that are handled together
+_BATCH_SIZE = 2**22  # bytes, likewise
+_AT_ONCE = 65_536  # records of a chunk; those of a recorder have fewer
 _RECEIVED = itemgetter(1)
 
 
@@ -31,8 +40,8 @@ class Mcap(Storage):
     without one is read like any other.
     """
 
-    def __init__(self, path: Path) -> None:
-        super().__init__()
+    def __init__(self, path: Path, budget: Budget) -> None:
+        super().__init__(budget)
         self._stream = path.open('rb')
         self._size = os.fstat(self._stream.fileno()).st_size
         self._offset = 0
@@ -103,13 +112,13 @@ class Mcap(Storage):
 
     def _batches(self) -> Iterator[list[RawMessage]]:
         """Walk through the file; on damage, give the messages before it and then raise."""
-        stream, batch = self._stream, list[RawMessage]()
+        stream, batch, size = self._stream, list[RawMessage](), 0
         self._offset = stream.seek(len(MCAP_MAGIC))
         try:
-            while header := stream.read(_RECORD.size):  # an unfinished file just ends
-                if len(header) < _RECORD.size:
+            while header := stream.read(RECORD.size):  # an unfinished file just ends
+                if len(header) < RECORD.size:
                     raise _CutOffError
-                opcode, length = _RECORD.unpack(header)
+                opcode, length = RECORD.unpack(header)
                 left = self._size - self._offset - 9
                 if opcode in {_FOOTER, _DATA_END}:
                     break
@@ -120,15 +129,16 @@ class Mcap(Storage):
                         raise ValueError(f'a record of {length} bytes is too large')
                     body = stream.read(min(length, left))
                     if opcode != _CHUNK:
-                        self._walk(header + body, batch)
+                        self._walk(header + body, 0, batch)
+                        size += len(body)
                     else:
                         with suppress(Exception) if length > left else nullcontext():
-                            self._walk(_chunk_records(body, whole=length <= left), batch)
+                            yield from self._fill(batch, body, whole=length <= left)
                 if length > left:
                     raise _CutOffError
-                if opcode == _CHUNK or len(batch) >= _BATCH:
+                if opcode == _CHUNK or len(batch) >= _BATCH or size >= _BATCH_SIZE:
                     yield batch
-                    batch = []
+                    batch, size = [], 0
                 self._offset += 9 + length
                 stream.seek(self._offset)
         except Exception:
@@ -136,30 +146,52 @@ class Mcap(Storage):
             raise
         yield batch
 
-    def _walk(self, records: bytes, batch: list[RawMessage]) -> None:
-        """Append the wanted messages among records, up to the first damage."""
+    def _fill(
+        self, batch: list[RawMessage], chunk: bytes, *, whole: bool
+    ) -> Iterator[list[RawMessage]]:
+        """Fill a batch from a chunk; whenever it is full, give what is in it and begin anew."""
+        records, end = self._chunk_records(chunk, whole=whole), 0
+        while (end := self._walk(records, end, batch)) < len(records):
+            yield batch[:]
+            batch.clear()
+
+    def _walk(
+        self,
+        records: bytes,
+        end: int,
+        batch: list[RawMessage],
+        learned: Collection[int] = _DESCRIPTIONS,
+    ) -> int:
+        """Append the wanted messages among the next records, up to the first damage.
+
+        Returns:
+            Where it ended.
+        """
         wanted = self._wanted_channels
-        unpack_record, unpack_message = _RECORD.unpack_from, _MESSAGE_START.unpack_from
-        end, size = 0, len(records)
+        unpack_record, unpack_message = RECORD.unpack_from, _MESSAGE_START.unpack_from
+        size, number = len(records), 0
         try:
-            while end < size:
+            while end < size and number < _AT_ONCE:
+                number += 1
                 opcode, length = unpack_record(records, end)
                 start = end + 9
                 end = start + length
                 if end > size:
                     raise _CutOffError
-                if opcode == _MESSAGE:
+                if opcode == MESSAGE:
                     channel, received = unpack_message(records, start)
                     if channel in wanted:
                         if received > _LATEST:
                             raise ValueError('a time of reception is out of range')
                         batch.append((wanted[channel], received, records[start + 22 : end]))
-                elif opcode in _KNOWLEDGE:
+                elif opcode in learned:
                     self._learn(opcode, records[start:end])
                 elif not opcode:
                     raise ValueError('there is no record')
         except struct.error as error:
             raise _CutOffError from error
+        self.budget.count(number)
+        return end
 
     def _learn(self, opcode: int, body: bytes) -> None:
         if opcode == _STATISTICS:
@@ -167,11 +199,14 @@ class Mcap(Storage):
             self._counts = dict(struct.iter_unpack('<HQ', body[46 : 46 + size]))
             return
         number, schema = struct.unpack_from('<HH', body)
+        if number in (self._schemas if opcode == _SCHEMA else self._channels):
+            return
+        self.descriptions.add(len(body))
         if opcode == _SCHEMA:
             # Definitions that are no text belong to encodings that are of no use here.
             texts = [text.decode(errors='replace') for text in _strings(body[2:], 3)]
             self._schemas[number] = texts[0], texts[1], texts[2]
-        elif number not in self._channels:
+        else:
             name, encoding, metadata = _strings(body[4:], 3)
             texts = [text.decode() for text in _strings(metadata)]
             known = dict(zip(texts[::2], texts[1::2], strict=True))
@@ -200,9 +235,30 @@ class Mcap(Storage):
             opcode, _, start, _, _, magic = struct.unpack('<BQQQI8s', self._stream.read())
             if (opcode, magic) == (_FOOTER, MCAP_MAGIC) and 0 < end - start < MAX_RECORD:
                 self._stream.seek(start)
-                self._walk(self._stream.read(end - start), [])
+                records, place = self._stream.read(end - start), 0
+                while place < len(records):
+                    place = self._walk(records, place, [], {*_DESCRIPTIONS, _STATISTICS})
         except Exception:  # noqa: BLE001, bytes of any kind
             self._schemas, self._channels, self._counts, self._total = {}, {}, {}, None
+            self.descriptions = Descriptions()
+
+    def _chunk_records(self, body: bytes, *, whole: bool) -> bytes:
+        """Take the records out of a chunk; as many as there are, if it is not whole."""
+        size, crc, name_length = struct.unpack_from('<16xQII', body)
+        name = body[32 : 32 + name_length].decode()
+        (length,) = struct.unpack_from('<Q', body, 32 + name_length)
+        data = body[40 + name_length :][:length]
+        if name and name not in DECOMPRESSORS:
+            raise ValueError(f'unsupported compression {name!r}')
+        if name and size > expanded_size(len(data), CHUNK_EXPANSION):
+            raise ValueError(f'a chunk of {size} bytes is too large')
+        records = DECOMPRESSORS[name](data, size + 1)[0] if name else data
+        self.budget.expand(len(records) if name else 0)
+        if whole and len(records) != size:
+            raise ValueError('a chunk is not of the size that it should have')
+        if whole and crc and crc32(records) != crc:
+            raise ValueError('a chunk does not match its checksum')
+        return records
 
 
 class _CutOffError(ValueError):
@@ -221,21 +277,3 @@ def _strings(data: bytes, count: int | None = None) -> list[bytes]:
             raise ValueError('a string is longer than its record')
         strings.append(data[start:end])
     return strings
-
-
-def _chunk_records(body: bytes, *, whole: bool) -> bytes:
-    """Take the records out of a chunk; as many as there are, if it is not whole."""
-    size, crc, name_length = struct.unpack_from('<16xQII', body)
-    name = body[32 : 32 + name_length].decode()
-    (length,) = struct.unpack_from('<Q', body, 32 + name_length)
-    data = body[40 + name_length :][:length]
-    if size > MAX_RECORD:
-        raise ValueError(f'a chunk of {size} bytes is too large')
-    if name and name not in DECOMPRESSORS:
-        raise ValueError(f'unsupported compression {name!r}')
-    records = DECOMPRESSORS[name](data, size + 1)[0] if name else data
-    if whole and len(records) != size:
-        raise ValueError('a chunk is not of the size that it should have')
-    if whole and crc and crc32(records) != crc:
-        raise ValueError('a chunk does not match its checksum')
-    return records

@@ -8,12 +8,13 @@ from typing import IO
 
 from gear_kinematics.bag.compression import FILE_OPENERS, decompress_file
 from gear_kinematics.bag.errors import BagError, DamagedBagError, cause
+from gear_kinematics.bag.limits import Budget
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
 from gear_kinematics.bag.ros1 import Ros1
 from gear_kinematics.bag.sqlite import Sqlite
 from gear_kinematics.bag.storage import Storage
 
-_KINDS: Mapping[bytes, Callable[[Path], Storage]] = {
+_KINDS: Mapping[bytes, Callable[[Path, Budget], Storage]] = {
     MCAP_MAGIC: Mcap,
     b'SQLite format 3\0': Sqlite,
     b'#ROSBAG V2.0': Ros1,
@@ -21,11 +22,12 @@ _KINDS: Mapping[bytes, Callable[[Path], Storage]] = {
 
 
 @contextmanager
-def opened(file: Path, read: int = 0) -> Iterator[Storage]:
+def opened(file: Path, budget: Budget, read: int = 0) -> Iterator[Storage]:
     """Open a file of a bag; a compressed one by way of a temporary file.
 
     Args:
         file: to open.
+        budget: what may come out of the files of the bag.
         read: messages that were read before, from other files.
 
     Raises:
@@ -44,7 +46,7 @@ def opened(file: Path, read: int = 0) -> Iterator[Storage]:
             kind = next((kind for magic, kind in _KINDS.items() if start.startswith(magic)), None)
             if not kind:
                 raise ValueError('not a bag of a known kind' if start else 'the file is empty')
-            storage = stack.enter_context(closing(kind(content)))
+            storage = stack.enter_context(closing(kind(content, budget)))
             yield storage
             if broken:
                 raise ValueError(broken)

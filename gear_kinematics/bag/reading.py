@@ -10,6 +10,7 @@ from typing import NamedTuple, Self
 from gear_kinematics.bag.compression import MESSAGE_DECOMPRESSORS
 from gear_kinematics.bag.contents import find_contents
 from gear_kinematics.bag.errors import BagError, bag_errors
+from gear_kinematics.bag.limits import Budget, Descriptions
 from gear_kinematics.bag.opening import opened
 from gear_kinematics.bag.storage import RawMessage
 from gear_kinematics.bag.topics import Topic
@@ -93,14 +94,23 @@ class Bag:
             qos=topic.qos or listed.qos,
         )
 
+    def _budget(self) -> Budget:
+        return Budget(sum(file.stat().st_size for file in self._files if file.exists()))
+
     def _describe(self) -> None:
         """Collect what the files say about topics, and count messages if nothing else did."""
         counts: list[int | None] = []
+        budget, descriptions, definitions = self._budget(), Descriptions(), set[str]()
         for file in self._files:
             try:
-                with opened(file) as storage:
+                with opened(file, budget) as storage:
                     for topic in storage.topics():
-                        self._described.setdefault(topic.name, topic)
+                        if topic.name in self._described:
+                            continue
+                        new = topic.definition not in definitions
+                        descriptions.add(len(topic.definition) if new else 0)
+                        definitions.add(topic.definition)
+                        self._described[topic.name] = topic
                     counts.append(storage.count())
             except BagError:
                 if not counts:
@@ -113,9 +123,9 @@ class Bag:
             self.message_count = sum(known) if len(known) == len(counts) else None
 
     def _read(self, topics: frozenset[str]) -> Generator[RawMessage, None, None]:
-        read = 0
+        read, budget = 0, self._budget()
         for file in self._files:
-            with opened(file, read) as storage:
+            with opened(file, budget, read) as storage:
                 messages = storage.messages(topics)
                 for first in messages:
                     messages = chain([first], messages)

@@ -10,6 +10,7 @@ from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics.bag.limits import Budget
 from gear_kinematics.bag.storage import RawMessage, Storage
 from gear_kinematics.bag.topics import Topic, check_encoding
 
@@ -23,8 +24,8 @@ _REASONS = {
 class Sqlite(Storage):
     """An sqlite3 file."""
 
-    def __init__(self, path: Path) -> None:
-        super().__init__()
+    def __init__(self, path: Path, budget: Budget) -> None:
+        super().__init__(budget)
         with ExitStack() as stack:
             path = _whole_pages(path, stack)
             # Without a journal nothing changes: no need for locks, which read-only media lack.
@@ -35,8 +36,8 @@ class Sqlite(Storage):
             stack.enter_context(closing(self._database))
             self._database.set_authorizer(_only_tables)
             # Pages that are in a tree again and again make more rows than anybody can read.
-            size = sum(file.stat().st_size for file in (path, journal) if file.exists())
-            self._steps = 100_000 + 10 * size
+            self._size = sum(file.stat().st_size for file in (path, journal) if file.exists())
+            self._steps = 100_000 + 10 * self._size
             self._database.set_progress_handler(self._spend, _STEPS)
             for table in ('topics', 'message_definitions', 'messages'):
                 columns = self._execute(f'PRAGMA table_xinfo({table})')
@@ -54,10 +55,14 @@ class Sqlite(Storage):
         return self._database.execute(query, tuple(parameters))
 
     def _rows(self, table: str) -> list[dict[str, Any]]:
+        rows = []
         with _reasons():
             cursor = self._execute(f'SELECT * FROM {table}')  # noqa: S608, our own names
             names = [column[0] for column in cursor.description]
-            return [dict(zip(names, row, strict=True)) for row in cursor]
+            for row in cursor:
+                self.descriptions.add(sum(len(str(value)) for value in row))
+                rows.append(dict(zip(names, row, strict=True)))
+        return rows
 
     def _spend(self) -> bool:
         """Count steps of sqlite's machine, and tell it to stop when they are used up."""
@@ -103,7 +108,7 @@ class Sqlite(Storage):
             check_encoding(topic)
         names = {key: topic.name for key, topic in wanted.items()}
         places = ','.join('?' * len(names))
-        number = 0
+        number, left = 0, self._size
         try:
             with _reasons():
                 for key, received, data in self._execute(
@@ -113,6 +118,9 @@ class Sqlite(Storage):
                 ):
                     if type(data) is not bytes or type(received) is not int:
                         raise ValueError('a message without a time or data')
+                    left -= len(data)
+                    if left < 0:  # pages that are in message after message
+                        raise ValueError('the messages are longer than the file')
                     yield names[key], received, data
                     number += 1
         finally:

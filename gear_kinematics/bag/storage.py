@@ -1,18 +1,47 @@
 """The interface of storages: the files that a bag consists of."""
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
-from gear_kinematics.bag.compression import MAX_RECORD, Decompressor
+from gear_kinematics.bag.compression import Decompressor, expanded
+from gear_kinematics.bag.limits import Budget, Descriptions
 from gear_kinematics.bag.topics import Topic
 
 RawMessage = tuple[str, int, bytes]
 """Topic, reception in ns, CDR."""
 
+_BATCH_SIZE = 2**24  # bytes
+
+
+def in_batches(messages: Iterable[RawMessage], count: int) -> Iterator[list[RawMessage]]:
+    """Gather messages, up to so many at a time, and no more than take little memory.
+
+    What came before an exception is given before it is raised; the last batch can be empty.
+    """
+    batch, size = list[RawMessage](), 0
+    try:
+        for message in messages:
+            batch.append(message)
+            size += len(message[2])
+            if len(batch) == count or size >= _BATCH_SIZE:
+                yield batch
+                batch, size = [], 0
+    except Exception:
+        yield batch
+        raise
+    yield batch
+
 
 class Storage:
     """A file of a bag."""
 
-    def __init__(self) -> None:
+    def __init__(self, budget: Budget) -> None:
+        """Begin.
+
+        Args:
+            budget: what may come out of the files of the bag.
+        """
+        self.budget = budget
+        self.descriptions = Descriptions()
         self.read = 0
         """Messages that have been taken out; up to date whenever an error is raised."""
 
@@ -43,7 +72,7 @@ class Storage:
         number = 0
         try:
             for topic, received, data in messages:
-                message, whole = decompress(data, MAX_RECORD)
+                message, whole = expanded(decompress, data, self.budget)
                 if not whole:
                     raise ValueError('a compressed message is cut off or too large')
                 yield topic, received, message

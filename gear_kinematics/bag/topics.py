@@ -1,10 +1,11 @@
 """Topics: what a bag says about them, and the definitions of their types."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
-from rosbags.typesys import Stores, get_types_from_idl, get_types_from_msg, get_typestore
-from rosbags.typesys.store import Typestore
+from rosbags.typesys import Stores, get_typestore
+
+from gear_kinematics.bag.ros1_types import ros1_types
 
 TOPIC_TYPES: Mapping[str, str] = {
     '/rotor_state': 'sensor_msgs/msg/JointState',
@@ -13,7 +14,7 @@ TOPIC_TYPES: Mapping[str, str] = {
 }
 """The topics of a recording, by their names in the root namespace."""
 
-_IDL_FILE = f'{"=" * 80}\nIDL: '
+_SHOWN = 10  # topics
 
 
 class Topic(NamedTuple):
@@ -32,6 +33,12 @@ class Topic(NamedTuple):
     """The offered profiles, as a list or as YAML."""
 
 
+def listed(names: Collection[str]) -> str:
+    """Name topics in a line, of many only the first: a bag can have tens of thousands."""
+    shown, more = sorted(names)[:_SHOWN], max(0, len(names) - _SHOWN)
+    return ', '.join(f'{name:.100}' for name in shown) + (f' and {more} more' if more else '')
+
+
 def check_encoding(topic: Topic) -> None:
     """Make sure that the messages on a topic are CDR.
 
@@ -42,27 +49,6 @@ def check_encoding(topic: Topic) -> None:
         raise ValueError(f'messages on {topic.name} are {topic.encoding!r}, not CDR')
 
 
-def typestore(topic: Topic) -> Typestore:
-    """Make a store of the types that a topic's definition defines, as they are in ROS 2.
-
-    Only ROS 1 messages and the writer need it.
-    """
-    types: dict[str, Any] = {}
-    if topic.syntax == 'ros2idl':
-        for text in topic.definition.split(_IDL_FILE):
-            types.update(get_types_from_idl(text.partition('\n')[2]) if text.strip() else {})
-    else:
-        types.update(get_types_from_msg(topic.definition, topic.type))
-    jazzy = get_typestore(Stores.ROS2_JAZZY).fielddefs
-    if topic.syntax == 'ros1msg':  # its header also has a number
-        types['std_msgs/msg/Header'] = jazzy['std_msgs/msg/Header']
-    for name in ('builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration'):
-        types.setdefault(name, jazzy[name])  # primitive in ROS 1
-    store = get_typestore(Stores.EMPTY)
-    store.register(types)
-    return store
-
-
 def jazzy_definition(message_type: str) -> tuple[str, str]:
     """Give the definition and the hash of a type of ROS 2 Jazzy."""
     store = get_typestore(Stores.ROS2_JAZZY)
@@ -71,14 +57,24 @@ def jazzy_definition(message_type: str) -> tuple[str, str]:
     return store.generate_msgdef(message_type, ros_version=2)[0], store.hash_rihs01(message_type)
 
 
-def ros2_definition(topic: Topic) -> tuple[str, str]:
-    """Give the definition and the hash of a topic's type, the bag's own if it has them."""
-    if not topic.definition:
-        return jazzy_definition(topic.type)
+def as_ros2(topic: Topic) -> Topic:
+    """Give a topic as ROS 2 records it; of a type without a definition that is the name alone.
+
+    Raises:
+        ValueError: if the type is defined in a syntax that ROS 2 does not have.
+    """
     if topic.syntax == 'ros1msg':
-        store = typestore(topic)
-        return store.generate_msgdef(topic.type, ros_version=2)[0], store.hash_rihs01(topic.type)
-    # rosbags takes a definition that does not begin so for one of the other syntax.
-    if topic.syntax != ('ros2idl' if topic.definition.startswith(_IDL_FILE) else 'ros2msg'):
+        store, _ = ros1_types(topic.type, topic.definition)
+        definition, _ = store.generate_msgdef(topic.type, ros_version=2)
+        type_hash = store.hash_rihs01(topic.type)
+    elif not topic.definition and topic.type in get_typestore(Stores.ROS2_JAZZY).fielddefs:
+        definition, type_hash = jazzy_definition(topic.type)
+    elif topic.syntax in {'ros2msg', 'ros2idl'}:
+        return topic
+    elif topic.definition:
         raise ValueError(f'its type is defined in unknown {topic.syntax!r}')
-    return topic.definition, topic.type_hash or typestore(topic).hash_rihs01(topic.type)
+    else:
+        return topic._replace(syntax='')
+    return topic._replace(
+        syntax='ros2msg', definition=definition, type_hash=topic.type_hash or type_hash
+    )

@@ -3,14 +3,13 @@
 import shutil
 import sqlite3
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
 
 from rosbags.interfaces import (
-    Connection,
     Qos,
     QosDurability,
     QosHistory,
@@ -18,14 +17,18 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2.metadata import parse_qos
 
 from gear_kinematics.bag.contents import parse_yaml
-from gear_kinematics.bag.errors import BagError, bag_errors, cause
+from gear_kinematics.bag.errors import BagError, TopicError, bag_errors, cause
 from gear_kinematics.bag.reading import Bag, BagMessage
-from gear_kinematics.bag.topics import TOPIC_TYPES, jazzy_definition, ros2_definition
+from gear_kinematics.bag.storage import RawMessage, in_batches
+from gear_kinematics.bag.storage_writers import BulkWriter
+from gear_kinematics.bag.topics import TOPIC_TYPES, Topic, as_ros2, jazzy_definition
 
+_BATCH = 1024  # messages
+_MAX_ENTRIES = 4000  # of metadata; rosbags takes 3 ms to write one
 _FOREVER = QosTime(9223372036, 854775807)
 _RELIABLE = Qos(
     QosHistory.KEEP_LAST,
@@ -64,7 +67,8 @@ class BagWriter:
         self._storage = StoragePlugin[storage.upper()]
         modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}
         self._compression = modes[storage] if compression == 'zstd' else CompressionMode.NONE
-        self._connections: dict[str, Connection] = {}
+        self._numbers: dict[str, int] = {}
+        self._entries = 0
 
     def __enter__(self) -> Self:
         """Begin.
@@ -80,7 +84,7 @@ class BagWriter:
             # rosbags names the file after the folder it writes to. rosbag2 numbers the files of a
             # bag, and its reindexer finds no others.
             self._partial = Path(folder, f'{self.path.name}_0')
-            self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)
+            self._writer = BulkWriter(self._partial, version=9, storage_plugin=self._storage)
             self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
             self._writer.open()
             self._folder = stack.pop_all()
@@ -109,21 +113,30 @@ class BagWriter:
             BagError: if it has been added already, or the type is unknown.
         """
         with bag_errors(self.path):
-            self._add(name, message_type, *jazzy_definition(message_type), [_RELIABLE])
+            definition = jazzy_definition(message_type)
+            self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [_RELIABLE])
 
-    def copy_topic(self, bag: Bag, name: str) -> None:
+    def copy_topic(self, bag: Bag, name: str) -> Topic:
         """Add a topic as it is in another bag, with its type definition, hash and QoS.
 
+        A type that neither the bag nor ROS 2 Jazzy defines is written without a definition, as
+        rosbag2 does.
+
+        Returns:
+            What is written about the topic.
+
         Raises:
-            BagError: if it has been added already, or the bag lacks what is needed for it.
+            TopicError: if it cannot be copied.
+            BagError: if it has been added already, or the bag cannot be read.
         """
         topic = bag.describe(name)
-        with bag_errors(f'{bag.path}: {name} cannot be copied'):
+        with bag_errors(f'{bag.path}: {name} cannot be copied', TopicError):
             if topic.encoding != 'cdr':
                 raise ValueError(f'its messages are {topic.encoding!r}, not CDR')
-            definition, type_hash = ros2_definition(topic)
+            topic = as_ros2(topic)
             qos = parse_yaml(topic.qos) if isinstance(topic.qos, str) else topic.qos
-            self._add(name, topic.type, definition, type_hash, parse_qos(qos))
+            self._add(topic, parse_qos(qos))
+        return topic
 
     def write(self, topic: str, received: int, data: bytes) -> None:
         """Write a message.
@@ -136,23 +149,34 @@ class BagWriter:
         Raises:
             BagError: if the topic has not been added, or the message cannot be written.
         """
-        if topic not in self._connections:
-            raise BagError(f'{self.path}: topic {topic} has not been added')
-        if not 0 <= received < 2**63:
-            raise BagError(f'{self.path}: {received} is no time of reception')
+        self.write_all([(topic, received, data)])
+
+    def write_all(self, messages: Sequence[RawMessage]) -> None:
+        """Write messages, which is faster than one by one.
+
+        Raises:
+            BagError: see `write`.
+        """
+        if not messages:
+            return
+        topics, times, data = zip(*messages, strict=True)
+        if unknown := set(topics) - self._numbers.keys():
+            raise BagError(f'{self.path}: topic {min(unknown)} has not been added')
+        for time in (min(times), max(times)):
+            if not 0 <= time < 2**63:
+                raise BagError(f'{self.path}: {time} is no time of reception')
         try:
-            self._writer.write(self._connections[topic], received, data)
+            self._writer.write_all([self._numbers[topic] for topic in topics], times, data)
         except (OSError, sqlite3.Error) as error:
             raise BagError(f'{self.path}: {cause(error)}') from error
 
-    def _add(
-        self, name: str, message_type: str, definition: str, type_hash: str, qos: list[Qos]
-    ) -> None:
-        if name in self._connections:
-            raise BagError(f'{self.path}: topic {name} has been added already')
-        self._connections[name] = self._writer.add_connection(
-            name, message_type, msgdef=definition, rihs01=type_hash, offered_qos_profiles=qos
-        )
+    def _add(self, topic: Topic, qos: list[Qos]) -> None:
+        if topic.name in self._numbers:
+            raise BagError(f'{self.path}: topic {topic.name} has been added already')
+        self._entries += 1 + len(qos)
+        if self._entries > _MAX_ENTRIES:
+            raise ValueError(f'there are more than {_MAX_ENTRIES} topics and QoS profiles')
+        self._numbers[topic.name] = self._writer.add_topic(topic, qos)
 
 
 def write_bag(
@@ -171,5 +195,5 @@ def write_bag(
     with BagWriter(path, storage, 'zstd' if storage == 'mcap' else 'none') as writer:
         for topic, message_type in TOPIC_TYPES.items():
             writer.add_topic(topic, message_type)
-        for message in messages:
-            writer.write(*message)
+        for batch in in_batches(messages, _BATCH):
+            writer.write_all(batch)

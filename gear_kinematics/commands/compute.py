@@ -3,12 +3,13 @@
 import argparse
 from pathlib import Path
 
-from gear_kinematics.bag import Bag
+from gear_kinematics.bag import Bag, TopicError, listed
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, add_topics, load_config
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.compute import compute
 from gear_kinematics.fleet import find_topics
+from gear_kinematics.rendering.wording import printable
 
 HELP = 'write the outputs for a bag with the rotor topic'
 
@@ -19,6 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_topics(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='directory to make')
+    parser.add_argument(
+        '--topics', nargs='*', metavar='NAME', help='others to copy (default: all)'
+    )
     parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
     parser.add_argument('--compression', choices=('none', 'zstd'), default='none')
 
@@ -33,26 +37,34 @@ def run(options: argparse.Namespace) -> ExitCode:
 
         def told(now: int) -> None:
             nonlocal count
-            progress(now - count, bag.message_count)
+            progress(now - count, bag.message_count if options.topics is None else None)
             count = now
 
-        result = compute(
-            bag,
-            options.out,
-            config,
-            rotor_topic=rotor,
-            output_topic=options.output_topic or f'{namespace}/output_state',
-            poses_topic=options.poses_topic or f'{namespace}/body_poses',
-            storage=options.storage,
-            compression=options.compression,
-            progress=told,
-        )
+        try:
+            result = compute(
+                bag,
+                options.out,
+                config,
+                rotor_topic=rotor,
+                output_topic=options.output_topic or f'{namespace}/output_state',
+                poses_topic=options.poses_topic or f'{namespace}/body_poses',
+                topics=options.topics,
+                storage=options.storage,
+                compression=options.compression,
+                progress=told,
+            )
+        except TopicError as error:
+            raise TopicError(f'{error}; --topics says which topics to copy') from error
     rejected = ', '.join(f'{cause} {number}' for cause, number in result.rejected.items())
     print(
         f'{options.out}: {result.computed} outputs for {result.received} rotor states'
         + (f' (rejected: {rejected})' if rejected else '')
         + f', {result.copied} other messages copied'
     )
+    if result.left_out:
+        print(printable(f'left out: {listed(result.left_out)}'))
+    if result.undefined:
+        print(printable(f'copied without a definition of the type: {listed(result.undefined)}'))
     if result.mostly_rejected:
         complain(f'{options.bag}: most messages on {rotor} were rejected')
         return ExitCode.FAILED

@@ -26,6 +26,7 @@ from gear_kinematics.kinematics.vernier import Choice, PinSetting
 from gear_kinematics.rendering.json import dumps
 from gear_kinematics.vernier_drawing import draw
 
+_MAX_NEIGHBOURS = 1000
 HELP = 'pin holes for a turn of the ring gear, a preload or the phase of branch B'
 
 
@@ -106,8 +107,8 @@ def _answer(options: argparse.Namespace) -> _Answer:
     known, bracing, backlash = stiffness(options), ring_turn(options), options.backlash or 0.0
     if bracing is None and options.preload is None and not options.phase_b:
         raise ValueError('nothing is wanted: give --angle, --degrees, --preload or --phase-b')
-    if options.neighbours < 0:
-        raise ValueError(f'--neighbours must not be negative, not {options.neighbours}')
+    if not 0 <= options.neighbours <= _MAX_NEIGHBOURS:
+        raise ValueError(f'--neighbours must be 0 to {_MAX_NEIGHBOURS}, not {options.neighbours}')
     # The vernier alone needs no satellite.
     pair = mechanism(options) if known or options.phase_b or not options.ring_teeth else None
     ring_teeth = pair.ring_teeth if pair else options.ring_teeth
