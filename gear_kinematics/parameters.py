@@ -24,6 +24,7 @@ _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overr
 """Parameters that every node has, which mean nothing here."""
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """What rcl takes as a node's name in a parameter file; `*` is one token of it, `**` any number."""
+_MAX_LENGTH = 2**18  # characters of a parameter file, which takes seconds to parse
 
 
 class ConfigError(ValueError):
@@ -250,11 +251,16 @@ def _applies(pattern: str, name: str) -> bool:
 def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
     """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
     try:
-        document = yaml.load(path.read_text(encoding='utf-8'), _RosLoader)  # noqa: S506, it is safe
+        with path.open(encoding='utf-8') as file:
+            text = file.read(_MAX_LENGTH + 1)
     except OSError as error:
         raise ConfigError(f'{path}: {error.strerror}') from error
     except UnicodeDecodeError as error:
         raise ConfigError(f'{path}: {error}') from error
+    if len(text) > _MAX_LENGTH:
+        raise ConfigError(f'{path}: longer than {_MAX_LENGTH} characters')
+    try:
+        document = yaml.load(text, _RosLoader)  # noqa: S506, it is safe
     except (yaml.YAMLError, ValueError, RecursionError) as error:
         raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error
     blocks: dict[str, dict[str, Any]] = {}

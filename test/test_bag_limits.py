@@ -320,7 +320,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: wide_mcap(p / 'b.mcap'),
     ),
     'metadata of 100 000 topics': (
-        'metadata.yaml: more than 4194304 characters of YAML',
+        'metadata.yaml: YAML has 17388999 bytes where there may be 4194304',
         lambda p: metadata(p / 'b', (f'/{number}' for number in range(100_000))),
     ),
     'metadata of small values': (
@@ -331,6 +331,16 @@ BAGS: dict[str, tuple[str, Maker]] = {
         "'rosbag2_bagfile_information' is missing",
         lambda p: folder(p / 'b', {'metadata.yaml': f'a: [{399_000 * "a,"}]'}),
     ),
+    'metadata with a number of base 60': (
+        'metadata.yaml: YAML has 4000001 bytes where there may be 10000',
+        lambda p: folder(p / 'b', {'metadata.yaml': f'a: 1{2_000_000 * ":1"}'}),
+    ),
+    'metadata with numbers of one hash': (
+        'metadata.yaml: YAML has a mapping of more than 100 numbers',
+        lambda p: folder(p / 'b', {
+            'metadata.yaml': ''.join(f'{k * (2**61 - 1)}: a\n' for k in range(1, 150_000))
+        }),
+    ),
     'metadata that is nested': (
         'nested deeper than 20 levels',
         lambda p: folder(p / 'b', {'metadata.yaml': MB * '['}),
@@ -338,6 +348,10 @@ BAGS: dict[str, tuple[str, Maker]] = {
     'metadata of many files': (
         'more than 50000 files are listed',
         lambda p: metadata(p / 'b', ['/a'], (f'{number}.mcap' for number in range(200_000))),
+    ),
+    'parameters of small values': (
+        'actuator.yaml: longer than 262144 characters',
+        lambda p: folder(p / 'b', {'b_0.mcap': b'', 'actuator.yaml': f'a: [{MB * "a,"}]'}),
     ),
     'messages of 1 GiB': (
         'a compressed message is cut off or too large',

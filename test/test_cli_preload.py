@@ -262,7 +262,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         (['index', '--angle', '1', '--ring-teeth', '0'], 'must be between 2 and 100000, not 0'),
         (['index', '--angle', '1', '--ring-teeth', '-3'], 'at least 1 tooth, not -3'),
         (['index', '--angle', '1', '--from', '80', '0', '0'], 'tooth 80 is not one of 0 to 79'),
-        (['index', '--angle', '1', '--neighbours', '-1'], 'must not be negative, not -1'),
+        (['index', '--angle', '1', '--neighbours', '-1'], 'must be 0 to 1000, not -1'),
         (['index', '--angle', '1', '--backlash', '0.1'], '--branch-stiffness is missing'),
         (['index', '--angle', '1', '--config', 'none.yaml'], 'gearkin: none.yaml: No such file'),
         (['index', '--angle', '1', '--mirrored'], 'of use with --drawing only'),

@@ -17,8 +17,11 @@ from gear_kinematics.bag.topics import Topic
 
 _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
 
-_MAX_YAML = 2**22  # characters: metadata of ten thousand topics or files
-_MAX_EVENTS = 400_000  # of the parser, likewise
+_TEXT = 'tag:yaml.org,2002:str'
+_MAX_YAML = 2**22  # bytes: metadata of ten thousand topics or files
+_MAX_PLAIN = 10_000  # bytes of a value that may be anything but a text
+_MAX_NUMBERS = 100
+_MAX_EVENTS = 400_000
 _MAX_DEPTH = 20
 _MAX_FILES = 50_000
 
@@ -52,8 +55,8 @@ def find_contents(path: Path) -> Contents:
         with bag_errors(metadata):
             if not metadata.is_file():  # a device may have no end
                 raise ValueError('not a regular file')
-            with metadata.open(encoding='utf-8') as file:
-                return _listed_contents(path, parse_yaml(file.read(_MAX_YAML + 1)))
+            _check_length(metadata.stat().st_size)
+            return _listed_contents(path, parse_yaml(metadata.read_text('utf-8')))
     # A recorder that is killed writes none.
     files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
     if not files:
@@ -66,8 +69,13 @@ def find_contents(path: Path) -> Contents:
 class _Loader(SafeLoader):
     """Takes no merge keys (`<<`), by which a few lines can stand for endlessly many."""
 
-    def flatten_mapping(self, _node: yaml.MappingNode) -> None:
-        """Leave them to be refused as keys of no known kind."""
+    def flatten_mapping(self, node: yaml.MappingNode) -> None:
+        """Leave them to be refused as keys of no known kind, and many keys that are no texts.
+
+        The hashes of numbers can be made to collide, unlike those of texts.
+        """
+        if sum(key.tag != _TEXT for key, _ in node.value) > _MAX_NUMBERS:
+            raise ValueError(f'YAML has a mapping of more than {_MAX_NUMBERS} numbers')
 
 
 def parse_yaml(text: str) -> Any:
@@ -76,17 +84,23 @@ def parse_yaml(text: str) -> Any:
     Raises:
         ValueError: if that is more than any recorder writes.
     """
-    if len(text) > _MAX_YAML:
-        raise ValueError(f'more than {_MAX_YAML} characters of YAML')
+    _check_length(len(text))
     depth = 0
     for number, event in enumerate(yaml.parse(text, _Loader), start=1):
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
+        if isinstance(event, yaml.ScalarEvent) and not event.implicit[1]:
+            _check_length(len(event.value), _MAX_PLAIN)  # a number of base 60, perhaps
         if number > _MAX_EVENTS:
             raise ValueError(f'more than {_MAX_EVENTS} values in YAML')
         if depth > _MAX_DEPTH:  # libyaml is not stopped by a limit of recursion
             raise ValueError(f'YAML is nested deeper than {_MAX_DEPTH} levels')
     return yaml.load(text, _Loader)  # noqa: S506, it is a SafeLoader
+
+
+def _check_length(length: int, limit: int = _MAX_YAML) -> None:
+    if length > limit:
+        raise ValueError(f'YAML has {length} bytes where there may be {limit}')
 
 
 def _listed_contents(path: Path, metadata: Any) -> Contents:
