@@ -36,7 +36,7 @@ import pytest  # noqa: E402
 
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
 
-pytest_plugins = ['watchdog']
+pytest_plugins = ['hanging']
 
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / 'shared'
