@@ -9,6 +9,9 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 Array = NDArray[np.float64]
 Stretches = NDArray[np.int64]
 
+_KEPT = 65_536
+"""Stretches, of which samples that still wait for their outputs are in the last few thousand."""
+
 
 class UnseenTurns:
     """The turns by which recorded outputs differ from recomputed ones, stretch by stretch.
@@ -70,8 +73,10 @@ class UnseenTurns:
             self.first = int(found[0])
         before = self._turns[-1:] if len(self._turns) else found[:1]
         self.changes += int(np.count_nonzero(np.diff(found, prepend=before)))
-        self._stretches = np.append(self._stretches, stretches)
-        self._turns = np.append(self._turns, found)
+        stretches = np.append(self._stretches, stretches)
+        latest = np.argsort(stretches)[-_KEPT:]  # an output can come late
+        self._stretches = stretches[latest]
+        self._turns = np.append(self._turns, found)[latest]
 
     def findings(self) -> list[str]:
         """Say what was learned, in sentences."""
@@ -82,5 +87,8 @@ class UnseenTurns:
                 'are taken from the outputs'
             )
         if self.changes:
-            said.append(f'its turns are taken from the outputs again after {self.changes} gaps')
+            said.append(
+                'the turns of the single-turn encoder are taken from the outputs again after '
+                f'{self.changes} gap{"s" * (self.changes > 1)}'
+            )
         return said
