@@ -119,7 +119,7 @@ def compute(
         rotor_input.mostly_rejected,
         rotor_input.zero_stamps,
         copied,
-        left_out=tuple(topic for topic in source.topics if topic not in {*kept, *outputs}),
+        left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
         undefined=tuple(topic.name for topic in written if not topic.syntax),
     )
 
