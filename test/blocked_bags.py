@@ -76,11 +76,12 @@ class BlockedBag:
     def readers(self) -> list[int]:
         """Give the ids of the processes that are at it."""
         found = []
-        for link in Path('/proc').glob('[0-9]*/fd/*'):
-            with suppress(OSError):
-                if link.readlink() == self._file and int(link.parts[2]) != os.getpid():
-                    found.append(int(link.parts[2]))
-        return sorted(set(found))
+        for process in Path('/proc').glob('[0-9]*'):
+            with suppress(OSError):  # it, or a file of its, is gone meanwhile
+                links = [link.readlink() for link in (process / 'fd').iterdir()]
+                if self._file in links and int(process.name) != os.getpid():
+                    found.append(int(process.name))
+        return sorted(found)
 
     def reader(self) -> int:
         """Wait for the first process that is at it, and sleeps: a signal will wake it."""
