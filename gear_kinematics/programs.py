@@ -20,10 +20,11 @@ _INTERRUPTED = 130
 _UNUSABLE = 2
 """Exit code: something that the program needs is missing."""
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
-_REPEATED = 1.0
-"""s within which a signal is taken for a repetition: launchers signal a process and its group."""
+_PATIENCE = 2.0
+"""s in which an import may end, and in which another signal is a repetition: launchers signal a
+process and its group."""
 _RETRY = 0.01
-"""s after which an interruption that got lost is repeated."""
+"""s from SIGALRM to SIGALRM, which tries again what could not be done."""
 
 
 def gear_state_publisher() -> int:
@@ -49,7 +50,7 @@ def gearkin() -> int:
         from gear_kinematics.cli import main  # noqa: PLC0415, slow
 
         interruption = _Interruption()
-        _handle(heeded, interruption.raise_once)
+        _handle(heeded, interruption.handle)
         sys.unraisablehook = interruption.repeat
         return main
 
@@ -93,22 +94,38 @@ class _Interruption:
     """Raises KeyboardInterrupt once for signals that come together, and so that it has effect."""
 
     def __init__(self) -> None:
-        self._raised = -inf  # time.monotonic()
+        self._asked = -inf  # time.monotonic()
 
-    def raise_once(self, _number: int, _frame: FrameType | None) -> None:
-        """Handle a signal; one that repeats another does not disturb the clean-up after it."""
-        now = time.monotonic()
-        if now - self._raised > _REPEATED:
-            self._raised = now
+    def handle(self, number: int, frame: FrameType | None) -> None:
+        """Raise KeyboardInterrupt, unless the clean-up after another signal is under way.
+
+        An import that is under way may end first: exceptions raised within are often dropped, or
+        turned into errors of another kind.
+        """
+        age = time.monotonic() - self._asked
+        if number != signal.SIGALRM:
+            if age < _PATIENCE:
+                return
+            self._asked, age = time.monotonic(), 0.0
+        if age < _PATIENCE and _imports(frame):
+            signal.setitimer(signal.ITIMER_REAL, _RETRY)
+        else:
             raise KeyboardInterrupt
 
-    def repeat(self, unraisable: 'sys.UnraisableHookArgs') -> None:
-        """Raise again what Python drops: exceptions in destructors and in callbacks of imports."""
+    @staticmethod
+    def repeat(unraisable: 'sys.UnraisableHookArgs') -> None:
+        """Raise again what Python drops: exceptions in destructors and in callbacks."""
         if unraisable.exc_type is KeyboardInterrupt:
-            self._raised = -inf
-            signal.setitimer(signal.ITIMER_REAL, _RETRY)  # SIGALRM
+            signal.setitimer(signal.ITIMER_REAL, _RETRY)
         else:
             sys.__unraisablehook__(unraisable)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Tell whether an import is going on."""
+    while frame and frame.f_code.co_filename != '<frozen importlib._bootstrap>':
+        frame = frame.f_back
+    return frame is not None
 
 
 def _open_closed_streams() -> None:

@@ -151,6 +151,26 @@ def main():
     assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
 
 
+@pytest.mark.parametrize('end', ['', 'while True: time.sleep(60.0)'], ids=['ends', 'hangs'])
+def test_an_import_may_end_before_an_interruption_unless_it_takes_long(end, tmp_path):
+    (tmp_path / 'imported.py').write_text(f"""
+import __main__, time
+try:
+    __main__.interrupt()
+except KeyboardInterrupt:
+    print('lost')
+{end}
+""")
+    done = gearkin_doing(f"""
+def main():
+    sys.path.insert(0, {str(tmp_path)!r})
+    import imported
+    while True:
+        time.sleep(60.0)
+""")
+    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+
+
 def test_a_background_job_of_a_script_is_not_interrupted(tmp_path):
     command = ['sh', '-c', 'trap "" INT; exec "$@"', 'sh', sys.executable, '-c', GEARKIN]
     with (
