@@ -32,7 +32,7 @@ setup(
     maintainer_email='maintainers@gear-kinematics.invalid',
     license='Apache-2.0',
     packages=find_packages(exclude=['test', 'test.*']),
-    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.rendering': ['*.css', '*.js']},
+    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.report': ['*.css', '*.js']},
     data_files=[
         *ON_PATH,
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
@@ -67,8 +67,8 @@ setup(
     },
     entry_points={
         'console_scripts': [
-            f'gear_state_publisher = {PACKAGE}.programs:gear_state_publisher',
-            f'gearkin = {PACKAGE}.programs:gearkin',
+            f'gear_state_publisher = {PACKAGE}.__main__:gear_state_publisher',
+            f'gearkin = {PACKAGE}.__main__:gearkin',
         ],
     },
     zip_safe=False,

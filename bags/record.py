@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from gear_kinematics.bag import write_bag
-from gear_kinematics.live_node import Replay, running_node
-from gear_kinematics.messages import JointStateTemplate
-from gear_kinematics.share import share_directory
+from gear_kinematics.ros.live import Replay, running_node
+from gear_kinematics.state.share import share_directory
+from gear_kinematics.wire.cdr import JointStateTemplate
 
 _COUNTS = 2**20  # of the encoder, per turn
 _INERTIA = 2.0e-4  # kg m², of the rotor and what it moves

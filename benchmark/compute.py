@@ -18,9 +18,9 @@ from pathlib import Path
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from validation import compare, repeated
 
-from gear_kinematics import parameters
 from gear_kinematics.bag import TOPIC_TYPES, Bag, BagWriter, in_batches
-from gear_kinematics.compute import compute
+from gear_kinematics.state import parameters
+from gear_kinematics.state.compute import compute
 
 _ROTOR = '/rotor_state'
 _BATCH = 1024  # messages

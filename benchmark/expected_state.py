@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rotor_driver import SPEED, rotor_motion
 
 from gear_kinematics.kinematics import Mechanism, matrix_method
-from gear_kinematics.message_batches import decode_joint_states, decode_pose_arrays
+from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -34,9 +34,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from gear_kinematics import parameters
 from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.state import parameters
 
 Array = NDArray[np.float64]
 

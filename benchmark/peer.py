@@ -12,7 +12,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from gear_kinematics.leaving import leave
+from gear_kinematics.ros.leaving import leave
 
 DEPTH = 100_000
 """Messages that can wait at this end of a topic: more than ever do, so that no loss is ours."""

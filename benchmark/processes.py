@@ -16,7 +16,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, Self
 
-NODE = ('-m', 'gear_kinematics.programs')
+NODE = ('-m', 'gear_kinematics.ros')
 """What Python runs as gear_state_publisher."""
 
 _FOLDER = Path(__file__).parent

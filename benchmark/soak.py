@@ -32,8 +32,8 @@ from processes import NODE, Program, private_surroundings, program
 from rotor_driver import counted_number, counted_stamp
 from state_listener import Listener, receive_answers
 
-from gear_kinematics import parameters
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.state import parameters
 
 TOPICS: Mapping[str, type[ExpectedMessages]] = {
     'output_state': ExpectedOutputState,

@@ -26,12 +26,12 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
-from gear_kinematics import parameters
 from gear_kinematics.bag import TOPIC_TYPES, BagMessage, read_bag, write_bag
-from gear_kinematics.fleet import Task, validate_bag
-from gear_kinematics.report import Verdict
-from gear_kinematics.share import share_directory
-from gear_kinematics.validation import Tolerances
+from gear_kinematics.state import parameters
+from gear_kinematics.state.share import share_directory
+from gear_kinematics.validation.fleet import Task, validate_bag
+from gear_kinematics.validation.report import Verdict
+from gear_kinematics.validation.validator import Tolerances
 
 _SOURCE = 'servo_point_to_point'
 _LENGTH = 7  # s, of which the source takes 6

@@ -15,10 +15,11 @@ import sensor_msgs.msg
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.serialization import deserialize_message
 
-from gear_kinematics.joint_input import RejectedInputError
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.message_batches import decode_joint_states, decode_pose_arrays
-from gear_kinematics.messages import (
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
+from gear_kinematics.wire.cdr import (
     SECOND,
     JointState,
     MalformedMessageError,
@@ -26,8 +27,7 @@ from gear_kinematics.messages import (
     decode_joint_state,
     decode_pose_array,
 )
-from gear_kinematics.rotor_input import InputSettings, RotorInput
-from gear_kinematics.state_messages import StateMessages
+from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SEPARATOR = b'\xff<>\xff'
 

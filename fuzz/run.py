@@ -17,7 +17,7 @@ _name, *_options = sys.argv[1:]
 _found = ROOT / 'build' / 'fuzz' / _name
 _found.mkdir(parents=True, exist_ok=True)
 # Where it follows comparisons of arrays, atheris keeps the results of all of them in memory.
-_arrays = ['gear_kinematics.message_batches']
+_arrays = ['gear_kinematics.wire.batches']
 with atheris.instrument_imports(include=['gear_kinematics'], exclude=_arrays):
     _harness = import_module(_name)
 _arguments = [

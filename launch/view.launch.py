@@ -8,9 +8,9 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.launch_arguments import node_arguments
+from gear_kinematics.ros.launch_arguments import node_arguments
+from gear_kinematics.shape.urdf import urdf
 
 
 def start_viewers(context: LaunchContext) -> list[Node]:

@@ -23,7 +23,9 @@ def _free_domain() -> int:
 # Before anything else is imported: middleware reads the environment once.
 os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
 os.environ['ROS_DOMAIN_ID'] = str(_free_domain())
-os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(Path(__file__).with_name('discovery.xml'))
+os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(
+    Path(__file__).with_name('support') / 'discovery.xml'
+)
 
 # A background job of a shell ignores SIGINT, and so would every process that a test starts.
 signal.signal(signal.SIGINT, signal.default_int_handler)

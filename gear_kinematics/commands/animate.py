@@ -19,7 +19,7 @@ from gear_kinematics.commands.arguments import (
 )
 from gear_kinematics.commands.output import progress, tell_of_circles, write_file
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.trajectory import Trajectory
+from gear_kinematics.state.trajectory import Trajectory
 
 HELP = 'the mechanism moving, as a GIF or an MP4'
 _SPEED = 2.0 * TURN  # rad/s: fast enough to see the output turn, slow enough to see the rotor

@@ -5,12 +5,12 @@ import math
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics import parameters
 from gear_kinematics.commands.output import message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.trajectory import Trajectory, read_trajectory
+from gear_kinematics.state import parameters
+from gear_kinematics.state.trajectory import Trajectory, read_trajectory
 
 
 def positive(text: str) -> float:

@@ -18,6 +18,6 @@ def run(_options: argparse.Namespace) -> ExitCode:
     """Show it live, then whether it agrees."""
     warn_of_shared_memory(participants=2)
     # Needs ROS, which most commands do without.
-    from gear_kinematics import demo  # noqa: PLC0415
+    from gear_kinematics.ros import demo  # noqa: PLC0415
 
     return ExitCode.DONE if demo.run(Console()).passed else ExitCode.FAILED

@@ -10,7 +10,7 @@ from rich.table import Table
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_mechanism, add_sizes, mechanism, module
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
-from gear_kinematics.teeth import InterferenceError, tooth_pair
+from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
 Fact = tuple[str, Any, str]
 """Name, value (None: there is none) and unit."""

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 from rich.table import Table
 
-from gear_kinematics.angles import arc, arc_seconds
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import (
     add_mechanism,
@@ -23,8 +22,9 @@ from gear_kinematics.commands.output import Console, facts, numbers, write
 from gear_kinematics.kinematics import vernier
 from gear_kinematics.kinematics.preload import Preload, ring_phase
 from gear_kinematics.kinematics.vernier import Choice, PinSetting
-from gear_kinematics.rendering.json import dumps
-from gear_kinematics.vernier_drawing import draw
+from gear_kinematics.report.json import dumps
+from gear_kinematics.shape.angles import arc, arc_seconds
+from gear_kinematics.shape.pin_sheet import draw
 
 _MAX_NEIGHBOURS = 1000
 HELP = 'pin holes for a turn of the ring gear, a preload or the phase of branch B'

@@ -20,9 +20,9 @@ from rich.table import Table
 from rich.text import Text
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.rendering.wording import printable
-from gear_kinematics.shared_memory import check_shared_memory
-from gear_kinematics.teeth import InterferenceError, tooth_pair
+from gear_kinematics.report.wording import printable
+from gear_kinematics.ros.shared_memory import check_shared_memory
+from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
 
 def complain(error: object) -> None:

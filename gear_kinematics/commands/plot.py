@@ -20,7 +20,7 @@ from gear_kinematics.commands.arguments import (
 )
 from gear_kinematics.commands.output import tell_of_circles, write_file
 from gear_kinematics.kinematics import Mechanism, RotorPosition, split_turns
-from gear_kinematics.trajectory import Trajectory
+from gear_kinematics.state.trajectory import Trajectory
 
 HELP = 'figures: kinematic scheme, roses, slides, output over time'
 _DEGREES = 40.0  # where every part of the scheme can be seen

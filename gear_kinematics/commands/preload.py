@@ -10,7 +10,6 @@ import numpy as np
 from rich.table import Table
 
 from gear_kinematics import plotting
-from gear_kinematics.angles import arc, arc_seconds
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import (
     add_mechanism,
@@ -26,7 +25,8 @@ from gear_kinematics.commands.output import Console, facts, numbers, write_file
 from gear_kinematics.kinematics import Mechanism, vernier
 from gear_kinematics.kinematics.preload import Preload, braced
 from gear_kinematics.kinematics.vernier import PinSetting
-from gear_kinematics.rendering.json import dumps
+from gear_kinematics.report.json import dumps
+from gear_kinematics.shape.angles import arc, arc_seconds
 
 HELP = 'preload, torque limits and torque split, and the ring turn for them'
 _LOADS = 4

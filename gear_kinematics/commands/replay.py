@@ -6,9 +6,9 @@ import sys
 from pathlib import Path
 
 from gear_kinematics.bag import Bag
+from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import warn_of_shared_memory
-from gear_kinematics.fleet import find_rotor_topic
 
 HELP = "publish a bag's rotor topic in its own time"
 
@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Publish, and say how punctually."""
     warn_of_shared_memory(participants=1)
     # Needs ROS, which most commands do without.
-    from gear_kinematics.replay import play, stopped_by_signals  # noqa: PLC0415
+    from gear_kinematics.ros.replay import play, stopped_by_signals  # noqa: PLC0415
 
     with Bag(options.bag) as bag, stopped_by_signals() as stopped:
         if options.topics:

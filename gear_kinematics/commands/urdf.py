@@ -4,8 +4,8 @@ import argparse
 
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, load_config
-from gear_kinematics.description import urdf
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.shape.urdf import urdf
 
 HELP = 'the URDF on stdout'
 

@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Callable, Iterator, Sequence
 
-from gear_kinematics import parameters
+from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, add_topics, config_path
 from gear_kinematics.commands.output import (
@@ -15,17 +15,17 @@ from gear_kinematics.commands.output import (
     warn_of_shared_memory,
     write,
 )
-from gear_kinematics.fleet import (
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.report import render, to_html, to_json, to_junit
+from gear_kinematics.state import parameters
+from gear_kinematics.validation.fleet import (
     Task,
-    find_bags,
     validate_bag,
     validate_on_cluster,
     validate_on_this_machine,
 )
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.rendering import render, to_html, to_json, to_junit
-from gear_kinematics.report import BagReport, Verdict
-from gear_kinematics.validation import Tolerances
+from gear_kinematics.validation.report import BagReport, Verdict
+from gear_kinematics.validation.validator import Tolerances
 
 HELP = 'recorded outputs against recomputed ones'
 _EXIT_CODES = {
@@ -130,6 +130,6 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
 
 def _validate_live(task: Task, progress: Callable[[int, int | None], None]) -> BagReport:
     # Needs ROS, which the validation of a recording does without.
-    from gear_kinematics.replay import live_messages  # noqa: PLC0415
+    from gear_kinematics.ros.replay import live_messages  # noqa: PLC0415
 
     return validate_bag(task, progress, live_messages)

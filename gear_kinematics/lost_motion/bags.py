@@ -8,17 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
-from gear_kinematics.fleet import find_rotor_topic
+from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
-from gear_kinematics.message_batches import decode_joint_states
-from gear_kinematics.messages import JOINT_STATE
-from gear_kinematics.output_encoder import EncoderSettings
-from gear_kinematics.rotor_input import InputSettings, RotorInput, RotorSamples
-from gear_kinematics.transmission_error import ErrorSample, TransmissionError
+from gear_kinematics.state.output_encoder import EncoderSettings
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSamples
+from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
+from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.wire.cdr import JOINT_STATE
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
-from gear_kinematics.transmission_error import TransmissionError
+from gear_kinematics.state.transmission_error import TransmissionError
 
 Array = NDArray[np.float64]
 

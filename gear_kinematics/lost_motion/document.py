@@ -10,7 +10,7 @@ import numpy as np
 from gear_kinematics.lost_motion import wording
 from gear_kinematics.lost_motion.report import LostMotionReport
 from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
-from gear_kinematics.rendering.json import dumps
+from gear_kinematics.report.json import dumps
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 1

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gear_kinematics.lost_motion import wording
 from gear_kinematics.lost_motion.curves import Panel, panels
 from gear_kinematics.lost_motion.report import LostMotionReport
-from gear_kinematics.rendering.page import definitions, figure, page, table
+from gear_kinematics.report.page import definitions, figure, page, table
 
 _GAP = 0.12
 """Between two plots, of the figure's width."""

@@ -7,7 +7,7 @@ from rich.text import Text
 
 from gear_kinematics.lost_motion import wording
 from gear_kinematics.lost_motion.report import LostMotionReport
-from gear_kinematics.rendering.text import in_columns, is_wide, item, print_lines, rich_table
+from gear_kinematics.report.text import in_columns, is_wide, item, print_lines, rich_table
 
 
 def render(reports: Sequence[LostMotionReport], console: Console) -> None:

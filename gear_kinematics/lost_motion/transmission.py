@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
-from gear_kinematics.transmission_error import ErrorSample
+from gear_kinematics.state.transmission_error import ErrorSample
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
-from gear_kinematics.rendering.wording import Cell, Table, Tone, number, printable
+from gear_kinematics.report.wording import Cell, Table, Tone, number, printable
 
 ARC_MINUTES = 60.0 * 180.0 / math.pi
 """In a radian: the unit of lost motion in catalogues."""

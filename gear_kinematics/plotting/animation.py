@@ -14,7 +14,7 @@ from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.figures import FAINT, INK, styled
 from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
-from gear_kinematics.trajectory import Trajectory
+from gear_kinematics.state.trajectory import Trajectory
 
 _WIDTH = 4.0  # inches, whatever the pixels, so that lines and letters grow with them
 _HEIGHT = 2 / 3  # of the width: the mechanism, and at half its size beside it the centres

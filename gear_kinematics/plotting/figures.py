@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.drawing import Array
+from gear_kinematics.shape.outlines import Array
 
 INK, FAINT = '#24292f', '#8c959f'
 SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df')

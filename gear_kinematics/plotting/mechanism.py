@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.drawing import NAMES, Pose, bodies, poses
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.figures import FAINT, INK, closed, render, shape
+from gear_kinematics.shape.outlines import NAMES, Pose, bodies, poses
 
 COLOURS = {
     'stator': ('#d0d7de', '#57606a'),

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics import drawing
-from gear_kinematics.drawing import Array
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.plotting.figures import FAINT, SERIES, render
-from gear_kinematics.trajectory import Trajectory
+from gear_kinematics.shape import outlines
+from gear_kinematics.shape.outlines import Array
+from gear_kinematics.state.trajectory import Trajectory
 
 MOST_PETALS = 1000
 """Beyond, a rose is a disc."""
@@ -47,7 +47,7 @@ def rose(mechanism: Mechanism) -> Array:
         raise ValueError(
             f'a picture has room for {MOST_PETALS} petals, not for {mechanism.oldham_petals}'
         )
-    return drawing.roses(mechanism, mechanism.oldham_petals, _PETAL_POINTS)
+    return outlines.roses(mechanism, mechanism.oldham_petals, _PETAL_POINTS)
 
 
 def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle: bool) -> bytes:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.angles import arc_seconds
 from gear_kinematics.kinematics.preload import Preload
 from gear_kinematics.plotting.figures import FAINT, INK, SERIES, render
+from gear_kinematics.shape.angles import arc_seconds
 
 
 def torque_split(preload: Preload, names: tuple[str, str], max_load: float, path: Path) -> bytes:

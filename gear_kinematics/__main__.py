@@ -1,0 +1,146 @@
+"""The entry points of the two programs, which import nothing heavy before they handle signals.
+
+Without this, a signal during the import of ROS or numpy would raise KeyboardInterrupt anywhere in
+it, where it ends in a traceback or is even swallowed.
+"""
+
+import os
+import signal
+import sys
+import time
+from collections.abc import Callable, Collection
+from math import inf
+from types import FrameType
+
+from gear_kinematics.ros.shared_memory import SharedMemoryError, check_shared_memory
+
+_INTERRUPTED = 130
+"""Exit code, as shells have it."""
+_UNUSABLE = 2
+"""Exit code: something that the program needs is missing."""
+_STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_PATIENCE = 2.0
+"""s in which an import may end, and in which another signal is a repetition: launchers signal a
+process and its group."""
+_RETRY = 0.01
+"""s from SIGALRM to SIGALRM, which tries again what could not be done."""
+
+
+def gear_state_publisher() -> int:
+    """Run the node; returns the exit code, which is 0 after a signal."""
+
+    def load() -> Callable[[], int]:
+        if warning := check_shared_memory():
+            print(f'gear_state_publisher: {warning}', file=sys.stderr)
+        from gear_kinematics.ros.node import main  # noqa: PLC0415, slow
+
+        return main
+
+    return _run('gear_state_publisher', load, interrupted=0, stop_signals=_STOP_SIGNALS)
+
+
+def gearkin() -> int:
+    """Run the command line; returns the exit code."""
+    # Shell scripts start background jobs with SIGINT ignored, which then holds.
+    heeded = [number for number in _STOP_SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
+    heeded.append(signal.SIGALRM)
+
+    def load() -> Callable[[], int]:
+        from gear_kinematics.commands.cli import main  # noqa: PLC0415, slow
+
+        interruption = _Interruption()
+        _handle(heeded, interruption.handle)
+        sys.unraisablehook = interruption.repeat
+        return main
+
+    return _run('gearkin', load, interrupted=_INTERRUPTED, stop_signals=heeded)
+
+
+def _run(
+    program: str,
+    load: Callable[[], Callable[[], int]],
+    *,
+    interrupted: int,
+    stop_signals: Collection[signal.Signals],
+) -> int:
+    """Load a program and run it; returns its exit code, or `interrupted` after a signal."""
+    _handle(stop_signals, lambda *_: os._exit(interrupted))  # nothing has begun
+    _open_closed_streams()
+    try:
+        return load()()
+    except KeyboardInterrupt:
+        return interrupted
+    except SharedMemoryError as error:
+        print(f'{program}: {error}', file=sys.stderr)
+        return _UNUSABLE
+    except ImportError as error:
+        from gear_kinematics.commands.extras import remedy  # noqa: PLC0415, imports argparse
+
+        print(f'{program}: {remedy(error)}', file=sys.stderr)
+        return _UNUSABLE
+    finally:
+        # Before it ends, Python restores the default, which kills, in place of other handlers.
+        _handle(stop_signals, signal.SIG_IGN)
+
+
+def _handle(
+    numbers: Collection[signal.Signals],
+    handler: Callable[[int, FrameType | None], object] | signal.Handlers,
+) -> None:
+    for number in numbers:
+        signal.signal(number, handler)
+
+
+class _Interruption:
+    """Raises KeyboardInterrupt once for signals that come together, and so that it has effect."""
+
+    def __init__(self) -> None:
+        self._asked = -inf  # time.monotonic()
+
+    def handle(self, number: int, frame: FrameType | None) -> None:
+        """Raise KeyboardInterrupt, unless the clean-up after another signal is under way.
+
+        An import that is under way may end first: exceptions raised within are often dropped, or
+        turned into errors of another kind.
+        """
+        age = time.monotonic() - self._asked
+        if number != signal.SIGALRM:
+            if age < _PATIENCE:
+                return
+            self._asked, age = time.monotonic(), 0.0
+        if age < _PATIENCE and _imports(frame):
+            signal.setitimer(signal.ITIMER_REAL, _RETRY)
+        else:
+            raise KeyboardInterrupt
+
+    @staticmethod
+    def repeat(unraisable: 'sys.UnraisableHookArgs') -> None:
+        """Raise again what Python drops: exceptions in destructors and in callbacks."""
+        if unraisable.exc_type is KeyboardInterrupt:
+            signal.setitimer(signal.ITIMER_REAL, _RETRY)
+        else:
+            sys.__unraisablehook__(unraisable)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Tell whether an import is going on."""
+    while frame and frame.f_code.co_filename != '<frozen importlib._bootstrap>':
+        frame = frame.f_back
+    return frame is not None
+
+
+def _open_closed_streams() -> None:
+    """Open the null device for each standard stream that is closed (`2>&-`).
+
+    Python has None in its place, and its file descriptor would go to the next file or socket
+    opened, into which libraries would then print.
+    """
+    for name, mode in (('stdin', 'r'), ('stdout', 'w'), ('stderr', 'w')):
+        if getattr(sys, name) is None:
+            stream = open(os.devnull, mode)  # noqa: PTH123, SIM115, open until the end
+            os.set_inheritable(stream.fileno(), True)  # noqa: FBT003
+            setattr(sys, name, stream)
+
+
+if __name__ == '__main__':
+    sys.exit(gearkin())

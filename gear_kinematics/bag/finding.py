@@ -1,0 +1,60 @@
+"""Finding the bags that files, directories and globs name."""
+
+import glob
+import re
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from gear_kinematics.bag.errors import BagError
+
+_BAG_FILE = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
+_NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
+"""Of a file of a split recording."""
+
+
+def find_bags(patterns: Iterable[str]) -> list[Path]:
+    """Find the bags that files, directories and globs name; a directory can hold many.
+
+    Raises:
+        BagError: naming a pattern that nothing fits.
+    """
+    found: list[Path] = []
+    for pattern in patterns:
+        path = Path(pattern)
+        bags = list(_bags_below(path)) if path.exists() else list(_glob(pattern))
+        if not bags:
+            raise BagError(f'{pattern}: no bag there')
+        found += bags
+    return list(dict.fromkeys(found))
+
+
+def _glob(pattern: str) -> Iterator[Path]:
+    # Path.glob takes no absolute patterns.
+    matches = sorted(map(Path, glob.iglob(pattern, recursive=True)))  # noqa: PTH207
+    bags = {bag: None for match in matches if _may_hold(match) for bag in _bags_below(match)}
+    # `**` also fits the files of the bags that it fits.
+    return (bag for bag in bags if bag.parent not in bags)
+
+
+def _bags_below(path: Path) -> Iterator[Path]:
+    if not path.is_dir() or (path / 'metadata.yaml').exists():
+        yield path
+        return
+    children = sorted(
+        child for child in path.iterdir() if _may_hold(child) and not _leads_astray(child)
+    )
+    files = [child for child in children if not child.is_dir()]
+    if len(files) > 1 and len({_NUMBER.sub('', file.name) for file in files}) == 1:
+        yield path  # a split recording whose recorder was killed
+        children = [child for child in children if child.is_dir()]
+    for child in children:
+        yield from _bags_below(child)
+
+
+def _leads_astray(path: Path) -> bool:
+    """Whether it is a link to a folder that is no bag: links can go round in circles."""
+    return path.is_symlink() and path.is_dir() and not (path / 'metadata.yaml').exists()
+
+
+def _may_hold(path: Path) -> bool:
+    return path.is_dir() or bool(_BAG_FILE.search(path.name))

@@ -1,0 +1,86 @@
+"""The program `gearkin`. Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from io import TextIOWrapper
+from typing import NoReturn
+
+import numpy as np
+
+from gear_kinematics.bag.errors import unexpected
+from gear_kinematics.commands import (
+    Command,
+    ExitCode,
+    animate,
+    compute,
+    demo,
+    describe,
+    index,
+    lost_motion,
+    plot,
+    preload,
+    replay,
+    urdf,
+    validate,
+)
+from gear_kinematics.commands.extras import remedy
+from gear_kinematics.commands.output import closed_pipe_ignored, complain
+
+COMMANDS: dict[str, Command] = {
+    'validate': validate,
+    'compute': compute,
+    'replay': replay,
+    'demo': demo,
+    'describe': describe,
+    'index': index,
+    'preload': preload,
+    'lost-motion': lost_motion,
+    'plot': plot,
+    'animate': animate,
+    'urdf': urdf,
+}
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, as the commands do; the usage is in the help."""
+
+    def error(self, message: str) -> NoReturn:
+        """Complain and end."""
+        complain(f'{message}; see {self.prog} --help')
+        raise SystemExit(ExitCode.UNUSABLE)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
+    if isinstance(sys.stdout, TextIOWrapper):
+        sys.stdout.reconfigure(errors='backslashreplace')  # not every pipe has a ″
+    options = _parser().parse_args(arguments)
+    code = ExitCode.DONE
+    try:
+        # What overflows shows in the results.
+        with closed_pipe_ignored(), np.errstate(all='ignore'):
+            code = options.run(options)
+    except (ValueError, OSError, RuntimeError) as error:
+        complain(error)
+        code = ExitCode.UNUSABLE
+    except ImportError as error:  # of an extra, where it is used
+        complain(remedy(error))
+        code = ExitCode.UNUSABLE
+    except Exception as error:  # noqa: BLE001, a traceback is for those who ask for it
+        complain(unexpected(error, debug=options.debug))
+        code = ExitCode.UNUSABLE
+    return code
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(prog='gearkin', description=__doc__)
+    commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
+    for name, command in COMMANDS.items():
+        added = commands.add_parser(name, help=command.HELP, description=command.HELP)
+        command.add_arguments(added)
+        added.add_argument(
+            '--debug', action='store_true', help='print the traceback of an unexpected error'
+        )
+        added.set_defaults(run=command.run)
+    return parser

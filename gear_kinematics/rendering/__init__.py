@@ -1,8 +1,0 @@
-"""A validation's report for people and programs: pure functions of reports."""
-
-from gear_kinematics.rendering.html import to_html
-from gear_kinematics.rendering.json import to_json
-from gear_kinematics.rendering.junit import to_junit
-from gear_kinematics.rendering.text import render
-
-__all__ = ['render', 'to_html', 'to_json', 'to_junit']

@@ -1,0 +1,138 @@
+"""A mechanism that moves in a page: drawn here, posed by page.css, driven by motion.js."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import Mechanism, solve, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.shape.outlines import NAMES, Outlines, bodies
+from gear_kinematics.validation.report import Series
+
+_RADIUS = 500.0
+"""Of the drawing, in units of which no screen shows a tenth."""
+_VIEW = _RADIUS + 5.0
+_CENTRE = 7.0
+"""Radius of the dots that mark centres."""
+_SPEEDS = {
+    1e-4: '1/10000 of real time',
+    1e-3: '1/1000 of real time',
+    1e-2: '1/100 of real time',
+    1e-1: '1/10 of real time',
+    1.0: 'real time',
+    10.0: '10 × real time',
+    100.0: '100 × real time',
+}
+"""What the recorded time can be multiplied by."""
+_FOLLOWED = TURN  # rad/s of the rotor, which the eye can follow
+
+Array = NDArray[np.float64]
+
+
+def turned(mechanism: Mechanism, rotor_angle: Sequence[float]) -> dict[str, list[float | None]]:
+    """Give how far rotor and output shaft have turned, for motion.js.
+
+    Args:
+        mechanism: the mechanism.
+        rotor_angle: φ2, rad.
+
+    Returns:
+        Degrees of `rotor` and `output`, less the whole turns of the first sample.
+    """
+    angles = np.asarray(rotor_angle, np.float64)
+    turns, angle = split_turns(angles)
+    state = solve(mechanism, angles)
+    output_turns = np.round((state.output_angle - state.output_turn_angle) / TURN)
+    return {
+        'rotor': _degrees(turns, angle),
+        'output': _degrees(output_turns, state.output_turn_angle),
+    }
+
+
+def _finite(values: Sequence[float]) -> Array:
+    """Make the values an array, in which infinite ones are no numbers either."""
+    array = np.asarray(values, np.float64)
+    return np.where(np.isfinite(array), array, np.nan)
+
+
+def _degrees(turns: Array, angle: Array) -> list[float | None]:
+    degrees = 360.0 * (turns - turns[0]) + np.degrees(angle)
+    return [round(value, 3) if math.isfinite(value) else None for value in degrees.tolist()]
+
+
+class Drawings:
+    """The mechanisms of a page. A shape that several bodies have is in the page once."""
+
+    def __init__(self) -> None:
+        """Start with none."""
+        self._names: dict[str, str] = {}  # of the shapes, by their paths
+
+    def moving(
+        self, mechanism: Mechanism, module: float, figure: str, series: Series
+    ) -> Iterator[str]:
+        """Write a mechanism branch by branch, with a slider for the time and a play button.
+
+        Args:
+            mechanism: to be drawn.
+            module: of its teeth, m.
+            figure: name of the plots that it goes with; their data has what `turned` gives.
+            series: what the plots are of.
+        """
+        shapes = [bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
+        reach = max(float(np.max(np.abs(outline))) for outline in shapes[0]['stator'])
+        scale = _RADIUS / reach
+        yield (
+            f'<div class="motion" data-figure="{figure}" '
+            f'style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
+            f'{_controls(series)}<div class="branches">\n'
+        )
+        for branch, outlines in zip(mechanism.branches, shapes, strict=True):
+            yield (
+                f'<figure style="--cam: {math.degrees(branch.cam_phase):.6g}deg">'
+                f'<svg viewBox="{-_VIEW:g} {-_VIEW:g} {2 * _VIEW:g} {2 * _VIEW:g}" role="img" '
+                f'aria-label="branch {branch.name}"><g class="upright">\n'
+            )
+            for body, shape in outlines.items():
+                yield f'<use class="{body}" href="#{self._name(shape, scale)}"/>\n'
+            for body in ('output_shaft', 'satellite', 'oldham'):
+                yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
+            yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
+        legend = ''.join(f'<li class="{body}">{NAMES[body]}</li>' for body in shapes[0])
+        yield f'</div>\n<ul class="legend">{legend}</ul>\n</div>\n'
+
+    def shapes(self) -> str:
+        """Write the shapes of all that was drawn, to stand anywhere in the page."""
+        paths = ''.join(f'<path id="{name}" d="{path}"/>\n' for path, name in self._names.items())
+        return f'<svg class="shapes" aria-hidden="true">\n{paths}</svg>\n' if paths else ''
+
+    def _name(self, outlines: Outlines, scale: float) -> str:
+        path = ''.join(_closed(scale * outline) for outline in outlines)
+        return self._names.setdefault(path, f'shape-{len(self._names)}')
+
+
+def _closed(points: Array) -> str:
+    return f'M{" ".join(f"{x:.1f},{y:.1f}" for x, y in points.tolist())}Z'
+
+
+def _controls(series: Series) -> str:
+    speed = _easy_speed(series)
+    speeds = ''.join(
+        f'<option value="{value:g}"{" selected" if value == speed else ""}>{name}</option>'
+        for value, name in _SPEEDS.items()
+    )
+    return (
+        '<div class="controls"><button type="button" disabled>Play</button>'
+        f'<select aria-label="speed">{speeds}</select><output></output>'
+        f'<input type="range" min="0" max="{len(series.time) - 1}" step="1" value="0" disabled '
+        'aria-label="time"></div>\n'
+    )
+
+
+def _easy_speed(series: Series) -> float:
+    """Choose the greatest speed at which the eye follows the rotor."""
+    elapsed, moved = np.diff(series.time), np.abs(np.diff(_finite(series.rotor_angle)))
+    forward = elapsed > 0.0
+    fastest = float(np.fmax.reduce(moved[forward] / elapsed[forward], initial=0.0))
+    return max((speed for speed in _SPEEDS if speed * fastest <= _FOLLOWED), default=min(_SPEEDS))

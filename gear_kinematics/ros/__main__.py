@@ -1,0 +1,8 @@
+"""`python -m gear_kinematics.ros`: the node, as other programs start it."""
+
+import sys
+
+from gear_kinematics.__main__ import gear_state_publisher
+
+if __name__ == '__main__':
+    sys.exit(gear_state_publisher())

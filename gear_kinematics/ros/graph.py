@@ -1,0 +1,74 @@
+"""The other ends of a node's topics, as the ROS graph has them at the moment of asking."""
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
+
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
+from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
+
+from gear_kinematics.state.diagnostics import GraphFaults
+
+_POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
+"""Those in which a subscription can ask for more than a publisher offers."""
+
+
+def find_faults(
+    node: Node,
+    subscriptions: Iterable[Subscription],
+    publishers: Iterable[Publisher],
+    exclusive: Collection[str],
+) -> GraphFaults:
+    """Find what keeps messages from coming through, and what doubles them.
+
+    Args:
+        node: the node whose topics they are.
+        subscriptions: of the node; a publisher that they cannot hear is an error.
+        publishers: of the node; a listener that cannot hear them is a warning.
+        exclusive: those of their topics on which another publisher is a warning.
+    """
+    own_name = node.get_fully_qualified_name()
+    errors = [
+        f'incompatible QoS on {subscription.topic}: {policy} (driver {_full_name(driver)})'
+        for subscription in subscriptions
+        for driver in node.get_publishers_info_by_topic(subscription.topic)
+        for policy in _unmet(subscription.qos_profile, driver.qos_profile)
+    ]
+    warnings = []
+    shared = defaultdict(list)
+    for topic in (publisher.topic for publisher in publishers):
+        offers = {
+            _full_name(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
+        }
+        # The profile that a publisher was made with leaves some policies to the middleware.
+        if own_offer := offers.pop(own_name, None):
+            warnings += [
+                f'incompatible QoS on {topic}: {policy} (listener {_full_name(listener)})'
+                for listener in node.get_subscriptions_info_by_topic(topic)
+                for policy in _unmet(listener.qos_profile, own_offer)
+            ]
+        if topic in exclusive:
+            for other in offers:
+                shared[other].append(topic)
+    for other, topics in shared.items():
+        warnings.append(f'{other} also publishes {", ".join(topics)}')
+    names = node.get_node_names_and_namespaces()
+    if names.count((node.get_name(), node.get_namespace())) > 1:
+        warnings.append(f'another node is named {own_name}')
+    return GraphFaults(errors, warnings)
+
+
+def _full_name(endpoint: TopicEndpointInfo) -> str:
+    return f'{endpoint.node_namespace.rstrip("/")}/{endpoint.node_name}'
+
+
+def _unmet(requested: QoSProfile, offered: QoSProfile) -> Iterator[str]:
+    """Name the policies in which more is requested than offered."""
+    for policy in _POLICIES:
+        alone = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # asks for nothing
+        setattr(alone, policy, getattr(requested, policy))
+        compatibility, _ = qos_check_compatible(offered, alone)
+        if compatibility == QoSCompatibility.ERROR:
+            yield policy.upper()

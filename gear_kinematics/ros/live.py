@@ -1,0 +1,334 @@
+"""A running node: its process, and the other end of its topics.
+
+`Replay` is a driver and a recorder in one; `live_messages` plays a bag into a node of its own and
+gives what it answers.
+"""
+
+import os
+import struct
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Self
+
+import rclpy
+import yaml
+from geometry_msgs.msg import PoseArray
+from rclpy.context import Context
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import JointState
+
+from gear_kinematics.bag import Bag, BagError, BagMessage, DamagedBagError
+from gear_kinematics.bag.schedule import due_messages, throttled, type_of
+from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.node import make_executor
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.cdr import JOINT_STATE, SECOND, JointStateTemplate
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+DEPTH = 2000
+"""Messages that wait on either side of a topic."""
+POLL = 0.1
+"""s: how late a signal can be noticed."""
+
+_OUTPUTS = ('/output_state', '/body_poses')
+_STAMP = slice(4, 12)  # of a serialised message with a header
+_MESSAGE_TYPES: Mapping[str, type] = {
+    'rotor_state': JointState,
+    'output_state': JointState,
+    'body_poses': PoseArray,
+}
+_PROBE_PERIOD = 0.05  # s
+_AFTERWARDS = 0.1  # s: for messages that nobody expects
+_WINDOW = 500  # messages that the node may be behind: no queue of DEPTH runs over
+_QUIET = 5.0  # s of silence after which nothing more is to come; DDS repeats every 3 s
+_PROBE_SECOND = 2**31 - 1  # the last one that a stamp can name
+_PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
+
+
+class ReplayError(RuntimeError):
+    """A replay that cannot be done; the text says why."""
+
+
+@contextmanager
+def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subprocess.Popen[str]]:
+    """Run gear_state_publisher as a process of its own and stop it at the end.
+
+    Args:
+        arguments: its command line, such as `--ros-args -p rotor_joint:=m1`.
+        options: of `subprocess.Popen`.
+    """
+    # -P: `-m` would import modules from the current folder.
+    command = [sys.executable, '-P', '-m', 'gear_kinematics.ros', *arguments]
+    process = subprocess.Popen(command, text=True, **options)  # noqa: S603  # our own node
+    try:
+        yield process
+    finally:
+        process.terminate()
+        process.wait()
+
+
+def live_messages(
+    source: Bag,
+    parameters: Mapping[str, Any],
+    *,
+    rotor_topic: str = '/rotor_state',
+    rate: float = 1.0,
+    progress: Callable[[int], None] = lambda _: None,
+) -> Iterator[BagMessage]:
+    """Play a bag's rotor topic into a node process of its own and give what it publishes.
+
+    The node runs in a private namespace and talks to this machine only. It is never sent more
+    than it can keep up with, so that nothing gets lost on the way, whatever the rate. Rotor
+    messages without a stamp are given the time of their reception as a stamp: the node would take
+    the clock, which nobody could tell afterwards.
+
+    Args:
+        source: an open bag.
+        parameters: of the node, as `parameters.load` gives them.
+        rotor_topic: name of the rotor topic in the bag.
+        rate: bag time per real time.
+        progress: called with the number of rotor messages sent, at most ten times a second and at
+            the end.
+
+    Yields:
+        Messages on /rotor_state, /output_state and /body_poses in the order of their reception.
+
+    Raises:
+        BagError: if the bag has no such topic or nothing on it; if it is damaged, then after what
+            the node made of what could be read.
+        ReplayError: if the node ends, or does not answer at all.
+    """
+    expected = RotorInput(InputSettings.from_mapping(parameters))
+    if (found := type_of(source, rotor_topic)) != JOINT_STATE:
+        raise BagError(f'{source.path}: {rotor_topic} is of type {found}, not {JOINT_STATE}')
+    schedule = due_messages(source, [rotor_topic], rate)
+    report = throttled(progress)
+    wanted: Counter[str] = Counter()
+    damage: DamagedBagError | None = None
+    with _private_node(parameters) as replay:
+        start = time.monotonic()
+        try:
+            for due, (_, received, recorded) in schedule:
+                while (left := start + due - time.monotonic()) > 0.0:
+                    replay.receive_until(time.monotonic() + min(left, POLL))
+                    yield from replay.take()
+                data = _stamped(recorded, received)
+                replay.send(data)
+                wanted['/rotor_state'] += 1
+                with suppress(RejectedInputError):
+                    expected.accept(data, partial(int, received))
+                    wanted.update(_OUTPUTS)
+                if not replay.receive(wanted, but=_WINDOW):
+                    wanted = replay.counts.copy()  # what has not come by now does not come
+                report(expected.received)
+                yield from replay.take()
+        except DamagedBagError as error:
+            damage = error
+        replay.receive(wanted)
+        replay.receive_until(time.monotonic() + _AFTERWARDS)
+        yield from replay.take()
+    progress(expected.received)
+    if damage:
+        raise damage
+
+
+class Replay:
+    """A driver on rotor_state and a recorder of rotor_state and of the node's outputs, in one.
+
+    A context manager with a ROS context of its own. Nothing runs in the background: messages are
+    received within `receive_until` and the waits.
+    """
+
+    def __init__(self, namespace: str = '', alive: Callable[[], bool] = lambda: True) -> None:
+        """Open the topics.
+
+        Args:
+            namespace: of the topics.
+            alive: whether the node can still answer.
+        """
+        self.received: list[BagMessage] = []
+        self.counts: Counter[str] = Counter()
+        """Of the messages received so far, by topic."""
+        self._alive = alive
+        self._probed: set[str] = set()
+        self._resources = ExitStack()
+        self._node = self._resources.enter_context(replay_node(namespace))
+        self._executor = make_executor(context=self._node.context)
+        self._resources.callback(self._executor.shutdown)
+        self._executor.add_node(self._node)
+        qos = QoSProfile(depth=DEPTH)
+        self._publisher = self._node.create_publisher(JointState, 'rotor_state', qos)
+        for topic, message_type in _MESSAGE_TYPES.items():
+            self._node.create_subscription(
+                message_type, topic, self._recorder('/' + topic), qos, raw=True
+            )
+
+    def __enter__(self) -> Self:
+        """Start."""
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """Close the topics."""
+        self._resources.close()
+
+    def wait_for_node(self, joint: str, timeout: float = 20.0) -> None:
+        """Wait until probes are answered here, which the ends of topics seen here cannot tell.
+
+        The probes are stamped with the far future, and are not recorded. Older messages than that
+        let the node start anew.
+
+        Args:
+            joint: the rotor's, or '' for the only one.
+            timeout: s.
+
+        Raises:
+            ReplayError: if nothing arrives.
+        """
+        template = JointStateTemplate([joint or 'rotor'], velocity=False, effort=False)
+        message = template.encode(_PROBE_SECOND * SECOND, [0.0])
+        next_probe = 0.0
+
+        def answered() -> bool:
+            nonlocal next_probe
+            if time.monotonic() >= next_probe:
+                self.send(message)
+                next_probe = time.monotonic() + _PROBE_PERIOD
+            return len(self._probed) == len(_MESSAGE_TYPES)
+
+        self.wait_until(answered, timeout)
+
+    def receive_until(self, moment: float) -> None:
+        """Receive until a `time.monotonic()`."""
+        while (left := moment - time.monotonic()) > 0.0:
+            self._executor.spin_once(timeout_sec=min(left, POLL))  # no signal interrupts it
+
+    def send(self, data: bytes) -> None:
+        """Send a serialised JointState as rotor_state."""
+        self._publisher.publish(data)
+
+    def take(self) -> list[BagMessage]:
+        """Take what was received out of `received`."""
+        taken, self.received = self.received, []
+        return taken
+
+    def wait_until(self, condition: Callable[[], bool], timeout: float) -> None:
+        """Receive until a condition holds.
+
+        Raises:
+            ReplayError: if it does not after `timeout` s, or the node has ended.
+        """
+        deadline = time.monotonic() + timeout
+        while not condition():
+            if time.monotonic() > deadline:
+                raise ReplayError(f'the node did not answer within {timeout:g} s')
+            self._spin()
+
+    def receive(self, wanted: Counter[str], but: int = 0) -> bool:
+        """Receive until so many messages of each topic are there, but for a few.
+
+        Args:
+            wanted: numbers of messages by topic, counted from the beginning.
+            but: how many of a topic may be missing.
+
+        Returns:
+            Whether they came; False when nothing has come for some seconds.
+
+        Raises:
+            ReplayError: if the node has ended before.
+        """
+        total, deadline = -1, 0.0
+        while max((wanted - self.counts).values(), default=0) > but:
+            now = time.monotonic()
+            if self.counts.total() > total:
+                total, deadline = self.counts.total(), now + _QUIET
+            if now > deadline:
+                return False
+            self._spin()
+        return True
+
+    def _spin(self) -> None:
+        if not self._alive():
+            raise ReplayError('the node has ended')
+        self._executor.spin_once(timeout_sec=0.01)
+
+    def _recorder(self, topic: str) -> Callable[[bytes], None]:
+        def record(data: bytes) -> None:
+            if data[_STAMP] == _PROBE_STAMP:
+                self._probed.add(topic)
+                return
+            self.counts[topic] += 1
+            self.received.append(BagMessage(topic, time.time_ns(), data))
+
+        return record
+
+
+@contextmanager
+def replay_node(namespace: str) -> Iterator[Node]:
+    """A ROS node in a context of its own, which leaves the process's signals alone.
+
+    It offers no services: nobody answers them while messages are played.
+    """
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    node = Node(
+        'gear_kinematics_replay',
+        context=context,
+        namespace=namespace,
+        start_parameter_services=False,
+        parameter_overrides=[Parameter('start_type_description_service', value=False)],
+    )
+    try:
+        yield node
+    finally:
+        leave(node)
+
+
+@contextmanager
+def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
+    """A node process that nobody else is connected with, and its other end."""
+    # Read by the middleware when a context begins, here and in the node's process.
+    os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    os.environ['SKIP_DEFAULT_XML_FILE'] = '1'  # Fast DDS obeys one in the current folder
+    namespace = f'/gear_kinematics_{os.getpid()}'
+    with TemporaryDirectory() as folder:
+        config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
+        config.write_text(yaml.safe_dump({'/**': {'ros__parameters': dict(parameters)}}), 'utf-8')
+        # Diagnostics have an absolute name.
+        arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
+                     '-r', '/diagnostics:=diagnostics']  # fmt: skip
+        with (
+            log.open('w', encoding='utf-8') as stream,
+            running_node(
+                arguments,
+                stdout=stream,
+                stderr=stream,
+                env=os.environ | {'ROS_LOG_DIR': folder},
+            ) as process,
+            Replay(namespace, alive=lambda: process.poll() is None) as replay,
+        ):
+            try:
+                replay.wait_for_node(parameters['rotor_joint'])
+                yield replay
+            except ReplayError as error:
+                words = log.read_text(encoding='utf-8').splitlines()[-1:]
+                raise ReplayError(': '.join([str(error), *words])) from error
+
+
+def _stamped(data: bytes, received: int) -> bytes:
+    """The same message, with its time of reception as stamp if it has none."""
+    if any(data[_STAMP]) or len(data) < _STAMP.stop:
+        return data
+    layout = '<iI' if data[1] else '>iI'
+    return (
+        data[: _STAMP.start] + struct.pack(layout, *divmod(received, SECOND)) + data[_STAMP.stop :]
+    )

@@ -1,0 +1,145 @@
+"""The mechanism as a visualization_msgs/MarkerArray, for RViz and Foxglove.
+
+The outlines of the teeth have thousands of points, and no viewer moves a marker unless its points
+are sent again. So each marker is locked to the frame of its link: the shapes are sent once, and
+/tf, which robot_state_publisher computes, moves them. All are in one message, because after a jump
+in a recording Foxglove shows nothing but the last message of a topic.
+"""
+
+import math
+from collections.abc import Iterator
+from functools import cached_property
+
+import numpy as np
+from geometry_msgs.msg import Point, Pose, Vector3
+from numpy.typing import NDArray
+from rclpy.serialization import serialize_message
+from std_msgs.msg import ColorRGBA, Header
+from visualization_msgs.msg import Marker, MarkerArray
+
+from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.shape import teeth
+from gear_kinematics.shape.outlines import roses, turned
+from gear_kinematics.shape.urdf import COLOURS, FACE_WIDTH
+
+Array = NDArray[np.float64]
+Size = tuple[float, float, float]
+
+_REPEAT_BANDWIDTH = 5e3  # bytes/s on average
+_OUTLINE_WIDTH = 0.2  # modules
+_ROSE_WIDTH = 0.03  # eccentricities
+_PETAL_POINTS = 24
+_MOST_PETALS = 100  # of a rose; more could not be told apart
+
+
+class Markers:
+    """Shows the mechanism; nothing is laid out before somebody looks."""
+
+    def __init__(self, mechanism: Mechanism, *, module: float, frame_prefix: str) -> None:
+        """Take what is to be shown; the module is that of the teeth, m."""
+        self._mechanism = mechanism
+        self._module = module
+        self._frame_prefix = frame_prefix
+        self._due_at = -math.inf
+
+    def due(self, now: float) -> bytes | None:
+        """Give the message if it is to be sent now.
+
+        Viewers that have it get it again from time to time: RViz drops its markers when it is
+        reset, when its fixed frame changes and when time jumps back.
+
+        Args:
+            now: the time on any clock that does not jump, s.
+        """
+        if now < self._due_at:
+            return None
+        self._due_at = now + len(self._message) / _REPEAT_BANDWIDTH
+        return self._message
+
+    def repeat(self) -> None:
+        """Make the message due, for a viewer that is new."""
+        self._due_at = -math.inf
+
+    @cached_property
+    def _message(self) -> bytes:
+        markers = list(self._shapes())
+        for number, marker in enumerate(markers):
+            marker.id = number
+            marker.header.frame_id = self._frame_prefix + marker.header.frame_id
+        return bytes(serialize_message(MarkerArray(markers=markers)))
+
+    def _shapes(self) -> Iterator[Marker]:
+        """Yield every shape in the frame of its link, without prefix.
+
+        Along the axis, each satellite carries its coupling, and that the arm.
+        """
+        mechanism, face = self._mechanism, FACE_WIDTH
+        ring, satellite = teeth.outlines(mechanism, self._module)
+        line, thin = _OUTLINE_WIDTH * self._module, _ROSE_WIDTH * mechanism.eccentricity
+        radius = float(np.hypot(*satellite.T).min())
+        bar = 0.1 * radius
+        axial = [branch.axial_position for branch in mechanism.branches]
+        middle, length = 0.5 * (min(axial) + max(axial)), max(axial) - min(axial) + face
+        yield _cylinder('rotor', 'rotor', 'rotor', 0.4 * radius, length, middle)
+        yield _cylinder('output', 'output', 'output_shaft', 0.2 * radius, length + face, middle)
+        petals = min(mechanism.oldham_petals, _MOST_PETALS)
+        paths = roses(mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
+        # With the rotor at 0, the frames of rotor and stator are one.
+        cams = solve(mechanism, 0.0).satellite_centre.tolist()
+        for branch, rose, (x, y) in zip(mechanism.branches, paths, cams, strict=True):
+            z, phase = branch.axial_position, teeth.ring_phase(mechanism, branch)
+            on_satellite, on_oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
+            yield _line(
+                'ring', 'stator', 'stator', _closed(turned(ring, phase)), line, z + 0.5 * face
+            )
+            # On it the centre of the Oldham coupling moves.
+            yield _line('rose', 'oldham', 'stator', rose, thin, z + 1.2 * face)
+            cam = _cylinder('cam', 'rotor', 'rotor', radius, 1.1 * face, z)
+            cam.pose.position.x, cam.pose.position.y = x, y
+            yield cam
+            yield _cylinder('satellite', 'satellite', on_satellite, 2.0 * radius, face, 0.0)
+            yield _line(
+                'satellite', 'satellite', on_satellite, _closed(satellite), line, 0.5 * face
+            )
+            yield _box(
+                'slot', 'stator', on_satellite, (1.8 * radius, bar, 0.1 * face), 0.55 * face
+            )
+            yield _cylinder('oldham', 'oldham', on_oldham, 0.7 * radius, 0.2 * face, 0.7 * face)
+            yield _box(
+                'arm', 'output', 'output_shaft', (bar, 1.8 * radius, 0.2 * face), z + 0.9 * face
+            )
+
+
+def _closed(outline: Array) -> Array:
+    return np.concatenate([outline, outline[:1]])
+
+
+def _line(kind: str, colour: str, link: str, points: Array, width: float, z: float) -> Marker:
+    marker = _marker(Marker.LINE_STRIP, kind, colour, link, (width, 0.0, 0.0), z)
+    marker.points = [Point(x=x, y=y) for x, y in points.tolist()]
+    return marker
+
+
+def _cylinder(
+    kind: str, colour: str, link: str, diameter: float, height: float, z: float
+) -> Marker:
+    return _marker(Marker.CYLINDER, kind, colour, link, (diameter, diameter, height), z)
+
+
+def _box(kind: str, colour: str, link: str, size: Size, z: float) -> Marker:
+    return _marker(Marker.CUBE, kind, colour, link, size, z)
+
+
+def _marker(shape: int, kind: str, colour: str, link: str, scale: Size, z: float) -> Marker:
+    """A marker on the z axis of a link, locked to it; viewers list it under its kind."""
+    red, green, blue, _ = map(float, COLOURS[colour].split())
+    x_scale, y_scale, z_scale = scale
+    return Marker(
+        header=Header(frame_id=link),
+        ns=kind,
+        type=shape,
+        pose=Pose(position=Point(z=z)),
+        scale=Vector3(x=x_scale, y=y_scale, z=z_scale),
+        color=ColorRGBA(r=red, g=green, b=blue, a=1.0),
+        frame_locked=True,
+    )

@@ -1,0 +1,520 @@
+"""The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
+
+import os
+import re
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from threading import Event, Thread
+from typing import Any, NamedTuple
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import PoseArray
+from rcl_interfaces.msg import (
+    FloatingPointRange,
+    IntegerRange,
+    ParameterDescriptor,
+    SetParametersResult,
+)
+from rclpy.clock import Clock, ClockType
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.event_handler import (
+    PublisherEventCallbacks,
+    QoSPublisherMatchedInfo,
+    QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionEventType,
+    SubscriptionEventCallbacks,
+)
+from rclpy.exceptions import ParameterException
+from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
+from rclpy.task import Future
+from sensor_msgs.msg import JointState
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.ros.graph import find_faults
+from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.markers import Markers
+from gear_kinematics.shape.urdf import joint_names, urdf
+from gear_kinematics.state import parameters
+from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
+from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.state_messages import STATE_TOPICS, StateMessages
+from gear_kinematics.state.transmission_error import ErrorSample
+from gear_kinematics.wire.cdr import JOINT_STATE, POSE_ARRAY
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+_MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
+_ROTOR, _ENCODER = 'rotor_state', 'output_encoder'
+_DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
+_QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
+_MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
+_WARNING_PERIOD = 1.0  # s
+_REPORT_PERIOD = 1.0  # s
+_SPIN_TIMEOUT = 3600.0  # s; without any, the EventsExecutor of some releases does nothing
+_STOP_TIMEOUT = 1.0  # s, to answer what was received
+_DELIVERY_TIMEOUT = 0.1  # s, for listeners to get it; those behind Fast DDS tell every 3 s only
+_UNUSABLE = 2  # exit code: parameters or arguments that cannot be used
+
+
+class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
+    """Publishes the state of the mechanism for every valid message on rotor_state."""
+
+    def __init__(self, **options: Any) -> None:
+        """Declare the parameters and open the topics.
+
+        Raises:
+            ParameterException: if a parameter is refused.
+            ValueError: if the parameters describe no mechanism, or one is unknown.
+        """
+        super().__init__(parameters.NODE, **options)
+        self.add_on_set_parameters_callback(self._check_parameters)
+        for name, parameter in parameters.PARAMETERS.items():
+            self._declare(name, parameter, parameters.defaults()[name])
+        branches = self._value('branches')
+        for name, (parameter, default) in parameters.branch_parameters(branches).items():
+            self._declare(name, parameter, default)
+        # rclpy ignores what is given but not declared, and has no public way to ask for it.
+        given = getattr(self, '_parameter_overrides', ())
+        if faults := parameters.unknown_parameters(given, branches):
+            raise ValueError('; '.join(faults))
+        self._mechanism = Mechanism.from_mapping(self._values())
+        rotor, encoder = self._settings = self._settings_of_inputs()
+        self._input = RotorInput(rotor)
+        self._encoder = OutputEncoder(self._mechanism, encoder)
+        self._monitor = InputMonitor(started=time.monotonic())
+        self._encoder_monitor = EncoderMonitor()
+        self._next_warning = 0.0
+        self._description = String()
+
+        self._all_outputs: list[Publisher] = []
+        self._description_publisher = self._create_output(String, 'robot_description', _latched())
+        self._outputs = {
+            topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
+            for topic, name in STATE_TOPICS.items()
+        }
+        self._listened_to: list[str] = []  # what nobody listens to is not computed
+        self._transmission_error = self._create_output(
+            JointState, 'transmission_error', QoSProfile(depth=_DEPTH)
+        )
+        self._diagnostics = self._create_output(
+            DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
+        )
+        self._configure()
+        self.add_post_set_parameters_callback(lambda _: self._configure())
+        self.create_service(Trigger, '~/home', self._home)
+        # Silence is silence also while a simulated clock stands still.
+        self.create_timer(
+            _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
+        )
+        if rate := self._value('markers_rate'):
+            steady = Clock(clock_type=ClockType.STEADY_TIME)
+            self._marker_timer = self.create_timer(
+                1.0 / rate, self._publish_markers, clock=steady, autostart=False
+            )
+            self._marker_publisher = self._create_output(
+                MarkerArray, 'markers', _latched(), matched=self._on_viewers
+            )
+        self._unheard: set[str] = set()  # inputs of which the first message is still to come
+        self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
+        joint = self._value('rotor_joint')
+        listening_for = f'joint {joint!r}' if joint else 'the only joint'
+        self.get_logger().info(
+            f'gear ratio {self._mechanism.gear_ratio} '
+            f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
+            f'teeth), listening for {listening_for} on '
+            f'{self._inputs[_ROTOR].subscription.topic_name}'
+        )
+
+    def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
+        """Set parameters as every node does; a refusal always names the parameter."""
+        result = super().set_parameters_atomically(parameter_list)
+        names = ', '.join(parameter.name for parameter in parameter_list)
+        if not result.successful and names not in result.reason:
+            result.reason = f'{names}: {result.reason}'
+        return result
+
+    def _declare(self, name: str, parameter: parameters.Parameter, default: object) -> None:
+        descriptor = ParameterDescriptor(
+            description=parameter.description,
+            additional_constraints=', '.join(parameter.choices),
+            read_only=parameter.read_only,
+        )
+        bounds = {'from_value': parameter.minimum, 'to_value': parameter.maximum}
+        if isinstance(default, int):
+            descriptor.integer_range = [IntegerRange(**bounds, step=parameter.step)]
+        elif isinstance(default, float):
+            descriptor.floating_point_range = [FloatingPointRange(**bounds)]
+        self.declare_parameter(name, default, descriptor)
+
+    def _create_output(
+        self,
+        message_type: type,
+        topic: str,
+        qos: QoSProfile,
+        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+    ) -> Publisher:
+        publisher = self.create_publisher(
+            message_type,
+            topic,
+            qos,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=PublisherEventCallbacks(
+                incompatible_qos=lambda _: None,  # the next report names the listener
+                matched=matched or (lambda _: self._note_listeners()),
+            ),
+        )
+        self._all_outputs.append(publisher)
+        return publisher
+
+    def _note_listeners(self) -> None:
+        """Note which outputs have listeners."""
+        self._listened_to = [
+            topic
+            for topic, publisher in self._outputs.items()
+            if publisher.get_subscription_count()
+        ]
+
+    def destroy_node(self) -> None:
+        """Let go of what the middleware holds for this node."""
+        for topic_input in self._inputs.values():
+            topic_input.losses.destroy_when_not_in_use()
+        super().destroy_node()
+
+    def _listen(self, topic: str) -> '_Input':
+        """Subscribe to a driver: reliably, unless there is a driver that only does best effort.
+
+        That is what best available means; it is decided when the subscription is made.
+        """
+        self._unheard.add(topic)
+        on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
+        subscription = self.create_subscription(
+            JointState,
+            topic,
+            on_message[topic],
+            QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_AVAILABLE),
+            raw=True,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=SubscriptionEventCallbacks(
+                incompatible_qos=lambda event: self._on_incompatible_driver(topic, event),
+            ),
+        )
+        with subscription.handle:
+            losses = rclpy_implementation.EventHandle(
+                subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
+            )
+        return _Input(subscription, losses)
+
+    def _value(self, name: str) -> Any:
+        return self.get_parameter(name).value
+
+    def _values(self) -> dict[str, Any]:
+        return {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
+
+    def _settings_of_inputs(self) -> tuple[InputSettings, EncoderSettings]:
+        values = self._values()
+        return InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
+
+    def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
+        """Refuse what types and ranges, which rclpy checks, cannot say."""
+        for parameter in changed:
+            known = parameters.PARAMETERS.get(parameter.name)
+            if known and known.choices and parameter.value not in known.choices:
+                reason = f'{parameter.name} must be one of {", ".join(known.choices)}'
+                return SetParametersResult(successful=False, reason=reason)
+            if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
+                reason = f'{parameter.name} must be between 0 and {_MAX_DEPTH}'
+                return SetParametersResult(successful=False, reason=reason)
+            # The first declaration comes before the mechanism, which then checks it itself.
+            if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_mechanism'):
+                names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
+                try:
+                    joint_names(self._mechanism, **names | {parameter.name: parameter.value})
+                except ValueError as error:
+                    return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)
+
+    def _configure(self) -> None:
+        """Take the parameters over; called again after every change."""
+        if (settings := self._settings_of_inputs()) != self._settings:
+            self._settings = settings
+            self._input.settings, encoder = settings
+            self._encoder = OutputEncoder(self._mechanism, encoder)  # errors begin anew
+        names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
+        self._messages = StateMessages(self._mechanism, **names)
+        description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
+        if description != self._description:
+            self._description = description
+            self._publish(self._description_publisher, description)
+            self._markers = Markers(
+                self._mechanism, module=self._value('module'), frame_prefix=names['frame_prefix']
+            )
+
+    def _on_rotor_state(self, data: bytes) -> None:
+        self._monitor.last_input = time.monotonic()
+        if _ROTOR in self._unheard:
+            self._begin_to_count_losses(_ROTOR)
+        try:
+            sample = self._input.accept(data, self._now)
+        except RejectedInputError as rejection:
+            self._warn(f'{_ROTOR} rejected: {rejection}')
+            return
+        for topic, message in self._messages.encode(sample, self._listened_to):
+            self._publish(self._outputs[topic], message)
+        self._monitor.published += 1
+        # Without an encoder there is nothing to compare with.
+        if self._encoder.received and self._input.referenced:
+            self._publish_errors(self._encoder.follow(sample))
+
+    def _on_output_encoder(self, data: bytes) -> None:
+        self._encoder_monitor.last_input = time.monotonic()
+        if _ENCODER in self._unheard:
+            self._begin_to_count_losses(_ENCODER)
+        try:
+            self._publish_errors(self._encoder.accept(data, self._now))
+        except RejectedInputError as rejection:
+            self._warn(f'{_ENCODER} rejected: {rejection}')
+
+    def _publish_errors(self, samples: Iterable[ErrorSample]) -> None:
+        for sample in samples:
+            if self._transmission_error.get_subscription_count():
+                self._publish(self._transmission_error, self._messages.transmission_error(sample))
+
+    def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
+        """Let the timer of the markers run while somebody looks, and serve who has just come."""
+        # Not the change of the count: some executors report 0 for a viewer older than the node.
+        if event.current_count:
+            self._markers.repeat()
+            self._marker_timer.reset()
+        else:
+            self._marker_timer.cancel()
+
+    def _publish_markers(self) -> None:
+        if message := self._markers.due(time.monotonic()):
+            self._publish(self._marker_publisher, message)
+
+    def _publish(self, publisher: Publisher, message: Any) -> None:
+        try:
+            publisher.publish(message)
+        except rclpy_implementation.RCLError as error:
+            # As with history keep_all, and a listener that is stuck.
+            self._monitor.unsent += 1
+            self._warn(f'{publisher.topic_name} not sent: {error}')
+
+    def _now(self) -> int:
+        return int(self.get_clock().now().nanoseconds)
+
+    def _warn(self, text: str) -> None:
+        if time.monotonic() >= self._next_warning:
+            self.get_logger().warning(text)
+            self._next_warning = time.monotonic() + _WARNING_PERIOD  # from its stamp in the log on
+
+    def _on_incompatible_driver(self, topic: str, event: QoSRequestedIncompatibleQoSInfo) -> None:
+        subscription, losses = self._inputs[topic]
+        name = subscription.topic_name
+        asked_for = self._value(f'qos_overrides.{name}.subscription.reliability')
+        best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
+        if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
+            self.get_logger().info(f'a driver on {name} is best effort: listening likewise')
+            self._count_losses(topic)
+            losses.destroy_when_not_in_use()
+            self.destroy_subscription(subscription)
+            self._inputs[topic] = self._listen(topic)
+
+    def _begin_to_count_losses(self, topic: str) -> None:
+        """Forget what the middleware calls lost before the first message came.
+
+        It was sent before driver and node had found each other, or while they did.
+        """
+        self._count_losses(topic)
+        self._unheard.remove(topic)
+
+    def _count_losses(self, topic: str) -> None:
+        """Ask the middleware what it has lost since the last time.
+
+        Were it told of each loss, as of other events, it could come to a deadlock between the
+        thread that takes the event and the one that receives: ros2/rmw_fastrtps#890.
+        """
+        losses = self._inputs[topic].losses
+        with losses:
+            status = losses.take_event()
+        if topic not in self._unheard:
+            monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
+            monitor.lost += status.total_count_change
+
+    def wait_for_delivery(self, timeout: float) -> None:
+        """Wait until the reliable listeners have what was published; `timeout` is in s."""
+        deadline = time.monotonic() + timeout
+        for publisher in (*self._outputs.values(), self._transmission_error):
+            left = max(0.0, deadline - time.monotonic())
+            publisher.wait_for_all_acked(Duration(seconds=left))
+
+    def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        home_angle = self._value('home_angle')
+        try:
+            zero = self._input.home(self._mechanism.rotor_angle(home_angle))
+        except RuntimeError:
+            response.message = 'there was no valid rotor_state yet'
+            return response
+        result = self.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
+        response.success = result.successful
+        response.message = (
+            result.reason or f'output shaft at {home_angle} rad: rotor_zero is {zero} rad'
+        )
+        return response
+
+    def _report(self) -> None:
+        for topic, topic_input in self._inputs.items():
+            self._count_losses(topic)
+            if not topic_input.subscription.get_publisher_count():
+                self._unheard.add(topic)
+        self._monitor.drivers = self._inputs[_ROTOR].subscription.get_publisher_count()
+        self._look_at_graph()
+        timeout, now = self._value('input_timeout'), time.monotonic()
+        reports = {
+            'rotor input': self._monitor.report(self._input, self._mechanism, timeout, now),
+            'transmission error': self._encoder_monitor.report(
+                self._encoder, self._value('transmission_error_limit'), timeout, now
+            ),
+        }
+        message = DiagnosticArray()
+        message.header.stamp = self.get_clock().now().to_msg()
+        message.status = [
+            DiagnosticStatus(
+                level=bytes([report.level]),
+                name=f'{self.get_fully_qualified_name().removeprefix("/")}: {subject}',
+                hardware_id=self.get_fully_qualified_name(),
+                message=report.message,
+                values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
+            )
+            for subject, report in reports.items()
+            if report
+        ]
+        self._publish(self._diagnostics, message)
+
+    def _look_at_graph(self) -> None:
+        """Note what is wrong between this node and others, and log what was not before."""
+        known = self._monitor.graph
+        inputs = (topic_input.subscription for topic_input in self._inputs.values())
+        found = self._monitor.graph = find_faults(
+            self, inputs, self._all_outputs, exclusive=STATE_TOPICS
+        )
+        for fault in (*found.errors, *found.warnings):
+            if fault not in (*known.errors, *known.warnings):
+                self.get_logger().warning(fault)
+
+
+class _Input(NamedTuple):
+    """How the node hears a driver."""
+
+    subscription: Subscription
+    losses: Any
+    """What the middleware knows of messages that it did not deliver."""
+
+
+def _latched() -> QoSProfile:
+    """A profile of its own for each topic, since overrides of QoS change it."""
+    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:
+    """The executor that the parameter `executor` asks for.
+
+    Raises:
+        ValueError: if this rclpy does not have it.
+    """
+    if kind != 'single_threaded':
+        try:
+            # Not in every release of Jazzy.
+            from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415
+        except ImportError:
+            if kind == 'events':
+                raise ValueError(
+                    'this rclpy has no EventsExecutor: executor must not be events'
+                ) from None
+        else:
+            return EventsExecutor(context=context)
+    return SingleThreadedExecutor(context=context)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until SIGINT or SIGTERM; returns the exit code."""
+    signals = _caught_signals()
+    try:
+        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+        node = GearStatePublisher()
+        executor = make_executor(node.get_parameter('executor').value)
+    except (ParameterException, ValueError, RuntimeError) as error:
+        unknown = (
+            'unknown arguments '
+            if isinstance(error, rclpy_implementation.UnknownROSArgsError)
+            else ''
+        )
+        print(f'gear_state_publisher: {unknown}{error}', file=sys.stderr)
+        rclpy.try_shutdown()
+        return _UNUSABLE
+    executor.add_node(node)
+    # What ends in another way is that somebody else in this process has shut rclpy down.
+    with suppress(ExternalShutdownException), _stopped(executor, signals) as stopped:
+        while not stopped.done():
+            executor.spin_until_future_complete(stopped, timeout_sec=_SPIN_TIMEOUT)
+        node.wait_for_delivery(_DELIVERY_TIMEOUT)
+    executor.shutdown()
+    leave(node)
+    return 0
+
+
+class _Pipe(NamedTuple):
+    """Its file descriptors."""
+
+    reader: int
+    writer: int
+
+
+def _caught_signals() -> _Pipe:
+    """A pipe from which SIGINT and SIGTERM, which do nothing else, can be read."""
+    pipe = _Pipe(*os.pipe())
+    os.set_blocking(pipe.writer, False)
+    signal.set_wakeup_fd(pipe.writer)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: None)
+    return pipe
+
+
+@contextmanager
+def _stopped(executor: Executor, signals: _Pipe) -> Iterator[Future]:
+    """A future that is done after the first signal: when what was received before is answered.
+
+    A thread waits for it, since the main thread is not in Python while it waits for messages.
+    """
+    stopped, ended = Future(), Event()
+
+    def wait() -> None:
+        os.read(signals.reader, 1)
+        executor.create_task(stopped.set_result, None)
+        if not ended.wait(_STOP_TIMEOUT):
+            stopped.set_result(None)
+
+    thread = Thread(target=wait)
+    thread.start()
+    try:
+        yield stopped
+    finally:
+        ended.set()
+        os.write(signals.writer, b'\0')  # in case that there was no signal
+        thread.join()

@@ -1,0 +1,218 @@
+"""The bodies of a branch as they are drawn: their outlines, and where they are at a rotor angle.
+
+Whatever draws the mechanism, with matplotlib or in a page, takes shapes and poses from here. The
+gears are to scale; cam, coupling and arm are shaped so that they fit inside the satellite and
+that their slides can be seen. Where these are too long for that, with very few teeth, coupling and
+arm are left out.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from gear_kinematics.kinematics import Mechanism, solve, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.shape import teeth
+
+Array = NDArray[np.float64]
+Outlines = tuple[Array, ...]
+"""Closed polygons (n, 2), m, in the frame of their body: a border, anticlockwise, and then the
+holes in it, clockwise, so that either rule of filling does."""
+
+NAMES = {
+    'stator': 'ring gear',
+    'satellite': 'satellite',
+    'rotor': "rotor's cam",
+    'oldham': 'Oldham coupling',
+    'output_shaft': 'arm',
+}
+"""What people call the bodies that are drawn."""
+BODIES = tuple(NAMES)
+"""The bodies of a branch from back to front, as the links of the URDF are called."""
+
+_ARC = math.radians(3.0)  # between the points of a circle, about
+_RING_BORDER = 1.07  # of the ring gear, times the root circle of its teeth
+_LEAST_ROOM = 0.3
+"""Of the satellite's radius, which the slides have to leave for coupling and arm."""
+
+
+class Pose(NamedTuple):
+    """Where a body is, in the frame of the stator; `...` is the shape of the rotor angles."""
+
+    centre: Array
+    """(..., 2), m."""
+    angle: Array
+    """(...), rad, within a turn."""
+
+    def place(self, outline: Array) -> Array:
+        """Give the points (n, 2) of the body in the frame of the stator, (..., n, 2)."""
+        cosine, sine = np.cos(self.angle), np.sin(self.angle)
+        to_stator = np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], -2)
+        turned: Array = outline @ to_stator
+        return turned + self.centre[..., np.newaxis, :]
+
+
+def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Outlines]:
+    """Shape the bodies of a branch.
+
+    Args:
+        mechanism: the mechanism.
+        module: of the teeth, m.
+        branch: index of the branch.
+
+    Returns:
+        The outlines of `BODIES`, in this order.
+    """
+    of_branch = mechanism.branches[branch]
+    ring, satellite = teeth.outlines(mechanism, module)
+    ring = turned(ring, teeth.ring_phase(mechanism, of_branch))
+    root = float(np.min(np.hypot(*satellite.T)))
+    e, alpha = mechanism.eccentricity, of_branch.cam_phase
+    cam = -e * math.sin(alpha), e * math.cos(alpha)  # e u(α)
+    shapes = {'stator': _pierced(_circle(_RING_BORDER * float(np.max(np.hypot(*ring.T)))), ring)}
+    sizes = _Sizes.within(root, e)
+    if not sizes:
+        shapes['satellite'] = _pierced(satellite, _circle(0.5 * root))
+        shapes['rotor'] = _pierced(_circle(0.5 * root, *cam))
+        return shapes
+    slot = _rectangle(0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key)
+    mark = _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root))
+    key = [(sizes.tongue, -sizes.key), (sizes.tongue, sizes.key)]
+    jaws = turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi)
+    return shapes | {
+        'satellite': _pierced(satellite, _circle(sizes.cam), slot, turned(slot, math.pi), mark),
+        'rotor': _pierced(_circle(sizes.cam, *cam), _circle(sizes.shaft)),
+        'oldham': _pierced(_tabbed_circle(sizes.coupling, key, 4), _circle(sizes.coupling_bore)),
+        'output_shaft': _pierced(_circle(sizes.rim), jaws),
+    }
+
+
+def poses(
+    mechanism: Mechanism,
+    rotor_angle: ArrayLike,
+    branch: int = 0,
+    *,
+    rotor_turns: ArrayLike = 0,
+) -> dict[str, Pose]:
+    """Find where the bodies of a branch are.
+
+    Args:
+        mechanism: the mechanism.
+        rotor_angle: φ2, rad, of any shape `(...)`.
+        branch: index of the branch.
+        rotor_turns: whole turns to be added to it, as for `solve`.
+
+    Returns:
+        The pose of each of `BODIES`, in this order.
+    """
+    state = solve(mechanism, rotor_angle, rotor_turns=rotor_turns)
+    shape = state.output_angle.shape
+    _, within_turn = split_turns(np.broadcast_to(np.asarray(rotor_angle, np.float64), shape))
+    axis, still = np.zeros((*shape, 2)), np.zeros(shape)
+    return {
+        'stator': Pose(axis, still),
+        'satellite': Pose(state.satellite_centre[..., branch, :], state.output_turn_angle),
+        'rotor': Pose(axis, within_turn),
+        'oldham': Pose(state.oldham_centre[..., branch, :], state.output_turn_angle),
+        'output_shaft': Pose(axis, state.output_turn_angle),
+    }
+
+
+def roses(mechanism: Mechanism, petals: int, points: int) -> Array:
+    """The paths of the centres of the couplings, O4, from φ2 = 0 on (eqs. 21, 22).
+
+    Args:
+        mechanism: the mechanism.
+        petals: how many of its `oldham_petals` to go through.
+        points: of a petal.
+
+    Returns:
+        m, (petals · points + 1, B, 2).
+    """
+    share = petals / mechanism.oldham_petals
+    angle = np.linspace(0.0, TURN * mechanism.cycle_turns * share, petals * points + 1)
+    return np.asarray(solve(mechanism, angle).oldham_centre)
+
+
+def turned(outline: Array, angle: float) -> Array:
+    """Turn points (n, 2) about the origin by an angle, rad."""
+    return Pose(np.zeros(2), np.asarray(angle)).place(outline)
+
+
+class _Sizes(NamedTuple):
+    """Radii from the inside to the outside, m."""
+
+    shaft: float
+    cam: float
+    coupling_bore: float
+    coupling: float
+    jaw: float
+    """Where the jaws of the arm begin."""
+    tongue: float
+    """How far the keys of the coupling reach."""
+    slot: float
+    """How far the slots for them reach."""
+    rim_bore: float
+    rim: float
+    """Of the arm."""
+    key: float
+    """Half the width of the keys."""
+
+    @classmethod
+    def within(cls, root: float, e: float) -> Self | None:
+        """Share the radius inside the teeth out; the slides take the eccentricity three times."""
+        room = root - 3.0 * e
+        if room < _LEAST_ROOM * root:
+            return None
+        cam = 0.29 * room
+        bore = cam + e + 0.03 * room
+        coupling = bore + 0.17 * room
+        tongue = coupling + e + 0.12 * room
+        slot = tongue + e + 0.02 * room
+        return cls(
+            shaft=0.18 * room,
+            cam=cam,
+            coupling_bore=bore,
+            coupling=coupling,
+            jaw=coupling + e + 0.02 * room,
+            tongue=tongue,
+            slot=slot,
+            rim_bore=slot + 0.03 * room,
+            rim=slot + 0.11 * room,
+            key=0.07 * room,
+        )
+
+
+def _jaw(sizes: _Sizes) -> list[tuple[float, float]]:
+    """A block inside the rim of the arm, with a slot for a key of the coupling."""
+    width, key = 2.4 * sizes.key, sizes.key
+    side = [(sizes.jaw, width), (sizes.jaw, key), (sizes.slot, key)]
+    return [*((x, -y) for x, y in side), *reversed(side)]
+
+
+def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int) -> Array:
+    """A circle with equal tabs, evenly spaced from the x axis on; the tab given on the x axis."""
+    half_width = abs(tab[0][1])
+    start = math.asin(half_width / radius)
+    foot = radius * math.cos(start)
+    end = 2.0 * math.pi / count - start
+    angles = np.linspace(start, end, math.ceil((end - start) / _ARC))
+    arc = radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    part = np.concatenate([[(foot, -half_width), *tab], arc[:-1]])
+    return np.concatenate([turned(part, 2.0 * math.pi * k / count) for k in range(count)])
+
+
+def _circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
+    angles = np.arange(0.0, 2.0 * math.pi - 0.5 * _ARC, _ARC)
+    return np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
+
+
+def _rectangle(low: float, high: float, y: float) -> Array:
+    return np.array([(low, -y), (high, -y), (high, y), (low, y)])
+
+
+def _pierced(border: Array, *holes: Array) -> Outlines:
+    return border, *(hole[::-1] for hole in holes)

@@ -1,0 +1,1 @@
+"""From rotor messages to the state of the mechanism, without ROS."""

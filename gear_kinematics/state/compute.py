@@ -1,0 +1,149 @@
+"""The outputs that the node gives for a recorded rotor topic, written to a new bag without ROS."""
+
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from itertools import repeat
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from gear_kinematics.bag import Bag, BagError, BagWriter, in_batches, listed
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.shape.urdf import urdf
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.state_messages import (
+    BODY_POSES,
+    OUTPUT_STATE,
+    STATE_TOPICS,
+    StateMessages,
+)
+from gear_kinematics.wire.cdr import JOINT_STATE
+
+_BATCH = 1024  # messages
+
+
+@dataclass(frozen=True, slots=True)
+class ComputeResult:
+    """Numbers of messages."""
+
+    received: int
+    """On the rotor topic."""
+    computed: int
+    """Written on each output topic."""
+    rejected: Mapping[str, int]
+    """Rotor messages that call for no output, by cause."""
+    mostly_rejected: bool
+    """Whether more rotor messages were rejected than accepted."""
+    zero_stamps: int
+    """Rotor messages without a stamp: their outputs have the time of their reception."""
+    copied: int
+    """On other topics."""
+    left_out: tuple[str, ...]
+    """Topics that were not to be copied."""
+    undefined: tuple[str, ...]
+    """Topics that were copied without a definition of their type, because the bag has none."""
+
+
+def compute(
+    source: Bag,
+    target: Path,
+    parameters: Mapping[str, Any],
+    *,
+    rotor_topic: str = '/rotor_state',
+    output_topic: str = '/output_state',
+    poses_topic: str = '/body_poses',
+    topics: Collection[str] | None = None,
+    storage: Literal['mcap', 'sqlite3'] = 'mcap',
+    compression: Literal['none', 'zstd'] = 'none',
+    progress: Callable[[int], None] = lambda _: None,
+) -> ComputeResult:
+    """Copy a bag and add the output topics to it, or replace them.
+
+    Each output comes right after its rotor message and has its time of reception. The same input
+    gives the same bytes. Whatever ends this early leaves no target behind.
+
+    Args:
+        source: an open bag.
+        target: the folder to make.
+        parameters: of the node, as `parameters.load` gives them.
+        rotor_topic: name of the input in the bag.
+        output_topic: name of the node's output_state in the bag.
+        poses_topic: name of the node's body_poses in the bag.
+        topics: others to copy; None copies all.
+        storage: of the target, see `BagWriter`.
+        compression: of the target, see `BagWriter`.
+        progress: called now and then with the number of messages read.
+
+    Raises:
+        BagError: if the source has no such topics, is damaged, or no rotor message of it gives
+            an output; and if the target cannot be written.
+        ValueError: if the parameters describe no mechanism, or two topics have the same name.
+    """
+    mechanism = Mechanism.from_mapping(parameters)
+    names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
+    urdf(mechanism, module=parameters['module'], **names)  # refuses the names that the node does
+    state_messages = StateMessages(mechanism, **names)
+    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    if len({rotor_topic, output_topic, poses_topic}) < 3:  # noqa: PLR2004
+        raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: a name is there twice')
+    topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
+    outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
+    chosen = {rotor_topic, *(source.topics if topics is None else topics)}
+    _check_topics(source, chosen, {rotor_topic: JOINT_STATE, **outputs})
+    kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
+
+    computed = copied = read = 0
+    with BagWriter(target, storage=storage, compression=compression) as writer:
+        written = [writer.copy_topic(source, topic) for topic in kept]
+        for topic, message_type in outputs.items():
+            writer.add_topic(topic, message_type)
+        for batch in in_batches(source.messages({*kept, *outputs}), _BATCH):
+            messages = [message for message in batch if message[0] not in outputs]
+            rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
+            samples = rotor_input.accept_batch(
+                [messages[place][2] for place in rotor], [messages[place][1] for place in rotor]
+            )
+            answered = [rotor[row] for row in samples.row.tolist()]
+            computed += len(answered)
+            copied += len(messages) - len(rotor)
+            # A stable sort by these puts each output right behind its rotor message.
+            places = [*range(len(messages)), *answered, *answered]
+            received = [messages[place][1] for place in answered]
+            for state, encoded in state_messages.encode_outputs(samples).items():
+                messages += zip(repeat(topic_of[state]), received, encoded)
+            writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
+            read += len(batch)
+            progress(read)
+        if not computed:
+            raise BagError(_nothing_computed(source, rotor_topic, rotor_input))
+    return ComputeResult(
+        rotor_input.received,
+        computed,
+        dict(rotor_input.rejected),
+        rotor_input.mostly_rejected,
+        rotor_input.zero_stamps,
+        copied,
+        left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
+        undefined=tuple(topic.name for topic in written if not topic.syntax),
+    )
+
+
+def _check_topics(source: Bag, needed: Collection[str], types: Mapping[str, str]) -> None:
+    for topic in sorted(needed):
+        if topic not in source.topics:
+            there = listed(source.topics) or 'no topics'
+            raise BagError(f'{source.path}: no {topic} in it; there are {there}')
+    for topic, message_type in types.items():
+        # A topic of another type is somebody else's, not an output of old.
+        found = source.topics.get(topic, message_type)
+        if found != message_type:
+            raise BagError(f'{source.path}: {topic} is of type {found}, not {message_type}')
+
+
+def _nothing_computed(source: Bag, topic: str, rotor_input: RotorInput) -> str:
+    if not rotor_input.received:
+        return f'{source.path}: no messages on {topic}'
+    causes = ', '.join(f'{cause} {count}' for cause, count in rotor_input.rejected.items())
+    joint = rotor_input.settings.rotor_joint
+    return f'{source.path}: nothing on {topic} is a state of the joint {joint!r}: {causes}'

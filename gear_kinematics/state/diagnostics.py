@@ -1,0 +1,191 @@
+"""What the node says of its inputs once a second, without ROS."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from gear_kinematics.kinematics import Mechanism, loop_closure, solve
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.transmission_error import ErrorWindow
+
+OK, WARN, ERROR = 0, 1, 2
+"""Levels of diagnostic_msgs/DiagnosticStatus."""
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """One status: its level, its message, and values by name."""
+
+    level: int
+    message: str
+    values: dict[str, str]
+
+
+class GraphFaults(NamedTuple):
+    """What is wrong between the node and others, each in words."""
+
+    errors: Sequence[str] = ()
+    warnings: Sequence[str] = ()
+
+
+@dataclass(slots=True)
+class InputMonitor:
+    """Watches the rotor input; times are of a steady clock, s."""
+
+    started: float
+    published: int = 0
+    drivers: int = 0
+    """Publishers on rotor_state."""
+    lost: int = 0
+    """Inputs that the middleware knows it did not deliver."""
+    unsent: int = 0
+    """Messages that the middleware did not take."""
+    last_input: float | None = None
+    """When the last message came, valid or not."""
+    graph: GraphFaults = field(default_factory=GraphFaults)
+    """As of the last look at the graph."""
+    _reported: float = 0.0
+    _received: int = 0
+    _lost: int = 0
+    _unsent: int = 0
+    _rejected: Counter[str] = field(default_factory=Counter)
+
+    def report(
+        self, rotor_input: RotorInput, mechanism: Mechanism, timeout: float, now: float
+    ) -> Report:
+        """Report on the time since the last report.
+
+        Args:
+            rotor_input: the input to report on.
+            mechanism: for the loop-closure residual at the last sample.
+            timeout: s without input, after which it is an error.
+            now: s.
+        """
+        elapsed = now - max(self._reported, self.started)
+        rate = (rotor_input.received - self._received) / elapsed if elapsed > 0.0 else 0.0
+        newly_rejected = rotor_input.rejected - self._rejected
+        self._reported, self._received = now, rotor_input.received
+        self._rejected = Counter(rotor_input.rejected)
+        newly_lost, self._lost = self.lost - self._lost, self.lost
+        newly_unsent, self._unsent = self.unsent - self._unsent, self.unsent
+
+        age = now - (self.started if self.last_input is None else self.last_input)
+        errors, warnings = [], []
+        if age > timeout:
+            errors.append(f'no input for {age:.1f} s')
+        if not rotor_input.referenced:
+            errors.append('not referenced')
+        errors += self.graph.errors
+        if newly_rejected:
+            warnings.append(_rejections(newly_rejected))
+        if newly_lost:
+            warnings.append(f'lost {newly_lost}')
+        if newly_unsent:
+            warnings.append(f'not sent {newly_unsent}')
+        if self.drivers > 1:
+            warnings.append(f'{self.drivers} drivers')
+        warnings += self.graph.warnings
+        level = ERROR if errors else WARN if warnings else OK
+        values = {
+            'rate (Hz)': f'{rate:.1f}',
+            'received': str(rotor_input.received),
+            'published': str(self.published),
+            **{f'rejected: {cause}': str(n) for cause, n in sorted(rotor_input.rejected.items())},
+            'lost messages': str(self.lost),
+            'not sent': str(self.unsent),
+            'drivers': str(self.drivers),
+            'duplicate stamps': str(rotor_input.duplicates),
+            'zero stamps': str(rotor_input.zero_stamps),
+            'unnormalised stamps': str(rotor_input.unnormalised_stamps),
+            'clock resets': str(rotor_input.resets),
+            'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
+            'referenced': str(rotor_input.referenced).lower(),
+            'loop-closure residual (m)': _residual(rotor_input, mechanism),
+        }
+        return Report(level, '; '.join(errors + warnings) or 'ok', values)
+
+
+@dataclass(slots=True)
+class EncoderMonitor:
+    """Watches the encoder at the output and the transmission error."""
+
+    lost: int = 0
+    """Inputs that the middleware knows it did not deliver."""
+    last_input: float | None = None
+    """When the last message came, valid or not; s of a steady clock."""
+    _compared: int = 0
+    _lost: int = 0
+    _rejected: Counter[str] = field(default_factory=Counter)
+
+    def report(
+        self, encoder: OutputEncoder, limit: float, timeout: float, now: float
+    ) -> Report | None:
+        """Report on the time since the last report; None as long as there is no encoder.
+
+        Args:
+            encoder: the encoder to report on.
+            limit: of the transmission error, peak to peak, above which there is a warning, rad.
+            timeout: s without input, after which there is a warning.
+            now: s.
+        """
+        if self.last_input is None:
+            return None
+        age = now - self.last_input
+        silent, compared = age > timeout, encoder.compared != self._compared
+        newly_rejected = encoder.rejected - self._rejected
+        newly_lost, self._lost = self.lost - self._lost, self.lost
+        self._compared, self._rejected = encoder.compared, Counter(encoder.rejected)
+
+        warnings = []
+        if silent:
+            warnings.append(f'no output_encoder for {age:.1f} s')
+        elif not compared:
+            warnings.append('no rotor angle of the same time')
+        if newly_rejected:
+            warnings.append(_rejections(newly_rejected))
+        if newly_lost:
+            warnings.append(f'lost {newly_lost}')
+        # What is not fed any more is of another time.
+        window = encoder.window if compared and not silent else ErrorWindow(0)
+        peak_to_peak = window.both.peak_to_peak
+        if peak_to_peak is not None and peak_to_peak > limit:
+            warnings.append(f'peak to peak {peak_to_peak:.3g} rad')
+        values = {
+            'received': str(encoder.received),
+            'compared': str(encoder.compared),
+            **{f'rejected: {cause}': str(n) for cause, n in sorted(encoder.rejected.items())},
+            **{
+                f'not compared: {cause}': str(n)
+                for cause, n in sorted(encoder.not_compared.items())
+            },
+            'lost messages': str(self.lost),
+            'age of last input (s)': f'{age:.3f}',
+            'samples': str(len(window.both)),
+            'mean (rad)': _number(window.both.mean),
+            'peak to peak (rad)': _number(peak_to_peak),
+            'mean forward (rad)': _number(window.forward.mean),
+            'mean backward (rad)': _number(window.backward.mean),
+            'lost motion (rad)': _number(window.lost_motion),
+        }
+        return Report(WARN if warnings else OK, '; '.join(warnings) or 'ok', values)
+
+
+def _rejections(counts: Counter[str]) -> str:
+    return f'rejected: {", ".join(f"{cause} {count}" for cause, count in counts.items())}'
+
+
+def _number(value: float | None) -> str:
+    return 'none' if value is None else f'{value:.6g}'
+
+
+def _residual(rotor_input: RotorInput, mechanism: Mechanism) -> str:
+    if rotor_input.last is None:
+        return 'none'
+    turns, angle = rotor_input.last.position
+    # The poses repeat after the numerator's number of rotor turns, a small and exact angle.
+    rotor_angle = TURN * (turns % mechanism.gear_ratio.numerator) + angle
+    state = solve(mechanism, rotor_angle)
+    return f'{loop_closure.residual(mechanism, rotor_angle, state).max():.3g}'

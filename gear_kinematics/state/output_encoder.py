@@ -1,0 +1,97 @@
+"""The encoder at the output shaft, beside the rotor's: the transmission error while it runs."""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.state.rotor_input import RotorSample
+from gear_kinematics.state.transmission_error import ErrorSample, ErrorWindow, TransmissionError
+from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, Settings
+
+
+@dataclass(frozen=True, slots=True)
+class EncoderSettings(Settings):
+    """How to read the encoder and what to compare."""
+
+    output_encoder_joint: str
+    output_encoder_direction: int
+    output_encoder_zero: float
+    transmission_error_window: float
+    transmission_error_max_gap: float
+    transmission_error_travel: float
+
+    def output_angle(self, position: Any) -> Any:
+        """The measured output angle at a position of the encoder, rad; or arrays of them."""
+        return self.output_encoder_direction * (position - self.output_encoder_zero)
+
+    def comparison(self) -> TransmissionError:
+        """A comparison by these settings, without samples."""
+        return TransmissionError(
+            max_gap=round(self.transmission_error_max_gap * SECOND),
+            travel=self.transmission_error_travel,
+        )
+
+
+class OutputEncoder:
+    """Takes output_encoder messages one by one and compares them with the ideal output angle."""
+
+    def __init__(self, mechanism: Mechanism, settings: EncoderSettings) -> None:
+        """Start with no samples."""
+        self.received = 0
+        self.rejected: Counter[str] = Counter()
+        self.window = ErrorWindow(round(settings.transmission_error_window * SECOND))
+        self._settings = settings
+        self._reader = JointReader(settings.output_encoder_joint)
+        self._form = closed_form(mechanism)
+        self._comparison = settings.comparison()
+        self._last = 0
+
+    @property
+    def compared(self) -> int:
+        """Measured angles that gave an error."""
+        return self._comparison.matched
+
+    @property
+    def not_compared(self) -> Mapping[str, int]:
+        """Measured angles that gave none, by cause."""
+        return self._comparison.unmatched
+
+    def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
+        """Take the next message.
+
+        Args:
+            data: a serialised sensor_msgs/JointState.
+            now: the clock, ns, for messages that have no stamp.
+
+        Returns:
+            The errors that are known now, in the order of their stamps.
+
+        Raises:
+            RejectedInputError: if the message has no angle. It is counted.
+        """
+        self.received += 1
+        try:
+            stamp, _, position, *_ = self._reader.read(data)
+        except RejectedInputError as rejection:
+            self.rejected[str(rejection)] += 1
+            raise
+        angle = self._settings.output_angle(position)
+        return self._note(self._comparison.add_measured(stamp or now(), angle))
+
+    def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:
+        """Take the rotor's next sample, whose turns are known; returns what `accept` does."""
+        turns, angle = self._form.output_angle(*sample.position, math)
+        return self._note(self._comparison.add_ideal(sample.stamp, turns, angle))
+
+    def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
+        for sample in samples:
+            if sample.stamp < self._last:  # the clock was set back
+                self.window.reset()
+            self._last = sample.stamp
+            self.window.add(sample)
+        return samples

@@ -1,0 +1,320 @@
+"""The parameters of the node and of `gearkin --config`: meaning, bounds and default values.
+
+The default values stand in config/actuator.yaml and nowhere else.
+"""
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from gear_kinematics.kinematics import Branch
+from gear_kinematics.state.share import share_directory
+
+NODE = 'gear_state_publisher'
+"""The node's name, unless it is started under another one."""
+
+_EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
+"""Parameters that every node has, which mean nothing here."""
+_NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
+"""What rcl takes as a node's name in a parameter file; `*` is one token of it, `**` any number."""
+_MAX_LENGTH = 2**18  # characters of a parameter file, which takes seconds to parse
+
+
+class ConfigError(ValueError):
+    """A parameter file that cannot be used; the text names the file and the cause."""
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """What a parameter means and which values it takes. Its type is that of its default."""
+
+    description: str
+    minimum: float | None = None
+    maximum: float | None = None
+    step: int = 0
+    choices: tuple[str, ...] = ()
+    read_only: bool = False
+
+    def fault(self, name: str, value: object, default: object) -> str | None:
+        """Say what is wrong with a value, or None."""
+        if type(value) is not type(default):
+            return f'{name} must be of type {type(default).__name__}, not {value!r}'
+        if isinstance(value, list) and not all(isinstance(item, str) for item in value):
+            return f'{name} must be a list of strings, not {value!r}'
+        if self.choices and value not in self.choices:
+            return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
+        if (
+            isinstance(value, (int, float))
+            and self.minimum is not None
+            and self.maximum is not None
+        ):
+            # Written so that NaN is out of range.
+            inside = self.minimum <= value <= self.maximum
+            if not inside or (self.step and (value - self.minimum) % self.step):
+                steps = f' in steps of {self.step}' if self.step else ''
+                bounds = f'between {self.minimum} and {self.maximum}{steps}'
+                return f'{name} must be {bounds}, not {value!r}'
+        return None
+
+
+PARAMETERS: Mapping[str, Parameter] = {
+    'ring_teeth': Parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True),
+    'satellite_teeth': Parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True),
+    'eccentricity': Parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True),
+    'module': Parameter('Module of the teeth, m; no kinematics', 1e-6, 0.1, read_only=True),
+    'branches': Parameter('Names of the branches of transmission', read_only=True),
+    'rotor_joint': Parameter(
+        "Joint to look up in rotor_state, or its index where no joint has a name; '' takes the "
+        'only one'
+    ),
+    'rotor_direction': Parameter('1, or -1 where the encoder counts backwards', -1, 1, step=2),
+    'rotor_zero': Parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15),
+    'rotor_encoder': Parameter(
+        'Whether the position wraps once a turn', choices=('multi_turn', 'single_turn')
+    ),
+    'max_rotor_speed': Parameter('Fastest that the rotor turns, rad/s', 1e-3, 1e6),
+    'max_rotor_acceleration': Parameter(
+        'Fastest that the rotor changes its speed, rad/s²; with the velocities of the messages '
+        'it bounds what a single-turn encoder can have turned in a gap',
+        1e-3,
+        1e9,
+    ),
+    'input_timeout': Parameter('Silence after which diagnostics say ERROR, s', 1e-3, 1e6),
+    'output_joint': Parameter('Name of the output shaft in output_state and the URDF'),
+    'output_encoder_joint': Parameter(
+        "Joint to look up in output_encoder, or its index where no joint has a name; '' takes the "
+        'only one'
+    ),
+    'output_encoder_direction': Parameter(
+        '1, or -1 where the encoder at the output counts backwards', -1, 1, step=2
+    ),
+    'output_encoder_zero': Parameter(
+        "Position of the output's encoder at output angle 0, rad", -1e15, 1e15
+    ),
+    'transmission_error_window': Parameter(
+        'The last while, of which diagnostics give the transmission error, s', 0.1, 60.0
+    ),
+    'transmission_error_limit': Parameter(
+        'Transmission error, peak to peak, above which diagnostics say WARN, rad', 1e-9, 10.0
+    ),
+    'transmission_error_max_gap': Parameter(
+        'Time between rotor states, beyond which nothing is interpolated, s', 1e-6, 10.0
+    ),
+    'transmission_error_travel': Parameter(
+        'How far the output moves after a reversal until its direction counts, rad', 1e-9, 10.0
+    ),
+    'home_angle': Parameter('Output angle that ~/home declares, rad', -1e9, 1e9),
+    'frame_prefix': Parameter('Put before every frame id and joint name'),
+    'markers_rate': Parameter('Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True),
+    'executor': Parameter(
+        'rclpy executor; auto: events where this ROS has it',
+        choices=('auto', 'events', 'single_threaded'),
+        read_only=True,
+    ),
+}
+BRANCH_PARAMETERS: Mapping[str, Parameter] = {
+    'cam_phase': Parameter(
+        'Angle of the cam on the rotor, rad', -2.0 * math.pi, 2.0 * math.pi, read_only=True
+    ),
+    'axial_position': Parameter('Position along the motor axis, m', -10.0, 10.0, read_only=True),
+}
+
+
+def default_config() -> Path:
+    """The installed config/actuator.yaml."""
+    return share_directory() / 'config' / 'actuator.yaml'
+
+
+@cache
+def defaults() -> Mapping[str, Any]:
+    """Every parameter's default value by its full name, from config/actuator.yaml."""
+    return _given(default_config(), NODE)
+
+
+def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any]]:
+    """The parameters of the named branches by full name, each with its default value."""
+    return {
+        f'{branch}.{field}': (
+            parameter,
+            defaults().get(f'{branch}.{field}', getattr(Branch(branch), field)),
+        )
+        for branch in branches
+        for field, parameter in BRANCH_PARAMETERS.items()
+    }
+
+
+def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[str]:
+    """A fault for each name that is no parameter of a node with these branches."""
+    known = [*PARAMETERS, *branch_parameters(branches)]
+    faults = []
+    for name in names:
+        if name in known or _EVERY_NODE.fullmatch(name):
+            continue
+        branch, _, field = name.rpartition('.')
+        if branch and field in BRANCH_PARAMETERS:
+            hint = f'; `{branch}` is not in `branches`'
+        else:
+            nearest = get_close_matches(name, known, n=1)
+            hint = f'; did you mean `{nearest[0]}`?' if nearest else ''
+        faults.append(f'unknown parameter `{name}`{hint}')
+    return faults
+
+
+def load(path: Path, node: str = NODE) -> dict[str, Any]:
+    """Read a node's parameters from a file as the node would; what it leaves out has its default.
+
+    Args:
+        path: a parameter file of ROS: blocks of parameters below names of nodes.
+        node: the node's fully qualified name. Without a namespace, it is the only node of that
+            name in the file; if the file names none, the one that all its wildcards apply to.
+
+    Raises:
+        ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
+            meant, or naming every value and every name that is refused.
+    """
+    given = _given(path, node)
+    known = {name: (parameter, defaults()[name]) for name, parameter in PARAMETERS.items()}
+    faults = _faults(given, known)
+    branches = given.get('branches', known['branches'][1])
+    if not faults:
+        of_branches = branch_parameters(branches)
+        faults += _faults(given, of_branches)
+        known |= of_branches
+        faults += unknown_parameters(given, branches)
+    if faults:
+        raise ConfigError(f'{path}: {"; ".join(faults)}')
+    return {name: given.get(name, default) for name, (_, default) in known.items()}
+
+
+def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]) -> list[str]:
+    checked = (
+        parameter.fault(name, given[name], default)
+        for name, (parameter, default) in known.items()
+        if name in given
+    )
+    return [fault for fault in checked if fault]
+
+
+def _given(path: Path, node: str) -> dict[str, Any]:
+    """The parameters that a file has for a node, by dotted names.
+
+    Those of every block that applies to the node, in the order in which the blocks begin: of two
+    values of a parameter the later one holds, whether its block has a wildcard or not.
+    """
+    blocks = _read(path)
+    if not blocks:
+        raise ConfigError(f'{path}: no ros__parameters in it')
+    name = f'/{node.lstrip("/")}' if '/' in node else _full_name(path, node, blocks)
+    applying = [parameters for pattern, parameters in blocks if _applies(pattern, name)]
+    if not applying:
+        there = ', '.join(pattern for pattern, _ in blocks)
+        raise ConfigError(f'{path}: no parameters of {name} in it, only of {there}')
+    given: dict[str, Any] = {}
+    for parameters in applying:
+        given |= parameters
+    return given
+
+
+def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
+    """The fully qualified name of the node of a name that a file is for."""
+    patterns = [
+        pattern for pattern, _ in blocks if pattern.rpartition('/')[2] in {node, '*', '**'}
+    ]
+    # A node that is named there is meant rather than what wildcards may apply to.
+    patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
+    for pattern in patterns:
+        # A namespace that it applies to: any token will do for `*`.
+        namespace = pattern.rpartition('/')[0].replace('/**', '').replace('/*', '/_')
+        name = f'{namespace}/{node}'
+        if all(_applies(other, name) for other in patterns):
+            return name
+    if len(patterns) > 1:
+        raise ConfigError(
+            f'{path}: parameters of more than one node: {", ".join(patterns)}; '
+            'choose one with --node'
+        )
+    return f'/{node}'
+
+
+def _applies(pattern: str, name: str) -> bool:
+    """Whether a block of a parameter file is for a node, as rclpy and rclcpp see it."""
+    return re.fullmatch(pattern.replace('/*', r'(/\w+)'), name, re.ASCII) is not None
+
+
+def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
+    """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
+    try:
+        with path.open(encoding='utf-8') as file:
+            text = file.read(_MAX_LENGTH + 1)
+    except OSError as error:
+        raise ConfigError(f'{path}: {error.strerror}') from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(f'{path}: {error}') from error
+    if len(text) > _MAX_LENGTH:
+        raise ConfigError(f'{path}: longer than {_MAX_LENGTH} characters')
+    try:
+        document = yaml.load(text, _RosLoader)  # noqa: S506, it is safe
+    except (yaml.YAMLError, ValueError, RecursionError) as error:
+        raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error
+    blocks: dict[str, dict[str, Any]] = {}
+    for name, parameters in _blocks(document):
+        blocks.setdefault(name, {}).update(parameters)
+    # `node` and `/node` mean the same to rcl, but are two blocks.
+    found = [(f'/{name.removeprefix("/")}', parameters) for name, parameters in blocks.items()]
+    for name, _ in found:
+        if not _NODE_PATTERN.fullmatch(name):
+            raise ConfigError(f'{path}: {name} is no name of a node')
+    return found
+
+
+class _Pairs(tuple[tuple[Any, Any], ...]):
+    """A mapping, in which a key can be there twice: ROS takes both."""
+
+    __slots__ = ()
+
+
+class _RosLoader(yaml.SafeLoader):
+    """Reads as ROS does: 15e-4 is a number, and aliases, which could go on and on, are refused."""
+
+    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
+        """Compose the next node."""
+        if self.check_event(yaml.AliasEvent):
+            problem = 'aliases are not supported'
+            raise yaml.composer.ComposerError(None, None, problem, self.get_mark())
+        return super().compose_node(parent, index)
+
+
+_RosLoader.add_constructor(
+    'tag:yaml.org,2002:map',
+    lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True)),
+)
+_RosLoader.add_implicit_resolver(
+    'tag:yaml.org,2002:float',
+    re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
+    list('-+.0123456789'),
+)
+
+
+def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:
+    for key, value in tree if isinstance(tree, _Pairs) else ():
+        if key != 'ros__parameters':
+            yield from _blocks(value, f'{name}/{key}' if name.strip('/') else f'{name}{key}')
+        elif isinstance(value, _Pairs):
+            yield name, _flatten(value)
+
+
+def _flatten(tree: _Pairs, prefix: str = '') -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in tree:
+        if isinstance(value, _Pairs):
+            flat |= _flatten(value, f'{prefix}{key}.')
+        else:
+            flat[f'{prefix}{key}'] = value
+    return flat

@@ -1,0 +1,308 @@
+"""From the bytes of a rotor_state message to the rotor's position, and what bad input gets."""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
+from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.wire.cdr import LATEST
+from gear_kinematics.wire.joint_reader import (
+    GREATEST,
+    JOINT_MISSING,
+    MALFORMED,
+    OUT_OF_ORDER,
+    POSITION_MISSING,
+    POSITION_NOT_FINITE,
+    POSITION_TOO_LARGE,
+    STAMP_OUT_OF_RANGE,
+    JointReader,
+    RejectedInputError,
+    Settings,
+)
+
+Array = NDArray[Any]
+
+CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
+
+
+@dataclass(frozen=True, slots=True)
+class InputSettings(Settings):
+    """How to read the rotor's encoder."""
+
+    rotor_joint: str
+    rotor_direction: int
+    rotor_zero: float
+    rotor_encoder: str
+    max_rotor_speed: float
+    max_rotor_acceleration: float
+
+    @property
+    def encoder(self) -> tuple[str, str]:
+        """What tells one encoder from another: its joint and its kind."""
+        return self.rotor_joint, self.rotor_encoder
+
+    @property
+    def single_turn(self) -> bool:
+        """Whether the position wraps once a turn."""
+        return self.rotor_encoder == 'single_turn'
+
+
+class RotorSample(NamedTuple):
+    """A valid rotor state: the mechanism's angle φ2, its rate and torque."""
+
+    stamp: int
+    """ns."""
+    position: RotorPosition
+    velocity: float | None
+    """rad/s; None where the message has none."""
+    effort: float | None
+    """N·m; None where the message has none."""
+
+
+class RotorSamples(NamedTuple):
+    """Valid rotor states as arrays (n,), and the stamps of the others."""
+
+    stamp: Array
+    """ns."""
+    turns: Array
+    angle: Array
+    """rad: the rotor angle φ2 is 2π turns + angle."""
+    velocity: Array
+    """rad/s; NaN where the message has none."""
+    effort: Array
+    """N·m; NaN where the message has none."""
+    row: Array
+    """Which of the messages."""
+    received: Array
+    """ns."""
+    stretch: Array
+    """Goes up where the count of a single-turn encoder's turns begins anew or is in doubt."""
+    rejected: Array
+    """(m,), ns: the stamps of rejected messages that have one."""
+
+
+class RotorInput:
+    """Takes rotor_state messages one by one and keeps account of them."""
+
+    def __init__(self, settings: InputSettings) -> None:
+        """Start with no position."""
+        self.received = 0
+        self.rejected: Counter[str] = Counter()
+        self.duplicates = 0
+        self.zero_stamps = 0
+        self.unnormalised_stamps = 0
+        """Stamps with a second or more of nanoseconds; samples have the time that they mean."""
+        self.resets = 0
+        self.last: RotorSample | None = None
+        self._settings = settings
+        self._reader = JointReader(settings.rotor_joint)
+        self._turns = RotorTurns(
+            single_turn=settings.single_turn,
+            max_speed=settings.max_rotor_speed,
+            max_acceleration=settings.max_rotor_acceleration,
+        )
+
+    @property
+    def settings(self) -> InputSettings:
+        """How the encoder is read; set it at any time. For another encoder it starts anew."""
+        return self._settings
+
+    @settings.setter
+    def settings(self, settings: InputSettings) -> None:
+        self._turns.max_speed = settings.max_rotor_speed
+        self._turns.max_acceleration = settings.max_rotor_acceleration
+        if settings.encoder != self._settings.encoder:
+            self._turns.single_turn = settings.single_turn
+            self._turns.reset()
+            self._reader = JointReader(settings.rotor_joint)
+        self._settings = settings
+
+    @property
+    def referenced(self) -> bool:
+        """Whether the number of the rotor's turns is known."""
+        return self._turns.referenced
+
+    @property
+    def unknown_turns(self) -> int:
+        """Gaps in which the rotor could have turned half a turn or more unseen."""
+        return self._turns.unknown_gaps
+
+    @property
+    def mostly_rejected(self) -> bool:
+        """Whether more messages were rejected than accepted."""
+        return 2 * self.rejected.total() > self.received
+
+    @property
+    def _stretch(self) -> int:
+        return self._turns.unknown_gaps + self.resets
+
+    def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
+        """Take the next message.
+
+        Args:
+            data: a serialised sensor_msgs/JointState.
+            now: the clock, ns, for messages that have no stamp.
+
+        Raises:
+            RejectedInputError: if the message gives no output. It is counted.
+        """
+        self.received += 1
+        try:
+            stamp, unnormalised, position, velocity, effort = self._reader.read(data)
+            self.unnormalised_stamps += unnormalised
+            return self._take(stamp or self._clock(now), position, velocity, effort)
+        except RejectedInputError as rejection:
+            self.rejected[str(rejection)] += 1
+            raise
+
+    def home(self, rotor_angle: float) -> float:
+        """Declare that the rotor angle is `rotor_angle` now; returns the new `rotor_zero`.
+
+        Raises:
+            RuntimeError: before the first valid message.
+        """
+        return self._turns.home(rotor_angle, self._settings.rotor_direction)
+
+    def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
+        """Take many messages at once, with the same outcome as one by one.
+
+        Args:
+            messages: serialised sensor_msgs/JointState.
+            received: the clock at each, ns, for messages that have no stamp.
+        """
+        self.received += len(messages)
+        states = decode_joint_states(messages, self._settings.rotor_joint)
+        usable = np.ones(len(messages), bool)
+        # In the order in which `accept` comes upon them.
+        for faulty, cause in (
+            (states.malformed, MALFORMED),
+            (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
+            (~states.joint_found, JOINT_MISSING),
+            (~states.present[:, 0], POSITION_MISSING),
+            (~np.isfinite(states.values[:, 0]), POSITION_NOT_FINITE),
+            (np.abs(states.values[:, 0]) > LARGEST_ANGLE, POSITION_TOO_LARGE),
+        ):
+            if count := int(np.count_nonzero(faulty & usable)):
+                self.rejected[cause] += count
+            usable &= ~faulty
+        self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
+        rows = np.flatnonzero(usable)
+        stamps, values = states.stamp[rows], states.values[rows]
+        values[~(np.abs(values) <= GREATEST)] = np.nan
+        clock = np.asarray(received, np.int64)[rows]
+        rejected = states.stamp[~(usable | states.malformed)]
+        if self._settings.single_turn or not self._in_order(stamps):
+            return self._one_by_one(rows, stamps, values, clock, rejected)
+        return self._all_at_once(rows, stamps, values, clock, rejected)
+
+    def _in_order(self, stamps: Array) -> bool:
+        in_order = np.all(stamps != 0) and np.all(np.diff(stamps) >= 0)
+        follows = self.last is None or not len(stamps) or stamps[0] >= self.last.stamp
+        return bool(in_order and follows)
+
+    def _all_at_once(
+        self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
+    ) -> RotorSamples:
+        turns, angle = split_turns(values[:, 0])
+        zero_turns, zero_angle = split_turns(self._settings.rotor_zero)
+        direction = self._settings.rotor_direction
+        samples = RotorSamples(
+            stamps,
+            direction * (turns - zero_turns),
+            direction * (angle - zero_angle),
+            direction * values[:, 1],
+            direction * values[:, 2],
+            rows,
+            received,
+            np.full(len(stamps), self._stretch),
+            rejected,
+        )
+        if len(stamps):
+            before = stamps[0] - 1 if self.last is None else self.last.stamp
+            self.duplicates += int(np.count_nonzero(np.diff(stamps, prepend=before) == 0))
+            # The last goes the ordinary way as well, for what comes after it.
+            self.last = None
+            self._take_row(int(stamps[-1]), values[-1].tolist())
+        return samples
+
+    def _one_by_one(
+        self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
+    ) -> RotorSamples:
+        taken: list[RotorSample] = []
+        columns: list[tuple[int, int, int]] = []  # row, received, stretch
+        disordered: list[int] = []
+        for row, stamp, numbers, now in zip(
+            rows.tolist(), stamps.tolist(), values.tolist(), received.tolist(), strict=True
+        ):
+            try:
+                sample = self._take_row(stamp or self._clock(partial(int, now)), numbers)
+            except RejectedInputError as rejection:
+                self.rejected[str(rejection)] += 1
+                disordered.append(stamp)
+                continue
+            taken.append(sample)
+            columns.append((row, now, self._stretch))
+        count = len(taken)
+        # None becomes NaN.
+        motion = [(*sample.position, sample.velocity, sample.effort) for sample in taken]
+        turns, angle, velocity, effort = np.array(motion, np.float64).reshape(count, 4).T
+        row_of, clock, stretch = np.array(columns, np.int64).reshape(count, 3).T
+        return RotorSamples(
+            np.array([sample.stamp for sample in taken], np.int64),
+            turns,
+            angle,
+            velocity,
+            effort,
+            row_of,
+            clock,
+            stretch,
+            np.append(rejected, np.array(disordered, np.int64)),
+        )
+
+    def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
+        position, velocity, effort = row
+        return self._take(stamp, position, _number_or_none(velocity), _number_or_none(effort))
+
+    def _clock(self, now: Callable[[], int]) -> int:
+        """The stamp of a message that has none."""
+        self.zero_stamps += 1
+        stamp = now()
+        if stamp > LATEST:
+            raise RejectedInputError(STAMP_OUT_OF_RANGE)
+        return stamp
+
+    def _take(
+        self, stamp: int, position: float, velocity: float | None, effort: float | None
+    ) -> RotorSample:
+        if self.last is not None and stamp <= self.last.stamp:
+            self._check_order(stamp, self.last.stamp)
+        self._turns.update(position, stamp, velocity)
+        direction = self._settings.rotor_direction
+        self.last = RotorSample(
+            stamp,
+            self._turns.relative_to(self._settings.rotor_zero, direction),
+            None if velocity is None else direction * velocity,
+            None if effort is None else direction * effort,
+        )
+        return self.last
+
+    def _check_order(self, stamp: int, last: int) -> None:
+        if stamp == last:
+            self.duplicates += 1
+        elif last - stamp <= CLOCK_RESET:
+            raise RejectedInputError(OUT_OF_ORDER)
+        else:
+            self.resets += 1
+            self._turns.reset()
+
+
+def _number_or_none(value: float) -> float | None:
+    return None if math.isnan(value) else value

@@ -1,0 +1,150 @@
+"""The messages that the node publishes for its samples, as bytes ready to be sent."""
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.motion import BranchPosition, closed_form
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.shape.urdf import joint_names
+from gear_kinematics.state.rotor_input import RotorSample, RotorSamples
+from gear_kinematics.state.transmission_error import ErrorSample
+from gear_kinematics.wire.batches import encode
+from gear_kinematics.wire.cdr import (
+    JOINT_STATE,
+    POSE_ARRAY,
+    JointStateTemplate,
+    PoseArrayTemplate,
+)
+
+OUTPUT_STATE, BODY_POSES, JOINT_STATES = 'output_state', 'body_poses', 'mechanism_joint_states'
+STATE_TOPICS: Mapping[str, str] = {
+    OUTPUT_STATE: JOINT_STATE,
+    BODY_POSES: POSE_ARRAY,
+    JOINT_STATES: JOINT_STATE,
+}
+"""The topics of the state and their types."""
+
+
+class StateMessages:
+    """Computes the state at a sample and encodes it."""
+
+    def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
+        """Lay the messages out."""
+        self._form = closed_form(mechanism)
+        self._ratio = float(mechanism.gear_ratio)
+        self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
+        self._output_states = {
+            (velocity, effort): JointStateTemplate(
+                [frame_prefix + output_joint], velocity=velocity, effort=effort
+            )
+            for velocity in (False, True)
+            for effort in (False, True)
+        }
+        self._body_poses = PoseArrayTemplate(frame_prefix + 'stator', 2 * len(mechanism.branches))
+        names = joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)
+        self._joint_states = {
+            velocity: JointStateTemplate(names, velocity=velocity, effort=False)
+            for velocity in (False, True)
+        }
+
+    def encode(
+        self, sample: RotorSample, topics: Iterable[str] = STATE_TOPICS
+    ) -> Iterator[tuple[str, bytes]]:
+        """Yield the messages for a sample by topic: all, or those of some of STATE_TOPICS."""
+        turns, angle = sample.position
+        output_turns, output_rest = self._form.output_angle(turns, angle, math)
+        output_angle = TURN * output_turns + output_rest
+        branches: list[BranchPosition] = []
+        for topic in topics:
+            if topic == OUTPUT_STATE:
+                yield topic, self._output_state(sample, output_angle)
+                continue
+            branches = branches or self._form.branches(angle, output_rest, math)
+            if topic == BODY_POSES:
+                yield topic, self._poses(sample, output_rest, branches)
+            else:
+                yield topic, self._joint_state(sample, output_angle, branches)
+
+    @np.errstate(over='ignore')  # an effort can exceed all floats, as that of a single sample
+    def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
+        """Give the messages of OUTPUT_STATE and BODY_POSES for many samples, as `encode` does."""
+        output_turns, output_rest = self._form.output_angle(samples.turns, samples.angle, np)
+        output_angle = TURN * output_turns + output_rest
+        output_states = len(samples.stamp) * [b'']
+        for present, template in self._output_states.items():
+            absent = np.isnan([samples.velocity, samples.effort])
+            rows = np.flatnonzero(np.all(present != absent.T, axis=1))
+            numbers = self._output_numbers(
+                present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
+            )
+            encoded = encode(template, samples.stamp[rows], *([number] for number in numbers))
+            for row, message in zip(rows.tolist(), encoded, strict=True):
+                output_states[row] = message
+        branches = self._form.branches(samples.angle, output_rest, np)
+        poses = encode(
+            self._body_poses, samples.stamp, self._pose_numbers(output_rest, branches, np)
+        )
+        return {OUTPUT_STATE: output_states, BODY_POSES: poses}
+
+    def transmission_error(self, sample: ErrorSample) -> bytes:
+        """Give the message for a transmission error: the position of the output's joint."""
+        return self._output_states[False, False].encode(sample.stamp, (sample.error,))
+
+    def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
+        present = sample.velocity is not None, sample.effort is not None
+        numbers = self._output_numbers(present, output_angle, sample.velocity, sample.effort)
+        template = self._output_states[present]
+        return template.encode(sample.stamp, *((number,) for number in numbers))
+
+    def _output_numbers(
+        self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any
+    ) -> list[Any]:
+        """The numbers of an output_state: floats or arrays of them."""
+        numbers = [output_angle]
+        if present[0]:
+            numbers.append(self._form.output_rate(velocity))
+        if present[1]:
+            numbers.append(self._ratio * effort)
+        return numbers
+
+    def _poses(
+        self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
+    ) -> bytes:
+        numbers = self._pose_numbers(output_angle, branches, math)
+        return self._body_poses.encode(sample.stamp, numbers)
+
+    def _pose_numbers(
+        self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
+    ) -> list[Any]:
+        """The numbers of body_poses: floats or arrays of them."""
+        # Every body but the rotor has the angle φ5; within the turn its quaternion has w >= 0.
+        sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
+        centres = [branch.satellite for branch in branches]
+        centres += [branch.oldham for branch in branches]
+        numbers: list[Any] = []
+        for (x, y), z in zip(centres, self._axial_positions, strict=True):
+            numbers += (x, y, z, 0.0, 0.0, sine, cosine)
+        return numbers
+
+    def _joint_state(
+        self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
+    ) -> bytes:
+        """In the order of `joint_names`."""
+        rotor_angle = TURN * sample.position.turns + sample.position.angle
+        on_cam = output_angle - rotor_angle
+        positions = [rotor_angle, *(on_cam for _ in branches)]
+        positions += [branch.satellite_slide for branch in branches]
+        positions.append(output_angle)
+        velocity = sample.velocity
+        if velocity is None:
+            return self._joint_states[False].encode(sample.stamp, positions)
+        output_velocity = self._form.output_rate(velocity)
+        velocities = [velocity, *(output_velocity - velocity for _ in branches)]
+        velocities += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
+        velocities.append(output_velocity)
+        return self._joint_states[True].encode(sample.stamp, positions, velocities)

@@ -1,0 +1,144 @@
+"""The rotor's motion over time, as recorded or at a constant speed."""
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.roles import find_rotor_topic
+from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.cdr import SECOND
+
+Array = NDArray[np.float64]
+
+MOST_TURNS = 1000
+"""Of the rotor at a constant speed; more are a blur."""
+_PER_TURN = 360  # samples
+_ROUNDING = 1e-9  # by which intervals may miss the end
+_BATCH = 8192  # messages
+
+
+class Trajectory(NamedTuple):
+    """The rotor angle φ2 over time; arrays (n,)."""
+
+    time: Array
+    """s from the start, increasing."""
+    turns: Array
+    """Whole turns of the rotor."""
+    angle: Array
+    """rad: φ2 is 2π turns + angle."""
+    velocity: Array
+    """rad/s."""
+
+    @classmethod
+    def at_constant_speed(
+        cls, speed: float, *, turns: int = 1, duration: float | None = None
+    ) -> Self:
+        """Turn from φ2 = 0, with samples close enough for smooth curves.
+
+        Args:
+            speed: rad/s.
+            turns: of the rotor, for as long as they take.
+            duration: s, instead.
+
+        Raises:
+            ValueError: if the rotor stands still, or turns more often than `MOST_TURNS`.
+        """
+        if not (speed and math.isfinite(speed)):
+            raise ValueError(f'a speed is finite and not 0, not {speed:g} rad/s')
+        if duration is None:
+            duration = turns * TURN / abs(speed)
+        length = abs(speed) * duration / TURN
+        if length > MOST_TURNS:
+            raise ValueError(f'{length:g} turns of the rotor are more than {MOST_TURNS}')
+        time = np.linspace(0.0, duration, math.ceil(_PER_TURN * length) + 1)
+        return cls(time, *split_turns(speed * time), np.full(len(time), speed))
+
+    def state(self, mechanism: Mechanism) -> MotionState:
+        """The motion of all bodies, (n, ...)."""
+        with np.errstate(over='ignore'):  # nothing here shows accelerations
+            return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
+
+    @property
+    def longest_step(self) -> float:
+        """The most that the rotor turns from sample to sample, turns."""
+        position = self.turns + self.angle / TURN
+        return float(np.max(np.abs(np.diff(position)), initial=0.0))
+
+    def between(self, start: float, end: float) -> Self:
+        """The samples in a part of the time, s.
+
+        Raises:
+            ValueError: if there is none.
+        """
+        inside = (self.time >= start) & (self.time <= end)
+        if not inside.any():
+            there = f'they are from 0 s to {self.time[-1]:g} s'
+            raise ValueError(f'no states of the rotor from {start:g} s to {end:g} s; {there}')
+        return type(self)(*(column[inside] for column in self))
+
+    def every(self, interval: float, *, closed: bool = False) -> Self:
+        """Interpolate at even intervals.
+
+        Args:
+            interval: s, or a little more or less if it has to go into the whole time.
+            closed: leave out the end, because it is the beginning again.
+        """
+        duration = self.time[-1] - self.time[0]
+        if closed:
+            count = max(1, round(duration / interval))
+            interval = duration / count
+        else:
+            count = math.floor(duration / interval * (1.0 + _ROUNDING)) + 1
+        time = self.time[0] + interval * np.arange(count)
+        position = np.interp(time, self.time, self.turns * TURN + self.angle)
+        turns, angle = split_turns(position)
+        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
+
+
+def read_trajectory(
+    path: Path,
+    parameters: Mapping[str, Any],
+    rotor_topic: str | None = None,
+    progress: Callable[[int, int | None], None] = lambda _count, _total: None,
+) -> Trajectory:
+    """Read the rotor's topic of a bag, up to where its stamps begin anew, if they do.
+
+    Args:
+        path: of the bag.
+        parameters: of the node, as `parameters.load` gives them.
+        rotor_topic: its name; None: by type and name.
+        progress: called with the messages of each batch, and of the whole bag if that is known.
+
+    Returns:
+        Where messages have no velocity, it is that of the differences of positions.
+
+    Raises:
+        BagError: if the bag cannot be read, or has no states of the rotor at two times.
+    """
+    messages, received = [], []
+    with Bag(path) as bag:
+        topic = find_rotor_topic(bag, rotor_topic)
+        for _, stamp, data in bag.messages([topic]):
+            messages.append(data)
+            received.append(stamp)
+            if len(messages) % _BATCH == 0:
+                progress(_BATCH, bag.message_count)
+        progress(len(messages) % _BATCH, bag.message_count)
+    samples = RotorInput(InputSettings.from_mapping(parameters)).accept_batch(messages, received)
+    anew = np.flatnonzero(np.diff(samples.stamp) < 0)
+    _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
+    if len(used) < 2:  # noqa: PLR2004, what a motion takes
+        raise BagError(f'{path}: {topic} has no states of the rotor at two times')
+    stamps, turns, angle, velocity = (column[used] for column in samples[:4])
+    time = (stamps - stamps[0]) / SECOND
+    positions = (turns - turns[0]) * TURN + angle
+    with np.errstate(over='ignore', invalid='ignore'):
+        velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
+    return Trajectory(time, turns, angle, velocity)

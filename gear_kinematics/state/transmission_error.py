@@ -1,0 +1,259 @@
+"""The transmission error, sample by sample: measured less ideal output angle, for node and files.
+
+Encoder and rotor are sampled each in its own time. A measured angle is compared with the ideal
+one that is interpolated to its stamp, once the ideal samples on both sides of it are there.
+"""
+
+import math
+from collections import Counter, deque
+from typing import NamedTuple
+
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
+from gear_kinematics.state.rotor_input import CLOCK_RESET
+
+_DEPTH = 8192
+"""Samples of either kind that are kept to wait for the other."""
+_UNIT = 2.0**52
+"""Parts of a radian in which a sum counts: integers that are added and taken off leave nothing."""
+
+
+class ErrorSample(NamedTuple):
+    """The transmission error at the stamp of a measured angle."""
+
+    stamp: int
+    """ns."""
+    error: float
+    """Measured less ideal, rad."""
+    turns: int
+    ideal: float
+    """rad: the ideal output angle is 2π `turns` + `ideal`."""
+    direction: int
+    """Of the output: 1, -1, or 0 where it has not moved far enough since it last turned back."""
+
+
+class Direction:
+    """Which way something moves, once it has travelled far enough that way.
+
+    A sensor's noise or a standstill thus changes no direction, and the way back across the lost
+    motion belongs to neither.
+    """
+
+    def __init__(self, travel: float) -> None:
+        """Start without a direction.
+
+        Args:
+            travel: rad, after a reversal, until the new direction counts.
+        """
+        self._travel = travel
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget which way it moved."""
+        self._risen = self._fallen = 0.0
+
+    def move(self, step: float) -> int:
+        """Take a step, rad; returns 1, -1, or 0 where the direction is not known."""
+        self._risen = min(max(self._risen + step, 0.0), self._travel)
+        self._fallen = min(max(self._fallen - step, 0.0), self._travel)
+        return int(self._risen >= self._travel) - int(self._fallen >= self._travel)
+
+
+class _Ideal(NamedTuple):
+    """The ideal output angle 2π `turns` + `angle`."""
+
+    stamp: int
+    turns: int
+    angle: float
+    direction: int
+
+
+class TransmissionError:
+    """Compares measured with ideal output angles, as both come in.
+
+    Angles are compared within the turn, so that the encoder may be of a single turn. Errors are
+    continuous: each is the nearest to the first one, whatever the offset of the encoder's zero.
+    """
+
+    def __init__(self, *, max_gap: int, travel: float) -> None:
+        """Start with no samples.
+
+        Args:
+            max_gap: ns between ideal samples, beyond which nothing is interpolated.
+            travel: rad of the output after a reversal, until the new direction counts.
+        """
+        self.matched = 0
+        self.unmatched: Counter[str] = Counter()
+        """Measured angles that gave no error, by cause."""
+        self._max_gap = max_gap
+        self._direction = Direction(travel)
+        self._ideal: deque[_Ideal] = deque(maxlen=_DEPTH)
+        self._measured: deque[tuple[int, float]] = deque()
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all samples, as after homing."""
+        self._direction.reset()
+        self._ideal.clear()
+        self._measured.clear()
+        self._last_measured: int | None = None
+        self._first_error: float | None = None
+
+    def add_ideal(self, stamp: int, turns: int, angle: float) -> list[ErrorSample]:
+        """Take the ideal output angle 2π `turns` + `angle` at a stamp, ns.
+
+        One with the stamp of the last, or an older one, is passed over; one that is older by more
+        than a second is a new beginning.
+
+        Returns:
+            The errors that are known now, in the order of their stamps.
+        """
+        direction = 0
+        if self._ideal:
+            last = self._ideal[-1]
+            if stamp <= last.stamp:
+                if last.stamp - stamp <= CLOCK_RESET:
+                    return []
+                self.reset()
+            elif stamp - last.stamp > self._max_gap:
+                self._direction.reset()
+            else:
+                direction = self._direction.move((turns - last.turns) * TURN + angle - last.angle)
+        self._ideal.append(_Ideal(stamp, turns, angle, direction))
+        return self._match()
+
+    def add_measured(self, stamp: int, angle: float) -> list[ErrorSample]:
+        """Take a measured output angle, rad, at a stamp, ns.
+
+        Returns:
+            The errors that are known now, in the order of their stamps.
+        """
+        if not abs(angle) <= LARGEST_ANGLE:  # NaN compares false
+            self.unmatched['not finite, or too large'] += 1
+            return []
+        if self._last_measured is not None and stamp < self._last_measured:
+            if self._last_measured - stamp <= CLOCK_RESET:
+                self.unmatched['out of order'] += 1
+                return []
+            self.reset()
+        self._last_measured = stamp
+        if len(self._measured) == _DEPTH:
+            self._measured.popleft()
+            self.unmatched['no ideal angle since'] += 1
+        self._measured.append((stamp, split_turns(angle).angle))
+        return self._match()
+
+    def _match(self) -> list[ErrorSample]:
+        """Go through both queues as far as the ideal samples reach."""
+        samples = []
+        ideal, measured = self._ideal, self._measured
+        while measured and len(ideal) > 1:
+            stamp, angle = measured[0]
+            before, after = ideal[0], ideal[1]
+            if stamp > after.stamp:
+                ideal.popleft()
+                continue
+            measured.popleft()
+            if stamp < before.stamp:
+                self.unmatched['no ideal angle before'] += 1
+            elif after.stamp - before.stamp > self._max_gap:
+                self.unmatched['gap of the ideal angle'] += 1
+            else:
+                samples.append(self._compare(stamp, angle, before, after))
+        return samples
+
+    def _compare(self, stamp: int, measured: float, before: _Ideal, after: _Ideal) -> ErrorSample:
+        share = (stamp - before.stamp) / (after.stamp - before.stamp)
+        step = (after.turns - before.turns) * TURN + after.angle - before.angle
+        ideal = before.angle + share * step
+        error = math.remainder(measured - ideal, TURN)
+        if self._first_error is None:
+            self._first_error = error
+        error = self._first_error + math.remainder(error - self._first_error, TURN)
+        self.matched += 1
+        known = before.direction == after.direction
+        return ErrorSample(stamp, error, before.turns, ideal, after.direction if known else 0)
+
+
+class SlidingStatistics:
+    """Mean and peak to peak of the last while; a value more takes constant time, amortised."""
+
+    def __init__(self) -> None:
+        """Start empty."""
+        self._values: deque[tuple[int, int]] = deque()
+        self._sum = 0
+        # Values that are the greatest, or the least, of all that came since.
+        self._greatest: deque[tuple[int, float]] = deque()
+        self._least: deque[tuple[int, float]] = deque()
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def add(self, stamp: int, value: float) -> None:
+        """Take a value, rad, at a stamp, ns, not before the last."""
+        counted = round(value * _UNIT)
+        self._values.append((stamp, counted))
+        self._sum += counted
+        while self._greatest and self._greatest[-1][1] <= value:
+            self._greatest.pop()
+        self._greatest.append((stamp, value))
+        while self._least and self._least[-1][1] >= value:
+            self._least.pop()
+        self._least.append((stamp, value))
+
+    def drop(self, before: int) -> None:
+        """Forget what is older than a stamp, ns."""
+        while self._values and self._values[0][0] < before:
+            self._sum -= self._values.popleft()[1]
+        for extremes in (self._greatest, self._least):
+            while extremes and extremes[0][0] < before:
+                extremes.popleft()
+
+    @property
+    def mean(self) -> float | None:
+        """rad; None of nothing."""
+        return self._sum / len(self._values) / _UNIT if self._values else None
+
+    @property
+    def peak_to_peak(self) -> float | None:
+        """rad; None of nothing."""
+        return self._greatest[0][1] - self._least[0][1] if self._values else None
+
+
+class ErrorWindow:
+    """What the transmission error was like in the last while, and how it differs by direction."""
+
+    def __init__(self, length: int) -> None:
+        """Start empty.
+
+        Args:
+            length: ns, of the window.
+        """
+        self._length = length
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget all samples."""
+        self.both = SlidingStatistics()
+        """Of all samples."""
+        self.forward = SlidingStatistics()
+        """Of those on the way forward."""
+        self.backward = SlidingStatistics()
+        """Of those on the way backward."""
+
+    def add(self, sample: ErrorSample) -> None:
+        """Take an error that is not older than the last."""
+        self.both.add(sample.stamp, sample.error)
+        if sample.direction:
+            statistics = self.forward if sample.direction > 0 else self.backward
+            statistics.add(sample.stamp, sample.error)
+        for statistics in (self.both, self.forward, self.backward):
+            statistics.drop(sample.stamp - self._length)
+
+    @property
+    def lost_motion(self) -> float | None:
+        """How far the output stays behind on reversals: mean error backward less forward, rad.
+
+        None unless it has moved both ways.
+        """
+        backward, forward = self.backward.mean, self.forward.mean
+        return None if backward is None or forward is None else backward - forward

@@ -1,0 +1,1 @@
+"""What a node published, against what it should have published."""

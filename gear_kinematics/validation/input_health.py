@@ -1,0 +1,100 @@
+"""How healthy a recorded rotor topic is: its rate, its gaps, its speed."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.validation.report import Gap, InputReport
+
+Array = NDArray[np.float64]
+
+_GAP = 5.0  # median periods
+_LONGEST = 10  # gaps that are listed
+_PERIODS_FOR_MEDIAN = 65_536
+_SECOND = 1e9  # ns
+
+
+class InputHealth:
+    """Gathers what the samples tell, batch by batch, in bounded memory."""
+
+    def __init__(self, max_speed: float) -> None:
+        """Start with no sample.
+
+        Args:
+            max_speed: rad/s, the fastest that the rotor can turn.
+        """
+        self._max_speed = max_speed
+        self._first_stamp: int | None = None
+        self._last_stamp: int | None = None
+        self._last_angle = 0.0
+        self._duration = 0.0
+        self._period_count = 0
+        self._waiting: list[tuple[NDArray[np.int64], Array, Array]] = []
+        self._median = 0.0
+        self._gaps = 0
+        self._longest: list[Gap] = []
+        self._overspeed = 0
+        self._fastest = 0.0
+
+    def update(self, stamp: NDArray[np.int64], rotor_angle: Array) -> None:
+        """Take the next samples: stamps in ns, angles in rad, (n,)."""
+        if not len(stamp):
+            return
+        if self._last_stamp is None:
+            self._first_stamp = int(stamp[0])
+            self._last_stamp, self._last_angle = int(stamp[0]), float(rotor_angle[0])
+        period = np.diff(stamp, prepend=self._last_stamp) / _SECOND
+        turned = np.diff(rotor_angle, prepend=self._last_angle)
+        self._last_stamp, self._last_angle = int(stamp[-1]), float(rotor_angle[-1])
+        forward = period > 0.0  # neither a duplicate nor a new beginning
+        period, turned, stamp = period[forward], turned[forward], stamp[forward]
+        self._duration += float(period.sum())
+        speed = np.abs(turned) / period
+        self._fastest = max(self._fastest, float(speed.max(initial=0.0)))
+        self._overspeed += int(np.count_nonzero(speed > self._max_speed))
+        self._waiting.append((stamp, period, turned))
+        if not self._median:
+            self._period_count += len(period)
+            if self._period_count < _PERIODS_FOR_MEDIAN:
+                return
+        self._find_gaps()
+
+    def report(self, rotor_input: RotorInput, topic: str) -> InputReport:
+        """Report on everything so far."""
+        self._find_gaps()
+        return InputReport(
+            topic=topic,
+            joint=rotor_input.settings.rotor_joint,
+            messages=rotor_input.received,
+            valid=rotor_input.received - rotor_input.rejected.total(),
+            rejected=dict(rotor_input.rejected),
+            duplicates=rotor_input.duplicates,
+            zero_stamps=rotor_input.zero_stamps,
+            unnormalised_stamps=rotor_input.unnormalised_stamps,
+            resets=rotor_input.resets,
+            first_stamp=self._first_stamp,
+            rate=1.0 / self._median if self._median else 0.0,
+            duration=self._duration,
+            gaps=self._gaps,
+            jumps=rotor_input.unknown_turns,
+            overspeed=self._overspeed,
+            max_speed=self._fastest,
+            longest_gaps=tuple(self._longest),
+            referenced=not rotor_input.unknown_turns,
+        )
+
+    def _find_gaps(self) -> None:
+        """Look through the periods that wait, with the median of the first ones."""
+        if not self._waiting:
+            return
+        stamps, periods, angles = zip(*self._waiting, strict=True)
+        stamp, period, turned = map(np.concatenate, (stamps, periods, angles))
+        self._waiting.clear()
+        if not self._median and len(period):
+            self._median = float(np.median(period))
+        long = np.flatnonzero(period > _GAP * self._median)
+        self._gaps += len(long)
+        longest = long[np.argsort(-period[long], kind='stable')[:_LONGEST]]
+        self._longest += [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in longest]
+        self._longest.sort(key=lambda gap: -gap.seconds)
+        del self._longest[_LONGEST:]

@@ -1,0 +1,362 @@
+"""The output topics of a recording, compared with what was recomputed, batch by batch."""
+
+import math
+from collections import Counter
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import Mechanism, MotionState
+from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder
+from gear_kinematics.validation.matching import Matcher, Window
+from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
+from gear_kinematics.validation.report import FieldReport, TopicReport
+from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.wire.batches import (
+    FIELDS,
+    PoseArrays,
+    decode_joint_states,
+    decode_pose_arrays,
+)
+
+Array = NDArray[Any]
+Columns = dict[str, Array]
+"""Of samples (n,): stamp, turns, angle, velocity, effort, stretch; as in `RotorSamples`."""
+Solver = Callable[..., MotionState]
+
+_NONE = np.zeros(0, np.int64)
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """Greatest errors that pass."""
+
+    angle: float = 1e-9
+    """rad, of angles; rad/s of the velocity and N·m of the effort."""
+    position: float = 1e-9
+    """m."""
+
+
+class Recomputed(NamedTuple):
+    """What samples call for."""
+
+    state: MotionState
+    rotor_angle: Array
+    """(n,), rad."""
+
+
+class FieldErrors:
+    """The errors of one field, gathered batch by batch."""
+
+    def __init__(self, name: str, unit: str, tolerance: float) -> None:
+        self._report = FieldReport(name, unit, tolerance)
+        self._squares = 0.0
+
+    @property
+    def passed(self) -> bool:
+        """Whether every sample so far is within the tolerance."""
+        return self._report.passed
+
+    @property
+    def worst(self) -> float:
+        """The greatest error so far."""
+        return self._report.max_error
+
+    def update(
+        self, error: Array, stamp: Array, rotor_angle: Array, absent: Array = _NONE
+    ) -> None:
+        """Take absolute errors (n,), and the stamps of samples that lack the field, (m,)."""
+        report = self._report
+        finite = np.isfinite(error)
+        self._report = report = replace(
+            report,
+            compared=report.compared + len(error),
+            non_finite=report.non_finite + int(np.count_nonzero(~finite)),
+            first_non_finite=_first(report.first_non_finite, stamp[~finite]),
+            absent=report.absent + len(absent),
+            first_absent=_first(report.first_absent, absent),
+        )
+        if not finite.all():
+            error, stamp, rotor_angle = error[finite], stamp[finite], rotor_angle[finite]
+        self._squares += float(error @ error)
+        if not len(error):
+            return
+        worst = int(np.argmax(error))
+        if error[worst] <= report.max_error:
+            return
+        self._report = replace(
+            report,
+            max_error=float(error[worst]),
+            worst_stamp=int(stamp[worst]),
+            worst_rotor_angle=float(rotor_angle[worst]),
+        )
+
+    def report(self) -> FieldReport:
+        """Report on everything so far."""
+        finite = self._report.compared - self._report.non_finite
+        return replace(
+            self._report, rms_error=math.sqrt(self._squares / finite) if finite else 0.0
+        )
+
+
+def _first(known: int | None, stamps: Array) -> int | None:
+    return int(stamps[0]) if known is None and len(stamps) else known
+
+
+class Faults:
+    """What is wrong with messages as such: how many have each fault, and which was the first."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, tuple[int, str]] = {}
+
+    def add(self, fault: str, times: Array, moment: str = 'at stamp') -> None:
+        """Take the stamps, or times of another kind, of messages that have a fault, ns."""
+        if len(times):
+            count, first = self._found.get(fault, (0, f'{moment} {times[0]}'))
+            self._found[fault] = count + len(times), first
+
+    def sentences(self) -> tuple[str, ...]:
+        """Tell of each fault."""
+        return tuple(
+            f'{fault}: {count} message{"s" * (count > 1)}, the first {first}'
+            for fault, (count, first) in self._found.items()
+        )
+
+
+class OutputTopic:
+    """One output topic: matching, what is wrong with its messages as such, and late ones."""
+
+    def __init__(self, mechanism: Mechanism, solver: Solver, unseen: UnseenTurns | None) -> None:
+        """Start with no message.
+
+        Args:
+            mechanism: whose outputs they are.
+            solver: what recomputes them.
+            unseen: of the encoder, if it is a single-turn one.
+        """
+        self.matcher = Matcher()
+        self.compared: dict[str, Array] = {}
+        """What the last batch compared, for the series."""
+        self._mechanism = mechanism
+        self._solver = solver
+        self._unseen = unseen
+        self._unrecorded = 0  # messages whose input was not recorded
+        self._faults = Faults()
+        self._late: tuple[list[bytes], list[int]] = [], []
+
+    def take(
+        self, messages: list[bytes], received: list[int], window: Window, inputs: RecordedInputs
+    ) -> None:
+        """Compare new messages with the samples of the window.
+
+        Args:
+            messages: serialised.
+            received: when, ns.
+            window: the latest samples.
+            inputs: the latest inputs, valid or not.
+        """
+        late = len(self._late[0])
+        messages, received = self._late[0] + messages, self._late[1] + received
+        stamps, malformed = self._decode(messages)
+        self.matcher.see(stamps[late:])
+        times = np.array(received, np.int64)
+        self._faults.add('malformed', times[malformed], 'received at')
+        usable = np.flatnonzero(~malformed)
+        index = self.matcher.match(stamps[usable], window.columns['stamp'])
+        found = index >= 0
+        # A message can be recorded before the input that it answers: it waits for one batch.
+        unmatched = usable[~found]
+        given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late].tolist()
+        self._late = [messages[row] for row in waiting], [received[row] for row in waiting]
+        lacking = inputs.lack(times[given_up], stamps[given_up])
+        self._unrecorded += int(np.count_nonzero(lacking))
+        self.matcher.give_up(stamps[given_up[~lacking]])
+        self._compare(usable[found], window.rows(index[found]))
+
+    def _recompute(self, samples: Columns, unseen_turns: Array | float) -> Recomputed:
+        turns = samples['turns'] + unseen_turns
+        state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
+        return Recomputed(state, TURN * turns + samples['angle'])
+
+    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        raise NotImplementedError
+
+    def _compare(self, rows: Array, samples: Columns) -> None:
+        raise NotImplementedError
+
+    def _fields(self) -> tuple[FieldErrors, ...]:
+        raise NotImplementedError
+
+    def report(self, topic: str, missing: Missing) -> TopicReport:
+        """Report on everything so far.
+
+        Args:
+            topic: its name.
+            missing: what it lacks.
+        """
+        matcher = self.matcher
+        return TopicReport(
+            topic,
+            messages=matcher.messages,
+            compared=matcher.compared,
+            missing=missing.count,
+            extra=matcher.extra,
+            duplicates=matcher.duplicates,
+            out_of_order=matcher.out_of_order,
+            fields=tuple(errors.report() for errors in self._fields()),
+            first_missing=missing.first,
+            first_extra=matcher.first_extra,
+            first_out_of_order=matcher.first_out_of_order,
+            faults=self._faults.sentences(),
+            left_out=dict(missing.left_out + Counter({NO_INPUT: self._unrecorded})),
+        )
+
+
+class OutputState(OutputTopic):
+    """output_state."""
+
+    def __init__(
+        self,
+        joint: str,
+        mechanism: Mechanism,
+        tolerances: Tolerances,
+        solver: Solver,
+        unseen: UnseenTurns | None,
+    ) -> None:
+        super().__init__(mechanism, solver, unseen)
+        self.fit = AngleFit()
+        self.offset = 0.0
+        """rad, which the recorded angle is known to be off by."""
+        self.joint = joint
+        self._errors = tuple(
+            FieldErrors(name, unit, tolerances.angle)
+            for name, unit in zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True)
+        )
+        self.position = self._errors[0]
+
+    def _fields(self) -> tuple[FieldErrors, ...]:
+        return self._errors
+
+    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        self._states = decode_joint_states(messages, self.joint)
+        return self._states.stamp, self._states.malformed
+
+    def _compare(self, rows: Array, samples: Columns) -> None:
+        states, stamp, stretch = self._states, samples['stamp'], samples['stretch']
+        self._faults.add(f'no joint {self.joint!r}', stamp[~states.joint_found[rows]])
+        recorded = states.values[rows] - (self.offset, 0.0, 0.0)
+        unseen_turns: Array | float = 0.0
+        if self._unseen:
+            expected = self._recompute(samples, 0.0).state.output_angle
+            self._unseen.learn_from_angles(stretch, recorded[:, 0], expected)
+            unseen_turns = self._unseen.of(stretch)
+        state, rotor_angle = self._recompute(samples, unseen_turns)
+        velocity = closed_form(self._mechanism).output_rate(samples['velocity'])
+        effort = float(self._mechanism.gear_ratio) * samples['effort']
+        signed = recorded - np.stack([state.output_angle, velocity, effort], axis=-1)
+        for column, (errors, needed) in enumerate(
+            zip(self._errors, (state.output_angle, velocity, effort), strict=True)
+        ):
+            wanted, there = ~np.isnan(needed), states.present[rows, column]
+            both = wanted & there
+            errors.update(
+                np.abs(signed[both, column]),
+                stamp[both],
+                rotor_angle[both],
+                absent=stamp[wanted != there],
+            )
+        usable = np.isfinite(signed[:, 0])
+        self.fit.update(rotor_angle[usable], recorded[usable, 0], signed[usable, 0])
+        self.compared = {
+            'stamp': stamp[usable],
+            'rotor_angle': rotor_angle[usable],
+            'output_angle': recorded[usable, 0],
+            'error': signed[usable, 0],
+        }
+
+
+class BodyPoses(OutputTopic):
+    """body_poses."""
+
+    def __init__(
+        self,
+        frame_id: str,
+        mechanism: Mechanism,
+        tolerances: Tolerances,
+        solver: Solver,
+        unseen: UnseenTurns | None,
+    ) -> None:
+        super().__init__(mechanism, solver, unseen)
+        self.frame_id = frame_id
+        branches = [branch.name for branch in mechanism.branches]
+        self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
+        self._axial = np.array([b.axial_position for b in mechanism.branches] * 2)
+        self._position = FieldErrors('position', 'm', tolerances.position)
+        self._orientation = FieldErrors('orientation', 'rad', tolerances.angle)
+        self._order = PoseOrder(self._bodies, tolerances.position)
+        self._turned_round = Faults()
+        # What this topic alone tells of the turns, which is less than output_state does.
+        self._own_unseen = UnseenTurns(mechanism, tolerances.angle)
+
+    @property
+    def worst_error(self) -> float:
+        """Of position, m."""
+        return self._position.worst
+
+    def findings(self) -> tuple[str, ...]:
+        """Say what is remarkable about the poses, in sentences."""
+        return (*self._order.findings(self.matcher.compared), *self._turned_round.sentences())
+
+    def _fields(self) -> tuple[FieldErrors, ...]:
+        return self._position, self._orientation
+
+    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))
+        return self._arrays.stamp, self._arrays.malformed
+
+    def _compare(self, rows: Array, samples: Columns) -> None:
+        arrays, stamp = self._arrays, samples['stamp']
+        for k, frame_id in enumerate(arrays.frame_ids):
+            if frame_id != self.frame_id.encode():
+                name = frame_id.decode(errors='replace')
+                strangers = stamp[arrays.frame[rows] == k]
+                self._faults.add(f'frame {name!r}, not {self.frame_id!r}', strangers)
+        poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
+        state, rotor_angle = self._recompute(samples, self._unseen_turns(poses, samples))
+        centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
+        planar = np.hypot(*np.moveaxis(poses[..., :2] - centres, -1, 0))
+        position = np.hypot(planar, poses[..., 2] - self._axial).max(axis=1)
+        self._position.update(position, stamp, rotor_angle)
+        axial = np.broadcast_to(self._axial[:, np.newaxis], (*centres.shape[:2], 1))
+        self._order.update(poses[..., :3], np.append(centres, axial, axis=-1), position, stamp)
+        # A quaternion and its negative are the same rotation.
+        half = 0.5 * state.output_turn_angle[:, np.newaxis]
+        sine, cosine = np.sin(half), np.cos(half)
+        sign = np.where(poses[..., 5] * sine + poses[..., 6] * cosine < 0.0, -1.0, 1.0)
+        off = np.maximum(
+            np.abs(poses[..., 5] - sign * sine), np.abs(poses[..., 6] - sign * cosine)
+        )
+        tilt = np.maximum(np.abs(poses[..., 3]), np.abs(poses[..., 4]))
+        orientation = 2.0 * np.maximum(off, tilt).max(axis=1)
+        self._orientation.update(orientation, stamp, rotor_angle)
+        self._turned_round.add(
+            'orientations with w < 0, the same rotations as those with w > 0 of this node',
+            stamp[(poses[..., 6] < 0.0).any(axis=1)],
+        )
+        self.compared = {'stamp': stamp, 'error': position}
+
+    def _unseen_turns(self, poses: Array, samples: Columns) -> Array | float:
+        if not self._unseen:
+            return 0.0
+        stretch = samples['stretch']
+        self._own_unseen.learn_from_poses(
+            stretch,
+            2.0 * np.arctan2(poses[:, 0, 5], poses[:, 0, 6]),
+            self._recompute(samples, 0.0).state.output_turn_angle,
+        )
+        return self._unseen.of(stretch, otherwise=self._own_unseen.of(stretch))

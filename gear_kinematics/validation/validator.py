@@ -1,0 +1,322 @@
+"""What a node published, against what it should have published: one pass over a recording."""
+
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.bag import in_batches
+from gear_kinematics.bag.roles import Topics
+from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.validation.diagnosis import diagnose
+from gear_kinematics.validation.input_health import InputHealth
+from gear_kinematics.validation.matching import WINDOW, Window
+from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Solver, Tolerances
+from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
+from gear_kinematics.validation.report import BagReport, InputReport, Verdict
+from gear_kinematics.validation.series import SeriesRecorder
+from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.wire.cdr import (
+    MalformedMessageError,
+    joint_state_layout,
+    pose_array_layout,
+)
+
+__all__ = ['Message', 'Tolerances', 'Validator']
+
+Array = NDArray[Any]
+Message = tuple[str, int, bytes]
+"""Topic, received (ns), CDR."""
+
+_BATCH = 8192  # messages
+_FRAME = 'stator'
+
+
+_TOPICS, _TOLERANCES = Topics(), Tolerances()
+
+
+@dataclass(slots=True)
+class _Messages:
+    """Of one topic."""
+
+    data: list[bytes] = field(default_factory=list)
+    received: list[int] = field(default_factory=list)
+    """ns."""
+
+
+@dataclass(slots=True)
+class _Batch:
+    """Messages by topic."""
+
+    rotor: _Messages = field(default_factory=_Messages)
+    output: _Messages = field(default_factory=_Messages)
+    poses: _Messages = field(default_factory=_Messages)
+
+    def topics(self) -> tuple[_Messages, _Messages, _Messages]:
+        """All three, in the order of `Topics.names`."""
+        return self.rotor, self.output, self.poses
+
+    def __len__(self) -> int:
+        return sum(len(topic.data) for topic in self.topics())
+
+
+class Validator:
+    """Recomputes the outputs from the rotor topic and compares them with the recorded ones."""
+
+    def __init__(
+        self,
+        parameters: Mapping[str, Any],
+        *,
+        topics: Topics = _TOPICS,
+        tolerances: Tolerances = _TOLERANCES,
+        allow_offset: bool = False,
+        strict: bool = False,
+        solver: Solver = solve,
+    ) -> None:
+        """Prepare for a recording.
+
+        Args:
+            parameters: of the node, as `parameters.load` gives them.
+            topics: their names.
+            tolerances: greatest errors that pass.
+            allow_offset: accept a constant offset of the output angle, as homing leaves it.
+            strict: count everything that is missing or extra, also what may be the recorder's
+                doing; see `recorder`.
+            solver: what recomputes the motion: `solve`, or the matrix method's.
+
+        Raises:
+            MechanismError: if the parameters describe no mechanism.
+        """
+        self._parameters = dict(parameters)
+        self._prefix_open = not parameters['frame_prefix']
+        self._topics = topics
+        self._tolerances = tolerances
+        self._offset_open = allow_offset
+        self._solver = solver
+        self._strict = strict
+        self._mechanism = mechanism = Mechanism.from_mapping(parameters)
+        self._input = RotorInput(InputSettings.from_mapping(parameters))
+        self._health = InputHealth(parameters['max_rotor_speed'])
+        self._window = Window()
+        self._inputs = RecordedInputs(strict=strict)
+        self._absences = Completeness(2, strict=strict)
+        self._begun: dict[int, int] = {}  # when the first message of each topic was received, ns
+        single_turn = self._input.settings.single_turn
+        self._unseen = UnseenTurns(mechanism, tolerances.angle) if single_turn else None
+        prefix = parameters['frame_prefix']
+        common = mechanism, tolerances, solver, self._unseen
+        self.output = OutputState(prefix + parameters['output_joint'], *common)
+        self.poses = BodyPoses(prefix + _FRAME, *common)
+        self._series = SeriesRecorder()
+        self._findings: list[str] = []
+
+    def feed(
+        self, messages: Iterable[Message], progress: Callable[[int], None] | None = None
+    ) -> None:
+        """Take the messages of the recording, on the three topics.
+
+        What came before an exception of the iterable is taken all the same.
+
+        Args:
+            messages: in the order of their reception.
+            progress: called with the number of messages of each batch.
+        """
+        for raw in in_batches(messages, _BATCH):
+            batch = _Batch()
+            by_topic = dict(zip(self._topics.names(), batch.topics(), strict=True))
+            for topic, received, data in raw:
+                by_topic[topic].data.append(data)
+                by_topic[topic].received.append(received)
+            self._take(batch)
+            if progress:
+                progress(len(raw))
+
+    @np.errstate(all='ignore')  # recorded numbers can be anything; what overflows fails
+    def report(self, bag: str = '', *, error: str | None = None) -> BagReport:
+        """Report on everything that was fed; to be called once, at the end.
+
+        Args:
+            bag: its name.
+            error: what cut the recording short, if anything did.
+        """
+        self._close()
+        rotor = self._health.report(self._input, self._topics.rotor)
+        lacks_output, lacks_poses = self._absences.topics
+        topics = (
+            self.output.report(self._topics.output, lacks_output),
+            self.poses.report(self._topics.poses, lacks_poses),
+        )
+        if error is None and not rotor.valid:
+            error = 'no usable rotor states in it'
+        elif error is None and not any(topic.messages for topic in topics):
+            error = 'no outputs in it'
+        passed = all(topic.passed for topic in topics) and not self._input.mostly_rejected
+        return BagReport(
+            bag=bag,
+            verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
+            gear_ratio=str(self._mechanism.gear_ratio),
+            error=error,
+            messages=rotor.messages + sum(topic.messages for topic in topics),
+            rotor=rotor,
+            topics=topics,
+            findings=(*self._findings, *self._diagnoses(), *_health_findings(rotor)),
+            series=self._series.series(),
+            mechanism=self._mechanism,
+            module=self._parameters['module'],
+        )
+
+    @np.errstate(all='ignore')
+    def _take(self, batch: _Batch) -> None:
+        if self._prefix_open and len(batch):
+            self._settle_prefix(batch)
+        if self._offset_open and len(batch):
+            self._settle_offset(batch)
+        for k, topic in enumerate(batch.topics()):
+            if topic.received:
+                self._begun.setdefault(k, topic.received[0])
+        if len(self._begun) == len(batch.topics()):
+            self._absences.begin(max(self._begun.values()))
+        self._add_samples(batch.rotor)
+        for output, messages in ((self.output, batch.output), (self.poses, batch.poses)):
+            output.take(messages.data, messages.received, self._window, self._inputs)
+        self._series.update(self.output.compared, self.poses.compared)
+        done = self.output.matcher.matched & self.poses.matcher.matched
+        settled = len(done) if done.all() else int(np.argmin(done))
+        self._drop(max(settled, len(done) - WINDOW))
+
+    def _add_samples(self, messages: _Messages) -> None:
+        """Put the rotor's samples into the window."""
+        samples = self._input.accept_batch(messages.data, messages.received)
+        self._inputs.update(samples.received, samples.stamp, samples.rejected)
+        self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
+        self._window.append(
+            stamp=samples.stamp,
+            received=samples.received,
+            turns=samples.turns,
+            angle=samples.angle,
+            velocity=samples.velocity,
+            effort=samples.effort,
+            stretch=samples.stretch,
+        )
+        self.output.matcher.extend(len(samples.stamp))
+        self.poses.matcher.extend(len(samples.stamp))
+
+    def _drop(self, count: int) -> None:
+        oldest = self._window.rows(slice(count))
+        matchers = self.output.matcher, self.poses.matcher
+        answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
+        self._absences.update(Inputs(oldest['received'], oldest['stamp'], answered))
+        for part in (*matchers, self._window):
+            part.drop(count)
+
+    def _close(self) -> None:
+        """Nothing comes any more: what waits is missing or extra."""
+        for _ in range(2):  # what was late waits for one batch more
+            self._take(_Batch())
+        self._drop(len(self._window))
+        self._absences.close()
+
+    def _settle_prefix(self, batch: _Batch) -> None:
+        """Take the frame prefix from the first output, if that has one."""
+        joint = self._parameters['output_joint']
+        for (data, *_), layout_of, name in (
+            (batch.poses.data or [b''], pose_array_layout, _FRAME),
+            (batch.output.data or [b''], joint_state_layout, joint),
+        ):
+            with suppress(MalformedMessageError):
+                recorded = layout_of(data).texts[-1].decode(errors='replace')
+                if not recorded.endswith(name):
+                    continue
+                self._prefix_open = False
+                if prefix := recorded.removesuffix(name):
+                    self._parameters['frame_prefix'] = prefix
+                    self.output.joint, self.poses.frame_id = prefix + joint, prefix + _FRAME
+                    self._findings.append(f'frame_prefix {prefix!r} is taken from the outputs')
+                return
+
+    def _settle_offset(self, batch: _Batch) -> None:
+        """Find out, from the first batch with outputs, whether there is an offset to accept.
+
+        Homing moves the rotor's zero, and so the poses too; if the poses are better without that,
+        the output angle alone is offset.
+        """
+        trial = self._trial(batch, {})
+        if not trial.output.fit.count:
+            return
+        self._offset_open = False
+        offset = trial.output.fit.offset(self._tolerances.angle)
+        if offset is None:
+            return
+        direction, zero = self._parameters['rotor_direction'], self._parameters['rotor_zero']
+        moved = {'rotor_zero': zero - direction * self._mechanism.rotor_angle(offset)}
+        if abs(moved['rotor_zero']) > LARGEST_ANGLE:  # garbage, which no homing leaves
+            return
+        homed = self._trial(batch, moved)
+        if homed.poses.worst_error <= trial.poses.worst_error:
+            self._input.settings = replace(self._input.settings, **moved)
+        else:
+            self.output.offset = offset
+        self._findings.append(
+            f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
+        )
+
+    def _trial(self, batch: _Batch, changes: Mapping[str, Any]) -> 'Validator':
+        trial = Validator(
+            {**self._parameters, **changes},
+            topics=self._topics,
+            tolerances=self._tolerances,
+            solver=self._solver,
+            strict=self._strict,
+        )
+        trial._take(batch)
+        return trial
+
+    def _diagnoses(self) -> Iterable[str]:
+        if self._input.mostly_rejected:
+            rejected = self._input.rejected
+            causes = ', '.join(f'{cause} {count}' for cause, count in rejected.items())
+            yield (
+                f'{rejected.total()} of {self._input.received} messages of {self._topics.rotor} '
+                f'were rejected ({causes}): the rest is too little to pass'
+            )
+        if not self.output.position.passed:
+            found = diagnose(self._mechanism, self.output.fit, self._tolerances.angle)
+            if found:
+                yield found
+        yield from self.poses.findings()
+        if self._unseen:
+            yield from self._unseen.findings()
+        for topic, missing in zip(self._topics.names()[1:], self._absences.topics, strict=True):
+            if missing.ended_early is not None:
+                yield (
+                    f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '
+                    'the node may have ended'
+                )
+
+
+def _health_findings(rotor: InputReport) -> Iterable[str]:
+    if rotor.jumps:
+        yield (
+            f'{rotor.jumps} gaps of {rotor.topic} could hide a turn of the single-turn encoder: '
+            'after each, its turns are those that the outputs tell'
+        )
+    if rotor.overspeed:
+        yield (
+            f'{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at most '
+            f'{rotor.max_speed:.4g} rad/s'
+        )
+    if rotor.zero_stamps:
+        yield (
+            f'{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped their '
+            'outputs itself, and they cannot be matched'
+        )
+    if rotor.unnormalised_stamps:
+        yield (
+            f'{rotor.unnormalised_stamps} stamps of {rotor.topic} have a second or more of '
+            'nanoseconds: the node stamps outputs with the same time, normalised'
+        )

@@ -1,0 +1,168 @@
+"""Raw messages in batches: what `messages` reads and writes one by one, as arrays.
+
+Messages of one layout have everything at the same place, so that a batch of them is a table of
+bytes. A recording has one layout for a topic, or few; any others only cost time.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.wire.cdr import (
+    SECOND,
+    STAMP_OFFSET,
+    Layout,
+    MalformedMessageError,
+    Template,
+    joint_index,
+    joint_state_layout,
+    pose_array_layout,
+)
+
+Array = NDArray[Any]
+FIELDS = ('position', 'velocity', 'effort')
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class JointStates:
+    """One joint of n messages sensor_msgs/JointState."""
+
+    stamp: Array
+    """(n,), ns."""
+    unnormalised: Array
+    """(n,): whether the stamp has a second or more of nanoseconds."""
+    malformed: Array
+    """(n,): no such message; all else is without meaning there."""
+    joint_found: Array
+    """(n,): whether the joint is in the message."""
+    present: Array
+    """(n, 3): whether the message has the joint's position, velocity and effort."""
+    values: Array
+    """(n, 3), float64: position, velocity, effort; NaN where not present."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class PoseArrays:
+    """n messages geometry_msgs/PoseArray."""
+
+    stamp: Array
+    """(n,), ns."""
+    malformed: Array
+    """(n,): no such message, or not of the number of poses that was asked for."""
+    frame_ids: tuple[bytes, ...]
+    """The frames that occur."""
+    frame: Array
+    """(n,): which of them."""
+    poses: Array
+    """(n, poses, 7), float64: x y z and quaternion x y z w."""
+
+
+def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
+    """Decode messages as far as a joint is concerned, which `joint_index` looks up."""
+    count = len(messages)
+    stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
+    malformed, joint_found = np.ones(count, bool), np.zeros(count, bool)
+    present, values = np.zeros((count, 3), bool), np.full((count, 3), np.nan)
+    for rows, layout, table in _tables(messages, joint_state_layout):
+        malformed[rows] = False
+        stamp[rows], nanoseconds = _stamps(table, layout)
+        unnormalised[rows] = nanoseconds >= SECOND
+        index = joint_index(layout, joint.encode())
+        if index is None:
+            continue
+        joint_found[rows] = True
+        for field, (offset, size) in enumerate(layout.arrays):
+            if index < size:
+                present[rows, field] = True
+                values[rows, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
+    return JointStates(stamp, unnormalised, malformed, joint_found, present, values)
+
+
+def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:
+    """Decode messages that should have a number of poses."""
+    count, numbers = len(messages), 7 * count_of_poses
+    stamp, malformed = np.zeros(count, np.int64), np.ones(count, bool)
+    frame_ids: list[bytes] = []
+    frame, poses = np.zeros(count, np.intp), np.full((count, numbers), np.nan)
+    for rows, layout, table in _tables(messages, pose_array_layout):
+        offset, size = layout.arrays[0]
+        if size != numbers:
+            continue
+        malformed[rows] = False
+        stamp[rows], _ = _stamps(table, layout)
+        poses[rows] = _doubles(table, layout, offset, size)
+        if layout.texts[0] not in frame_ids:
+            frame_ids.append(layout.texts[0])
+        frame[rows] = frame_ids.index(layout.texts[0])
+    return PoseArrays(
+        stamp, malformed, tuple(frame_ids), frame, poses.reshape(count, count_of_poses, 7)
+    )
+
+
+def encode(template: Template, stamps: Array, *arrays: Sequence[Array | float]) -> list[bytes]:
+    """Encode n messages, as `template.encode` does one by one.
+
+    Args:
+        template: what they have in common.
+        stamps: (n,), ns.
+        arrays: the numbers of each array, each number as an array (n,) or alike in all messages.
+    """
+    blank = template.encode(0, *(count * [0.0] for _, count in template.arrays))
+    fields = {'seconds': ('<i4', STAMP_OFFSET), 'nanoseconds': ('<u4', STAMP_OFFSET + 4)}
+    for index, (offset, count) in enumerate(template.arrays):
+        fields[f'array {index}'] = (f'({count},)<f8', offset)
+    formats, offsets = zip(*fields.values(), strict=True)
+    table = np.frombuffer(
+        bytearray(len(stamps) * blank),
+        {'names': list(fields), 'formats': formats, 'offsets': offsets, 'itemsize': len(blank)},
+    )
+    table['seconds'], table['nanoseconds'] = np.divmod(stamps, SECOND)
+    for index, numbers in enumerate(arrays):
+        for place, number in enumerate(numbers):
+            table[f'array {index}'][:, place] = number
+    data = table.tobytes()
+    return [data[start : start + len(blank)] for start in range(0, len(data), len(blank))]
+
+
+def _tables(
+    messages: Sequence[bytes], find_layout: Callable[[bytes], Layout]
+) -> Iterator[tuple[Array, Layout, Array]]:
+    """Give, layout by layout, the rows that have it and their bytes, (rows, size).
+
+    What is malformed is in no table.
+    """
+    sizes = np.fromiter(map(len, messages), np.intp, len(messages))
+    for size in np.unique(sizes):
+        rows = np.flatnonzero(sizes == size)
+        all_alike = len(rows) == len(messages)
+        chosen = messages if all_alike else [messages[row] for row in rows.tolist()]
+        table = np.frombuffer(b''.join(chosen), np.uint8).reshape(len(rows), size)
+        while len(rows):
+            try:
+                layout = find_layout(table[0].tobytes())
+            except MalformedMessageError:
+                rows, table = rows[1:], table[1:]
+                continue
+            same = [table[:, start:end] == table[0, start:end] for start, end in layout.fixed]
+            if all(span.all() for span in same):
+                yield rows, layout, table
+                break
+            alike = np.logical_and.reduce([span.all(axis=1) for span in same])
+            yield rows[alike], layout, table[alike]
+            rows, table = rows[~alike], table[~alike]
+
+
+def _stamps(table: Array, layout: Layout) -> tuple[Array, Array]:
+    """The stamps in ns, and their part that is given in nanoseconds."""
+    words = np.ascontiguousarray(table[:, STAMP_OFFSET : STAMP_OFFSET + 8])
+    seconds = words.view(f'{layout.order}i4')[:, 0].astype(np.int64)
+    nanoseconds = words.view(f'{layout.order}u4')[:, 1]
+    return seconds * SECOND + nanoseconds, nanoseconds
+
+
+def _doubles(table: Array, layout: Layout, offset: int, count: int) -> Array:
+    column = np.ascontiguousarray(table[:, offset : offset + 8 * count])
+    return column.view(f'{layout.order}f8').reshape(len(table), count)

@@ -1,0 +1,123 @@
+"""One joint out of sensor_msgs/JointState messages, and why a message may be of no use."""
+
+import math
+import struct
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from operator import itemgetter
+from typing import Any, Self
+
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
+from gear_kinematics.wire.cdr import (
+    LATEST,
+    SECOND,
+    STAMP,
+    STAMP_OFFSET,
+    MalformedMessageError,
+    joint_index,
+    joint_state_layout,
+)
+
+MALFORMED = 'not a JointState'
+STAMP_OUT_OF_RANGE = 'stamp out of range'
+JOINT_MISSING = 'joint missing'
+POSITION_MISSING = 'position missing'
+POSITION_NOT_FINITE = 'position not finite'
+POSITION_TOO_LARGE = 'position too large'
+OUT_OF_ORDER = 'out of order'
+
+GREATEST = 1e300
+"""Beyond it a velocity or effort counts as not finite: what is computed from it might not be."""
+_MAX_KEPT = 65_536  # bytes of a message whose layout is kept: far more than any driver sends
+
+
+class RejectedInputError(ValueError):
+    """A message that gives no output; the text says why and is one of few, to be counted by."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Parameters of the node that say how to read an input, each under its own name."""
+
+    @classmethod
+    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
+        """Pick them from the parameters of the node."""
+        return cls(**{field.name: parameters[field.name] for field in fields(cls)})
+
+
+class JointReader:
+    """Reads a joint from message after message.
+
+    The messages of a driver are all laid out alike. The layout of the last one is kept as one
+    struct, in which what makes the layout is a field beside the joint's numbers: each message is
+    held against it, and gone through anew where it differs.
+    """
+
+    def __init__(self, joint: str) -> None:
+        """Start.
+
+        Args:
+            joint: its name, or its index where no joint has a name; '' takes the only joint.
+        """
+        self._joint = joint.encode()
+        self._size = -1  # of the messages whose layout is known
+
+    def read(self, data: bytes) -> tuple[int, bool, float, float | None, float | None]:
+        """Read a message.
+
+        Returns:
+            Stamp (ns, 0 where there is none), whether it has a second or more of nanoseconds,
+            position, velocity and effort; None for what is absent or not finite.
+
+        Raises:
+            RejectedInputError: if it has no usable position of the joint.
+        """
+        try:
+            if len(data) != self._size:
+                self._learn(data)
+            fields = (*self._struct.unpack(data), None)
+            if self._fixed_of(fields) != self._fixed:
+                self._learn(data)
+                fields = (*self._struct.unpack(data), None)
+        except MalformedMessageError as error:
+            raise RejectedInputError(MALFORMED) from error
+        seconds, nanoseconds, position, velocity, effort = self._numbers_of(fields)
+        stamp = seconds * SECOND + nanoseconds
+        if stamp > LATEST:
+            raise RejectedInputError(STAMP_OUT_OF_RANGE)
+        if position is None:
+            raise RejectedInputError(self._fault)
+        if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
+            finite = math.isfinite(position)
+            raise RejectedInputError(POSITION_TOO_LARGE if finite else POSITION_NOT_FINITE)
+        if velocity is not None and not abs(velocity) <= GREATEST:
+            velocity = None
+        if effort is not None and not abs(effort) <= GREATEST:
+            effort = None
+        return stamp, nanoseconds >= SECOND, position, velocity, effort
+
+    def _learn(self, data: bytes) -> None:
+        """Take the layout of a message as that of the next ones."""
+        layout = joint_state_layout(data)
+        index = joint_index(layout, self._joint)
+        numbers = [
+            offset + 8 * index if index is not None and index < count else None
+            for offset, count in layout.arrays
+        ]
+        # Offset, size and format of each part; all else is padding.
+        parts = [(STAMP_OFFSET, STAMP.size, 'iI')]
+        parts += [(start, end - start, f'{end - start}s') for start, end in layout.fixed]
+        parts += [(offset, 8, 'd') for offset in numbers if offset is not None]
+        code, end = layout.order, 0
+        field: dict[int | None, int] = {None: -1}  # what is absent is the None behind the fields
+        for offset, size, item in sorted(parts):
+            field[offset] = len(field) - 1 + (offset > STAMP_OFFSET)  # the stamp is two fields
+            code += f'{offset - end}x{item}'
+            end = offset + size
+        self._struct = struct.Struct(f'{code}{layout.size - end}x')
+        stamp = field[STAMP_OFFSET]
+        self._numbers_of = itemgetter(stamp, stamp + 1, *(field[offset] for offset in numbers))
+        self._fixed_of = itemgetter(*(field[start] for start, _ in layout.fixed))
+        self._fixed = self._fixed_of(self._struct.unpack(data))
+        self._fault = JOINT_MISSING if index is None else POSITION_MISSING
+        self._size = layout.size if layout.size <= _MAX_KEPT else -1

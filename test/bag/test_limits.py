@@ -1,0 +1,458 @@
+"""What a crafted bag cannot take: more than 300 MB and 20 s beyond what its size explains.
+
+Each bag goes through gearkin in a process of its own, whose processor time and peak of memory
+are measured. Bags are put together byte by byte here; most expand to gigabytes.
+"""
+
+import re
+import sqlite3
+import struct
+import subprocess
+import sys
+from collections.abc import Callable, Iterable
+from contextlib import closing
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from live import rotor_bytes
+from rosbags import rosbag1, rosbag2
+
+from gear_kinematics.bag import TOPIC_TYPES
+
+if sys.version_info >= (3, 14):
+    from compression import zstd
+else:
+    from backports import zstd
+
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+KB, MB, GB = 10**3, 10**6, 10**9
+MAX_MEMORY = 300 * MB  # of it, the program itself takes 60
+MAX_TIME = 20.0  # s
+EXPANSION = 20  # recordings compress by as much
+
+MEASURED = """
+import re, resource, sys
+from gear_kinematics.commands.cli import main
+code = main(sys.argv[2:])
+usage = resource.getrusage(resource.RUSAGE_SELF)
+with open('/proc/self/status') as status:
+    memory = re.search(r'VmHWM:\\s*(\\d+) kB', status.read())[1]
+with open(sys.argv[1], 'w') as file:
+    print(usage.ru_utime + usage.ru_stime, 1024 * int(memory), file=file)
+sys.exit(code)
+"""
+
+
+class Measured(NamedTuple):
+    """A program that has ended."""
+
+    code: int
+    text: str
+    """stdout and stderr."""
+    seconds: float
+    """Of the processor."""
+    memory: int
+    """Its peak, bytes."""
+
+
+def measure(folder: Path, *arguments: object) -> Measured:
+    result = folder / 'measured'
+    done = subprocess.run(
+        [sys.executable, '-c', MEASURED, result, *map(str, arguments)],
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280, check=False,
+    )  # fmt: skip
+    assert result.exists(), done.stdout
+    seconds, memory = result.read_text().split()
+    return Measured(done.returncode, done.stdout, float(seconds), int(memory))
+
+
+# mcap, by its specification.
+
+
+def text(content: bytes | str) -> bytes:
+    data = content if isinstance(content, bytes) else content.encode()
+    return struct.pack('<I', len(data)) + data
+
+
+def record(opcode: int, *parts: bytes) -> bytes:
+    body = b''.join(parts)
+    return struct.pack('<BQ', opcode, len(body)) + body
+
+
+def schema(number: int, kind: str, definition: bytes | str = '') -> bytes:
+    return record(3, struct.pack('<H', number), text(kind), text('ros2msg'), text(definition))
+
+
+def channel(number: int, kind: int, topic: str, metadata: bytes = b'') -> bytes:
+    return record(4, struct.pack('<HH', number, kind), text(topic), text('cdr'), text(metadata))
+
+
+def message(number: int, received: int, data: bytes) -> bytes:
+    return record(5, struct.pack('<HIQQ', number, 0, received, received), data)
+
+
+def chunk(*pieces: bytes | tuple[bytes, int]) -> bytes:
+    """Make a chunk of records and of records that are repeated."""
+    size, compressor, packed = 0, zstd.ZstdCompressor(), []
+    for piece in pieces:
+        unit, count = piece if isinstance(piece, tuple) else (piece, 1)
+        block = max(1, MB // len(unit))
+        size += count * len(unit)
+        packed += [compressor.compress(block * unit) for _ in range(count // block)]
+        packed.append(compressor.compress(count % block * unit))
+    packed.append(compressor.flush())
+    data = b''.join(packed)
+    start = struct.pack('<QQQI', 1, 2, size, 0)
+    return record(6, start, text('zstd'), struct.pack('<Q', len(data)), data)
+
+
+def zeros(size: int) -> tuple[bytes, tuple[bytes, int]]:
+    """Give a message of so many bytes on /rotor_state as pieces of a chunk."""
+    head = struct.pack('<BQHIQQ', 5, 22 + size, 1, 0, 1, 1)
+    return head, (b'\0', size)
+
+
+TOPICS = b''.join((
+    schema(1, JOINT_STATE),
+    channel(1, 1, '/rotor_state'),
+    channel(2, 1, '/output_state'),
+    schema(2, 'geometry_msgs/msg/PoseArray'),
+    channel(3, 2, '/body_poses'),
+))  # fmt: skip
+STATES = b''.join(message(1, k, rotor_bytes(k, ['rotor'], [0.1])) for k in range(1, 4))
+MAGIC = b'\x89MCAP0\r\n'
+
+
+def mcap(path: Path, *records: bytes) -> Path:
+    with path.open('wb') as file:
+        file.writelines((MAGIC, record(1, text('ros2'), text('')), TOPICS, *records))
+        file.writelines((record(15, bytes(4)), record(2, bytes(20)), MAGIC))
+    return path
+
+
+def compressed(path: Path) -> Path:
+    packed = path.with_name(f'{path.name}.zstd')
+    packed.write_bytes(zstd.compress(path.read_bytes()))
+    path.unlink()
+    return packed
+
+
+def wide_mcap(path: Path) -> Path:
+    """Write as many topics as an mcap file can have."""
+    topics = (channel(number, 1, f'/{number}/rotor_state') for number in range(4, 2**16))
+    return mcap(path, *topics, STATES)
+
+
+def folder(path: Path, files: dict[str, bytes | str]) -> Path:
+    path.mkdir()
+    for name, content in files.items():
+        data = content if isinstance(content, bytes) else content.encode()
+        (path / name).write_bytes(data)
+    return path
+
+
+def metadata(path: Path, topics: Iterable[str] = (), files: Iterable[str] = ('a.mcap',)) -> Path:
+    listed = ''.join(
+        f'    - topic_metadata:\n        name: {topic}\n        type: {JOINT_STATE}\n'
+        "        serialization_format: cdr\n        offered_qos_profiles: ''\n"
+        '      message_count: 1\n'
+        for topic in topics
+    )
+    return folder(path, {
+        'metadata.yaml': 'rosbag2_bagfile_information:\n  message_count: 1\n'
+        f'  topics_with_message_count:\n{listed}  relative_file_paths: [{",".join(files)}]\n'
+    })  # fmt: skip
+
+
+# sqlite.
+
+
+def database(path: Path, topics: Iterable[str], messages: Iterable[bytes]) -> Path:
+    """Write further topics, and messages on /rotor_state."""
+    with closing(sqlite3.connect(path)) as rows, rows:
+        rows.execute(
+            'CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT,'
+            ' serialization_format TEXT, offered_qos_profiles TEXT)'
+        )
+        rows.execute(
+            'CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER,'
+            ' timestamp INTEGER, data BLOB)'
+        )
+        rows.executemany(
+            "INSERT INTO topics VALUES (NULL, ?, ?, 'cdr', '')",
+            [*TOPIC_TYPES.items(), *((topic, JOINT_STATE) for topic in topics)],
+        )
+        rows.executemany(
+            'INSERT INTO messages(topic_id, timestamp, data) VALUES (1, 9, ?)',
+            ((data,) for data in messages),
+        )
+    return path
+
+
+def varint(number: int) -> bytes:
+    """Write a number of up to 21 bits in three bytes, as sqlite does."""
+    return bytes((0x80 | number >> 14, 0x80 | number >> 7 & 0x7F, number & 0x7F))
+
+
+def shared_pages(path: Path) -> Path:
+    """Make messages of which each claims the pages of the first, 1 MB, to be its own."""
+    page, small = 4096, 20_000
+    large = small + 250 * (page - 4)
+    marks = [b'MARK%4d' % number for number in range(200)]
+    sizes = [large] + [small] * (len(marks) - 1)
+    database(path, [], (mark.ljust(size) for mark, size in zip(marks, sizes, strict=True)))
+    data, head, chain = bytearray(path.read_bytes()), 7, b''
+    for mark, size in zip(marks, sizes, strict=True):
+        # Length of the payload, number, types of the columns, time, data, number of a page.
+        content = data.index(mark)
+        start, payload = content - head - 1, head + 1 + size
+        length = data.rindex(varint(payload), 0, start)
+        least = (page - 12) * 32 // 255 - 23
+        pointer = start + least + (payload - least) % (page - 4)
+        chain = chain or bytes(data[pointer : pointer + 4])
+        data[pointer : pointer + 4] = chain
+        data[length : length + 3] = varint(head + 1 + large)
+        data[content - 4 : content - 1] = varint(2 * large + 12)
+    path.write_bytes(data)
+    return path
+
+
+# ROS 1.
+
+
+def ros1(
+    path: Path,
+    definition: str,
+    messages: Iterable[tuple[int, bytes]] = ((1, b''),),
+    *,
+    threshold: int = MB,
+) -> Path:
+    """Write messages of a type that the definition defines as a JointState."""
+    writer = rosbag1.Writer(path)
+    writer.set_compression(rosbag1.Writer.CompressionFormat.LZ4)
+    writer.chunk_threshold = threshold
+    with writer:
+        rotor, *_ = (
+            writer.add_connection(topic, kind, msgdef=definition, md5sum='0')
+            for topic, kind in TOPIC_TYPES.items()
+        )
+        for received, data in messages:
+            writer.write(rotor, received, data)
+    return path
+
+
+def ros1_index_again_and_again(path: Path) -> Path:
+    messages = ((time, b'1') for time in range(40_000))
+    data = bytearray(ros1(path, 'int8 a\n', messages, threshold=GB).read_bytes())
+    place = data.index(b'index_pos=') + len(b'index_pos=')
+    (index,) = struct.unpack_from('<Q', data, place)
+    for _ in range(2 * len(TOPIC_TYPES)):  # headers and bodies of connections
+        index += 4 + struct.unpack_from('<I', data, index)[0]
+    data += 5000 * data[index:]
+    place = data.index(b'chunk_count=') + len(b'chunk_count=')
+    data[place : place + 4] = struct.pack('<I', 5001)
+    path.write_bytes(data)
+    return path
+
+
+def ros1_chunks_in_turns(path: Path) -> Path:
+    """Make two chunks of 30 MB whose messages take turns."""
+    times = [*range(0, 6000, 2), *range(1, 6000, 2)]
+    definition = 'uint8[10000] a\n'
+    return ros1(path, definition, ((k, bytes(10_000)) for k in times), threshold=30 * MB)
+
+
+NOTHING = f'{"=" * 80}\nMSG: a/Nothing\n'
+
+Maker = Callable[[Path], Path]
+BAGS: dict[str, tuple[str, Maker]] = {
+    'chunks of 1 GiB': (
+        'a chunk of 10737\\d+ bytes is too large',
+        lambda p: mcap(p / 'b.mcap', 60 * chunk(*zeros(2**30))),
+    ),
+    'chunks of 32 MiB': (
+        'more is compressed in it than a bag of this size can hold',
+        lambda p: mcap(p / 'b.mcap', 300 * chunk(*zeros(2**25 - 31))),
+    ),
+    'tiny messages': (
+        'more records than a bag of this size can hold',
+        lambda p: mcap(p / 'b.mcap', 60 * chunk((message(1, 1, b''), MB))),
+    ),
+    'tiny records of no use': (
+        'more records than a bag of this size can hold',
+        lambda p: mcap(p / 'b.mcap', 60 * chunk((record(0x80), 3 * MB))),
+    ),
+    'tiny messages in many files': (
+        'more records than a bag of this size can hold',
+        lambda p: folder(p / 'b', {
+            f'b_{number}.mcap': MAGIC + TOPICS + chunk((message(1, 1, b''), 90_000))
+            for number in range(1000)
+        }),
+    ),
+    'definitions of 16 MB': (
+        'describes its topics by more than',
+        lambda p: mcap(
+            p / 'b.mcap',
+            *(chunk(schema(number, 'a/msg/A', bytes(16 * MB))) for number in range(3, 9)),
+        ),
+    ),
+    'metadata of channels': (
+        'describes its topics by more than',
+        lambda p: mcap(
+            p / 'b.mcap',
+            *(chunk(channel(number, 1, f'/{number}', bytes(8 * MB))) for number in range(4, 9)),
+        ),
+    ),
+    'statistics in chunks': (
+        'more is compressed in it than a bag of this size can hold',
+        lambda p: mcap(p / 'b.mcap', 100 * chunk(
+            struct.pack('<BQ42xI', 11, 46 + 30 * MB, 30 * MB), (struct.pack('<HQ', 1, 1), 3 * MB)
+        )),
+    ),
+    'a compressed file of compressed chunks': (
+        'more is compressed in it than a bag of this size can hold',
+        lambda p: compressed(mcap(p / 'b.mcap', 300 * chunk((record(0x80, bytes(MB)), 33)))),
+    ),
+    '65 535 topics': (
+        'which topic is rotor_state.* and 65523 more',
+        lambda p: wide_mcap(p / 'b.mcap'),
+    ),
+    'metadata of 100 000 topics': (
+        'metadata.yaml: YAML has 17388999 bytes where there may be 4194304',
+        lambda p: metadata(p / 'b', (f'/{number}' for number in range(100_000))),
+    ),
+    'metadata of small values': (
+        'metadata.yaml: more than 400000 values in YAML',
+        lambda p: folder(p / 'b', {'metadata.yaml': f'a: [{500_000 * "a,"}]'}),
+    ),
+    'metadata of as many values as there may be': (
+        "'rosbag2_bagfile_information' is missing",
+        lambda p: folder(p / 'b', {'metadata.yaml': f'a: [{399_000 * "a,"}]'}),
+    ),
+    'metadata with a number of base 60': (
+        'metadata.yaml: YAML has 4000001 bytes where there may be 10000',
+        lambda p: folder(p / 'b', {'metadata.yaml': f'a: 1{2_000_000 * ":1"}'}),
+    ),
+    'metadata with numbers of one hash': (
+        'metadata.yaml: YAML has a mapping of more than 100 numbers',
+        lambda p: folder(p / 'b', {
+            'metadata.yaml': ''.join(f'{k * (2**61 - 1)}: a\n' for k in range(1, 150_000))
+        }),
+    ),
+    'metadata that is nested': (
+        'nested deeper than 20 levels',
+        lambda p: folder(p / 'b', {'metadata.yaml': MB * '['}),
+    ),
+    'metadata of many files': (
+        'more than 50000 files are listed',
+        lambda p: metadata(p / 'b', ['/a'], (f'{number}.mcap' for number in range(200_000))),
+    ),
+    'parameters of small values': (
+        'actuator.yaml: longer than 262144 characters',
+        lambda p: folder(p / 'b', {'b_0.mcap': b'', 'actuator.yaml': f'a: [{MB * "a,"}]'}),
+    ),
+    'messages of 1 GiB': (
+        'a compressed message is cut off or too large',
+        lambda p: database(p / 'b.db3', [], 60 * [zstd.compress(bytes(2**30))]),
+    ),
+    'messages of 32 MiB': (
+        'more is compressed in it than a bag of this size can hold',
+        lambda p: database(p / 'b.db3', [], 300 * [zstd.compress(bytes(2**25))]),
+    ),
+    '300 000 topics in a database': (
+        'describes its topics by more than',
+        lambda p: database(p / 'b.db3', (f'/{k}/rotor_state' for k in range(300_000)), ()),
+    ),
+    'messages that share their pages': (
+        'the messages are longer than the file',
+        lambda p: shared_pages(p / 'b.db3'),
+    ),
+    'a ROS 1 array of nothing': (
+        'its messages consist of more than 10000 parts',
+        lambda p: ros1(p / 'b.bag', f'a/Nothing[1000000000] a\n{NOTHING}'),
+    ),
+    'a ROS 1 sequence of nothing': (
+        'a sequence of messages with hardly any bytes',
+        lambda p: ros1(p / 'b.bag', f'a/Nothing[] a\n{NOTHING}', [(1, bytes(MB))]),
+    ),
+    'a ROS 1 definition of 1 MB': (
+        'its types take more than 524288 bytes to define',
+        lambda p: ros1(p / 'b.bag', ''.join(f'float64 a{k}\n' for k in range(70_000))),
+    ),
+    'a ROS 1 index that is there again and again': (
+        'the index is longer than the file',
+        lambda p: ros1_index_again_and_again(p / 'b.bag'),
+    ),
+    'ROS 1 chunks that take turns': (
+        'more is compressed in it than a bag of this size can hold',
+        lambda p: ros1_chunks_in_turns(p / 'b.bag'),
+    ),
+}  # fmt: skip
+
+
+@pytest.fixture(scope='module')
+def crafted(tmp_path_factory) -> Callable[[str], Path]:
+    """Make a bag at its first use."""
+    return cache(lambda name: BAGS[name][1](tmp_path_factory.mktemp('bag')))
+
+
+def size_of(path: Path) -> int:
+    files = path.iterdir() if path.is_dir() else [path]
+    return sum(file.stat().st_size for file in files)
+
+
+@pytest.mark.parametrize('command', ['validate', 'compute'])
+@pytest.mark.parametrize('name', BAGS)
+def test_a_crafted_bag_is_refused_before_it_takes_much(crafted, name, command, tmp_path):
+    bag, cause = crafted(name), BAGS[name][0]
+    out = [tmp_path / 'out'] if command == 'compute' else []
+    measured = measure(tmp_path, command, bag, *out)
+    assert measured.code == 2
+    assert re.search(cause, measured.text.replace('\n', ' ')), measured.text
+    assert max(map(len, measured.text.splitlines())) < KB
+    assert measured.memory <= MAX_MEMORY + EXPANSION * size_of(bag)
+    assert measured.seconds <= MAX_TIME
+    assert {path.name for path in tmp_path.iterdir()} == {'measured'}
+
+
+def test_of_very_many_topics_some_can_be_chosen(tmp_path):
+    bag = wide_mcap(tmp_path / 'b.mcap')
+    given = ('compute', bag, tmp_path / 'out', '--rotor-topic', '/rotor_state')
+    refused = measure(tmp_path, *given)
+    assert refused.code == 2
+    assert 'more than 4000 topics and QoS profiles; --topics says' in refused.text
+    done = measure(tmp_path, *given, '--topics', '/7/rotor_state')
+    assert done.code == 0, done.text
+    assert '3 outputs for 3 rotor states' in done.text
+    assert 'and 65521 more' in done.text
+    for measured in (refused, done):
+        assert measured.memory <= MAX_MEMORY
+        assert measured.seconds <= MAX_TIME
+
+
+def test_a_very_long_definition_is_copied(tmp_path):
+    definition = ''.join(f'float64 a{number}\n' for number in range(1_800_000))
+    assert len(definition) > 28 * MB
+    bag = mcap(tmp_path / 'b.mcap', schema(3, 'a/msg/A', definition), channel(4, 3, '/a'), STATES)
+    measured = measure(tmp_path, 'compute', bag, tmp_path / 'out')
+    assert measured.code == 0, measured.text
+    assert measured.memory <= MAX_MEMORY + EXPANSION * size_of(bag)
+    assert measured.seconds <= MAX_TIME
+    with rosbag2.Reader(tmp_path / 'out') as reader:
+        [copied] = [c.msgdef.data for c in reader.connections if c.topic == '/a']
+    assert copied == definition
+
+
+def test_neighbours_of_a_pin_setting_are_bounded(tmp_path):
+    given = ('index', '--angle', '0.01', '--neighbours')
+    refused = measure(tmp_path, *given, 100_000)
+    assert refused.code == 2
+    assert refused.text == 'gearkin: --neighbours must be 0 to 1000, not 100000\n'
+    done = measure(tmp_path, *given, 1000)
+    assert done.code == 0
+    assert len(re.findall(r'^ *[+-]\d+ ', done.text, re.MULTILINE)) == 2000
+    for measured in (refused, done):
+        assert measured.memory <= MAX_MEMORY
+        assert measured.seconds <= MAX_TIME

@@ -1,0 +1,212 @@
+"""The program gearkin as a user runs it: output, exit codes, one clear line on bad input."""
+
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+from xml.etree import ElementTree as ET
+
+import pytest
+from blocked_bags import GEARKIN
+
+from gear_kinematics.commands.cli import COMMANDS, main
+
+ROOT = Path(__file__).resolve().parents[2]
+SINGLE_TURN = str(ROOT / 'bags' / 'single_turn_encoder')
+
+
+def run(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, '-c', code, *arguments]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def test_demo_plays_the_shipped_bag_through_the_live_node_and_agrees():
+    done = run(GEARKIN, 'demo')
+    assert done.returncode == 0, done.stderr
+    assert 'All agree' in done.stdout
+    assert '3000 rotor states in' in done.stdout
+    rows = [
+        line for line in done.stdout.splitlines() if '/output_state' in line or '/body' in line
+    ]
+    cells = [[cell.strip() for cell in row.strip('│').split('│')] for row in rows]
+    assert [(topic, messages, missing) for topic, messages, missing, _, _ in cells] == [
+        *[('/output_state', '3000', '0')] * 3,
+        *[('/body_poses', '3000', '0')] * 2,
+    ]
+    assert 'Traceback' not in done.stderr
+
+
+def test_describe_tells_the_numbers_of_the_specification(capsys):
+    assert main(['describe', '--json']) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts == {
+        'ring_teeth': 80,
+        'satellite_teeth': 76,
+        'eccentricity': 0.0011,
+        'branches': ['a', 'b'],
+        'gear_ratio': '-19',
+        'mobility_by_counting': 0,
+        'mobility_by_rank': 1,
+        'redundant_constraints': 1,
+        'ring_rolling_radius': pytest.approx(0.022),
+        'satellite_rolling_radius': pytest.approx(0.0209),
+        'oldham_petals': 40,
+        'vernier_combinations': 531_360,
+        'vernier_distinct_positions': 265_680,
+        'vernier_ring_body_positions': 6642,
+        'vernier_step': pytest.approx(2.36494e-5, rel=1e-5),
+        'module': 0.0005,
+        'working_pressure_angle': pytest.approx(math.acos(math.cos(math.radians(20.0)) / 1.1)),
+        'ring_profile_shift': pytest.approx(0.258, abs=1e-3),
+        'addendum': 1.0,
+        'satellite_tip_radius': pytest.approx(0.0195),
+        'ring_tip_radius': pytest.approx(0.019629, abs=1e-6),
+        'tip_clearance': pytest.approx(0.0003, abs=1e-4),
+        'contact_ratio': pytest.approx(1.86, abs=0.01),
+        'interference': None,
+    }
+
+
+def test_describe_takes_another_tooth_pair(capsys):
+    arguments = ['--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.002']
+    assert main(['describe', *arguments]) == 0
+    lines = {line.strip().split('  ')[0]: line for line in capsys.readouterr().out.splitlines()}
+    assert '-58/3' in lines['gear ratio']
+    assert '61' in lines['oldham petals']
+    assert '0.002' in lines['eccentricity']
+
+
+def test_describe_says_where_teeth_cannot_avoid_interference(capsys):
+    arguments = ['describe', '--eccentricity', '0.001', '--module', '0.00051']
+    assert main([*arguments, '--json']) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts['contact_ratio'] is None
+    assert 'tip clearance of -' in facts['interference']
+    assert main(arguments) == 0
+    text = ' '.join(capsys.readouterr().out.split())
+    assert 'do not mesh at an eccentricity of 0.001 m' in text
+    assert 'None' not in text
+
+
+def test_urdf_is_written_for_a_given_configuration(capsys, tmp_path):
+    config = tmp_path / 'my.yaml'
+    config.write_text("/**:\n  ros__parameters:\n    frame_prefix: 'left_'\n")
+    assert main(['urdf', '--config', str(config)]) == 0
+    robot = ET.fromstring(capsys.readouterr().out)  # noqa: S314, our own
+    assert 'left_output_shaft' in {link.get('name') for link in robot.iter('link')}
+
+
+@pytest.fixture
+def two_nodes(tmp_path) -> str:
+    path = tmp_path / 'two.yaml'
+    path.write_text(
+        '/left/gear_state_publisher:\n'
+        "  ros__parameters: {frame_prefix: 'left_', rotor_encoder: 'multi_turn'}\n"
+        '/right/gear_state_publisher:\n'
+        "  ros__parameters: {frame_prefix: 'right_', rotor_encoder: 'single_turn'}\n"
+    )
+    return str(path)
+
+
+@pytest.mark.parametrize('side', ['left', 'right'])
+def test_urdf_is_that_of_the_node_that_was_asked_for(capsys, two_nodes, side):
+    node = f'/{side}/gear_state_publisher'
+    assert main(['urdf', '--config', two_nodes, '--node', node]) == 0
+    robot = ET.fromstring(capsys.readouterr().out)  # noqa: S314, our own
+    assert all(link.get('name').startswith(f'{side}_') for link in robot.iter('link'))
+
+
+@pytest.mark.parametrize(('side', 'code'), [('left', 1), ('right', 0)])
+def test_bag_is_validated_for_the_node_that_was_asked_for(capsys, two_nodes, side, code):
+    """It was recorded with an encoder of a single turn, and without a prefix."""
+    Path(two_nodes).write_text(Path(two_nodes).read_text().replace(f'{side}_', ''))
+    node = ['--config', two_nodes, '--node', f'{side}/gear_state_publisher']
+    assert main(['validate', SINGLE_TURN, *node]) == code
+    capsys.readouterr()
+
+
+def test_outputs_are_computed_for_the_node_that_was_asked_for(capsys, two_nodes, tmp_path):
+    node = ['--config', two_nodes, '--node', '/right/gear_state_publisher']
+    out = str(tmp_path / 'computed')
+    assert main(['compute', SINGLE_TURN, out, *node]) == 0
+    assert main(['validate', out, *node]) == 0
+    assert main(['validate', out, *node[:-1], '/left/gear_state_publisher']) == 1
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [['urdf'], ['describe'], ['validate', SINGLE_TURN], ['compute', SINGLE_TURN, 'computed'],
+     ['lost-motion', SINGLE_TURN], ['index', '--degrees', '1'], ['plot', 'scheme', 'scheme.png']],
+    ids=lambda arguments: arguments[0],
+)  # fmt: skip
+def test_file_for_two_nodes_is_refused_naming_them(
+    capsys, two_nodes, tmp_path, monkeypatch, arguments
+):
+    monkeypatch.chdir(tmp_path)
+    assert main([*arguments, '--config', two_nodes]) == 2
+    assert capsys.readouterr().err == (
+        f'gearkin: {two_nodes}: parameters of more than one node: '
+        '/left/gear_state_publisher, /right/gear_state_publisher; choose one with --node\n'
+    )
+    assert [*tmp_path.iterdir()] == [Path(two_nodes)]
+
+
+@pytest.mark.parametrize('command', COMMANDS)
+def test_commands_that_take_a_parameter_file_take_the_name_of_a_node(capsys, command):
+    with pytest.raises(SystemExit):
+        main([command, '--help'])
+    text = capsys.readouterr().out
+    assert ('--config FILE' in text) == ('--node NAME' in text)
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        (['describe', '--satellite-teeth', '80'], 'satellite_teeth (80) must be less than'),
+        (['describe', '--module', '0'], 'module must be'),
+        (['describe', '--eccentricity', 'nan'], '--eccentricity must be between 1e-06 and 1.0'),
+        (['describe', '--config', 'missing.yaml'], 'missing.yaml'),
+        (['urdf', '--config', 'missing.yaml'], 'missing.yaml'),
+    ],
+)
+def test_unusable_input_gets_one_clear_line_and_code_2(arguments, cause, capsys):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.count('\n') == 1
+    assert cause in captured.err
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        ([], 'arguments are required: COMMAND; see gearkin --help'),
+        (['unknown'], "'unknown'"),
+        (['describe', '--ring-teeth', 'many'], "--ring-teeth: invalid int value: 'many'; see"),
+        (['index', '--from', '1', '2'], 'expected 3 arguments; see gearkin index --help'),
+    ],
+)
+def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+    assert exit_.value.code == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.startswith('gearkin: ')
+    assert captured.err.count('\n') == 1
+    assert cause in captured.err
+
+
+@pytest.mark.parametrize('command', ['', 'demo', 'describe', 'urdf'])
+def test_help_is_everywhere(command, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main([*command.split(), '--help'])
+    assert exit_.value.code == 0
+    assert 'usage: gearkin' in capsys.readouterr().out
+
+
+def test_only_the_demo_needs_ros():
+    done = run(f'import sys; sys.modules["rclpy"] = None; {GEARKIN}', 'describe')
+    assert done.returncode == 0, done.stderr

@@ -1,0 +1,308 @@
+"""gearkin lost-motion as a user runs it."""
+
+import json
+import math
+import struct
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
+from lxml import html
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.lost_motion import Columns, measure, read_csv
+from gear_kinematics.lost_motion.curves import panels
+from gear_kinematics.lost_motion.uncertainty import Component, Estimate
+from gear_kinematics.lost_motion.wording import rounded
+
+GEAR = Gear(play=0.02, stiffness=300.0, friction=0.5)
+
+
+@pytest.fixture(scope='module')
+def recording(tmp_path_factory):
+    torque = ramps(*[(4.0, 150)] * 3, *[(40.0, 300)] * 2)
+    angle = np.degrees(creep(GEAR, torque))
+    folder = tmp_path_factory.mktemp('csv')
+    return write_csv(folder / 'gear.csv', angle_deg=angle, torque=torque)
+
+
+@pytest.fixture(scope='module')
+def motion(tmp_path_factory):
+    ideal = np.concatenate([np.linspace(0.0, 15.0, 9000), np.linspace(15.0, 0.0, 9000)])
+    output = ideal + 1e-3 * np.sin(19 * ideal) - 2e-3 * (np.arange(18000) < 9000)
+    folder = tmp_path_factory.mktemp('csv')
+    return write_csv(folder / 'motion.csv', rotor=-19.0 * ideal, output=output)
+
+
+def facts(output: str) -> dict[str, str]:
+    """The facts of the plain report about one recording, by subject and column."""
+    return dict(line.split(': ', 1)[1].rsplit(': ', 1) for line in output.splitlines())
+
+
+def test_plain_report_tells_figures_with_their_units(recording, capsys):
+    assert main(['lost-motion', str(recording)]) == 0
+    told = facts(capsys.readouterr().out)
+    arcmin = math.degrees(GEAR.play + 2 * GEAR.friction / GEAR.stiffness) * 60.0
+    assert float(told['hysteresis at zero torque: value'].removesuffix(' arcmin')) == (
+        pytest.approx(arcmin, abs=0.1)
+    )
+    assert float(told['backlash (play model): in degrees'].removesuffix(' °')) == (
+        pytest.approx(math.degrees(GEAR.play), abs=0.002)
+    )
+    assert told['backlash (play model): from'] == '3 loops to 4 N·m'
+    assert told['stiffness 20 to 40 N·m: value'].endswith(' N·m/rad')
+    assert told['rated torque'] == '40 N·m (largest ramps)'
+
+
+def test_report_says_what_is_inferred(recording, motion, capsys):
+    assert main(['lost-motion', str(recording)]) == 0
+    output = capsys.readouterr().out
+    assert 'Inferred, not measured' in output
+    assert main(['lost-motion', str(motion)]) == 0
+    output = capsys.readouterr().out
+    assert 'Inferred' not in output
+
+
+def test_json_is_in_si_units_and_has_every_figure(recording, capsys):
+    assert main(['lost-motion', str(recording), '--json']) == 0
+    document = json.loads(capsys.readouterr().out)
+    assert (document['schema'], document['version']) == ('gear_kinematics/lost_motion', 1)
+    assert document['coverage'] == 0.95
+    (found,) = document['recordings']
+    assert found['recording'] == 'gear.csv'
+    small, large = found['hysteresis']['figures']
+    assert small['play_model']['play']['value'] == pytest.approx(GEAR.play, abs=5e-5)
+    assert small['hysteresis'].keys() == {
+        'value', 'standard_uncertainty', 'degrees_of_freedom', 'expanded_uncertainty', 'repeats'
+    }  # fmt: skip
+    assert large['stiffness'][-1]['both']['value'] == pytest.approx(GEAR.stiffness, rel=1e-3)
+    assert found['hysteresis']['measured'] is False
+    assert found['transmission'] is None
+
+
+def test_rated_torque_and_ranges_can_be_told(recording, capsys):
+    arguments = ['--rated-torque', '50', '--stiffness-torques', '30', '10', '--json']
+    assert main(['lost-motion', str(recording), *arguments]) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    assert found['hysteresis']['settings']['rated_torque'] == 50.0
+    assert found['hysteresis']['rated_by'] == 'given'
+    stiffness = found['hysteresis']['figures'][-1]['stiffness']
+    assert [(s['low'], round(s['high'], 3)) for s in stiffness] == [(0.0, 10.0), (10.0, 30.0)]
+
+
+def test_transmission_error_of_both_encoders(motion, capsys):
+    assert main(['lost-motion', str(motion), '--json']) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    transmission = found['transmission']
+    assert transmission['lost_motion']['value'] == pytest.approx(2e-3, abs=1e-5)
+    orders = {order['name']: order for order in transmission['orders']}
+    assert orders['rotor × 1']['cycles'] == '19'
+    assert orders['rotor × 1']['forward']['value'] == pytest.approx(1e-3, rel=1e-3)
+    assert orders['teeth × 2']['forward'] is None
+    assert found['hysteresis'] is None
+
+
+@pytest.mark.parametrize('suffix', ['png', 'svg', 'pdf'])
+def test_plot_is_an_image_of_its_suffix(recording, motion, tmp_path, suffix, capsys):
+    starts = {'png': b'\x89PNG', 'svg': b'<?xml', 'pdf': b'%PDF'}
+    for source in (recording, motion):
+        target = tmp_path / f'{source.stem}.{suffix}'
+        assert main(['lost-motion', str(source), '--plot', str(target)]) == 0
+        assert target.read_bytes().startswith(starts[suffix])
+        if suffix == 'png':
+            width, height = struct.unpack('>II', target.read_bytes()[16:24])
+            assert (width, height) == (1800, 780)  # two panels
+    assert capsys.readouterr().out
+
+
+def test_page_needs_nothing_from_elsewhere(recording, motion, tmp_path, capsys):
+    target = tmp_path / 'page.html'
+    assert main(['lost-motion', str(recording), str(motion), '--html', str(target)]) == 0
+    tree = html.document_fromstring(target.read_bytes(), parser=html.HTMLParser(encoding='utf-8'))
+    assert not tree.xpath('//@src | //link')
+    assert [h.text for h in tree.xpath('//h2')] == ['gear.csv', 'motion.csv']
+    plots = [json.loads(s.text) for s in tree.xpath('//script[@type="application/json"]')]
+    assert len(plots) == 2
+    for plot in plots:
+        axes = {name for name in plot['layout'] if name.startswith('xaxis')}
+        assert axes == {'xaxis1', 'xaxis2'}
+        for trace in plot['data']:
+            assert len(trace['x']) == len(trace['y']) > 1
+            assert len(trace['x']) <= 2000
+    assert plots[1]['layout']['xaxis2']['type'] == 'log'
+    marked = {note['text'] for note in plots[1]['layout']['annotations']}
+    assert 'rotor × 1, satellite × 1' in marked
+    assert capsys.readouterr().out
+
+
+def test_several_recordings_are_compared(recording, motion, capsys, monkeypatch):
+    monkeypatch.setenv('COLUMNS', '120')
+    monkeypatch.setenv('FORCE_COLOR', '1')
+    assert main(['lost-motion', str(recording), str(motion)]) == 0
+    output = capsys.readouterr().out
+    assert 'transmission accuracy' in output
+    assert output.count('gear.csv') == 2
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'complaint'),
+    [
+        (['nowhere.csv'], 'nowhere.csv: No such file'),
+        (['nowhere'], 'nowhere: no such file or folder'),
+        (['{recording}', '{motion}', '--plot', 'x.png'], '--plot takes one recording'),
+        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot is one of'),
+        (['{recording}', '--json', '--html'], 'only one report can go to stdout'),
+        (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are rotor, output"),
+    ],
+)
+def test_unusable_arguments_get_one_line(recording, motion, arguments, complaint, capsys):
+    given = [a.format(recording=recording, motion=motion) for a in arguments]
+    assert main(['lost-motion', *given]) == 2
+    errors = capsys.readouterr().err
+    assert complaint in errors
+    assert errors.startswith('gearkin: ')
+    assert errors.count('\n') == 1
+
+
+@pytest.mark.parametrize(
+    'given',
+    [
+        *(f'--rated-torque={value}' for value in ('0', '-1', 'nan', 'inf', 'much')),
+        '--counts=0',
+        '--output-counts=2.5',
+        '--angle-unit=gon',
+    ],
+)
+def test_options_out_of_range_are_refused(recording, given, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(['lost-motion', str(recording), given])
+    assert caught.value.code == 2
+    assert given.partition('=')[0] in capsys.readouterr().err
+
+
+def test_unusable_recording_does_not_keep_the_others(recording, tmp_path, capsys):
+    flat = write_csv(tmp_path / 'flat.csv', angle=np.zeros(500), torque=np.zeros(500))
+    assert main(['lost-motion', str(flat), str(recording), '--json']) == 2
+    captured = capsys.readouterr()
+    assert captured.err == (
+        f'gearkin: {flat}: no torque ramp that goes to one side, to the other and back to zero\n'
+    )
+    (found,) = json.loads(captured.out)['recordings']
+    assert found['recording'] == 'gear.csv'
+
+
+@pytest.mark.parametrize('value', [1.4e154, 1e200])
+@pytest.mark.parametrize('column', ['angle', 'torque'])
+def test_garbage_in_one_recording_keeps_no_other(recording, tmp_path, column, value, capsys):
+    torque = np.concatenate(
+        [np.linspace(0, 4, 99), np.linspace(4, -4, 199), np.linspace(-4, 0, 99)]
+    )
+    columns = {'angle': torque / 300.0, 'torque': torque}
+    columns[column] = columns[column].copy()
+    columns[column][150] = value
+    spoilt = write_csv(tmp_path / 'spoilt.csv', **columns)
+    assert main(['lost-motion', str(spoilt), str(recording), '--json']) in {0, 2}
+    captured = capsys.readouterr()
+    assert 'Traceback' not in captured.err
+    assert len(captured.err.splitlines()) <= 1
+    assert json.loads(captured.out)['recordings'][-1]['recording'] == 'gear.csv'
+
+
+def test_report_needs_neither_matplotlib_nor_plotly(recording):
+    program = (
+        'import sys; sys.modules["matplotlib"] = sys.modules["plotly"] = None\n'
+        'from gear_kinematics.commands.cli import main\n'
+        f'assert main(["lost-motion", {str(recording)!r}]) == 0\n'
+        f'print(main(["lost-motion", {str(recording)!r}, "--plot", "x.png"]))\n'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', program],
+        env={'PYTHONPATH': ':'.join(filter(None, sys.path)), 'PYTHONIOENCODING': 'utf-8'},
+        capture_output=True,
+        text=True,
+        encoding='utf-8',
+        check=False,
+    )
+    assert done.stdout.splitlines()[-1] == '2'
+    assert (
+        done.stderr
+        == "gearkin: matplotlib is not installed: pip install 'gear_kinematics[plot]'\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ('value', 'spread', 'written'),
+    [
+        (93.3456, 1.3789, ('93.3', '1.4')),
+        (0.00123456, 0.000021, ('0.001235', '0.000021')),
+        (-0.004, 0.5, ('0.00', '0.50')),
+        (531.7, 134.2, ('532', '134')),
+        (2.0, 0.0, ('2', '0')),
+        (1 / 3, 1e-13, ('0.333333', '1e-13')),
+    ],
+)
+def test_values_are_written_to_the_second_digit_of_their_uncertainty(value, spread, written):
+    normal = Estimate.of_mean([value] * 9, Component(spread / 1.959964))
+    assert rounded(normal, 1.0) == written
+
+
+def test_panels_show_every_loop(recording, actuator):
+    small, large = panels(measure(read_csv(recording, actuator, Columns(), 0.01), actuator))
+    names = [line.name for line in small.lines]
+    assert names.count('torque rising') == names.count('torque falling') == 3
+    assert len(large.lines) == 2 * 2 + 1
+    for line in large.lines:
+        assert np.all(np.abs(line.x) <= 40.0 * 1.02)
+
+
+def test_damaged_bag_is_measured_as_far_as_it_goes(tmp_path, capsys):
+    torque = ramps(*[(5.0, 200)] * 3)
+    angle = creep(GEAR, torque)
+    stamps = 10**18 + np.arange(len(angle)) * 10**6
+    samples = Samples(stamps, -19.0 * angle, torque / -19.0)
+    (file,) = write_recording(tmp_path / 'ramps', samples).glob('*.mcap')
+    file.write_bytes(file.read_bytes()[: file.stat().st_size * 3 // 4])
+    assert main(['lost-motion', str(file), '--json']) == 2
+    captured = capsys.readouterr()
+    assert captured.err.startswith(f'gearkin: {file}: ')
+    assert captured.err.count('\n') == 1
+    (found,) = json.loads(captured.out)['recordings']
+    assert found['error'] == captured.err.removeprefix('gearkin: ').rstrip('\n')
+    assert found['hysteresis']['figures'][0]['loops'] == 2
+
+
+def test_motion_with_a_torque_that_is_no_ramp_is_motion(tmp_path, capsys):
+    ideal = np.linspace(0.0, 3.0, 3000)
+    stamps = 10**18 + np.arange(len(ideal)) * 10**6
+    rotor = Samples(stamps, -19.0 * ideal, np.full(len(ideal), 0.1))
+    path = write_recording(tmp_path / 'motion', rotor, Samples(stamps, ideal))
+    assert main(['lost-motion', str(path), '--json']) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    assert found['hysteresis'] is None
+    assert found['transmission']['samples'] == 3000
+    assert found['remarks'][0].startswith('no torque ramp')
+
+
+def test_remarks_tell_where_the_spring_is_not_clear_of_the_play(tmp_path, capsys):
+    torque = ramps((4.0, 200), (4.0, 200))
+    angle = creep(Gear(play=0.02, stiffness=300.0, friction=2.5), torque)
+    path = write_csv(tmp_path / 'sticky.csv', angle=angle, torque=torque)
+    assert main(['lost-motion', str(path)]) == 0
+    assert 'The friction is more than the 2 N·m from which on' in capsys.readouterr().out
+    assert main(['lost-motion', str(path), '--rated-torque', '40']) == 0
+    told = capsys.readouterr().out
+    assert 'No range of stiffness is clear of zero torque' in told
+    assert 'backlash (play model)' not in told
+
+
+def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
+    torque = ramps((4.0, 200))
+    path = write_csv(tmp_path / 'one.csv', angle=creep(GEAR, torque), torque=torque)
+    assert main(['lost-motion', str(path)]) == 0
+    told = capsys.readouterr().out
+    assert 'Where nothing was repeated there is no uncertainty.' in told
+    assert 'All ramps have about the same amplitude' in told
+    assert 'The friction is more than the ±0.12 N·m' in told
+    assert '± (95 %)' not in told

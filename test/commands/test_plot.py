@@ -1,0 +1,269 @@
+"""gearkin plot and gearkin animate as someone who makes a figure runs them."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from gear_recordings import Samples, write_recording
+
+from gear_kinematics.bag import BagWriter
+from gear_kinematics.commands.cli import main
+from gear_kinematics.state.share import share_directory
+
+pytest.importorskip('matplotlib', reason='matplotlib is not installed')
+
+from PIL import Image
+
+SERVO = str(share_directory() / 'bags' / 'servo_point_to_point')
+SIGNATURES = {'png': b'\x89PNG\r\n\x1a\n', 'svg': b'<?xml', 'pdf': b'%PDF-', 'gif': b'GIF89a'}
+
+
+@pytest.mark.parametrize(
+    ('suffix', 'figure', 'options'),
+    [
+        ('png', 'scheme', ('--bag', SERVO, '--start-offset', '0.5', '--branch', 'b')),
+        ('svg', 'scheme', ()),
+        ('pdf', 'roses', ('--bag', SERVO, '--duration', '0.2')),
+        ('svg', 'slides', ('--speed', '-100')),
+        ('PNG', 'slides', ('--bag', SERVO)),
+        ('png', 'output', ('--duration', '0.1')),
+    ],
+)
+def test_plot_writes_the_same_file_each_time(figure, suffix, options, tmp_path, capsys):
+    contents = []
+    for name in ('one', 'two'):
+        path = tmp_path / f'{name}.{suffix}'
+        assert main(['plot', figure, str(path), *options]) == 0
+        contents.append(path.read_bytes())
+    assert contents[0].startswith(SIGNATURES[suffix.lower()])
+    assert contents[0] == contents[1]
+    assert len(list(tmp_path.iterdir())) == 2
+    assert capsys.readouterr() == ('', '')
+
+
+def test_scheme_shows_the_moment_of_the_recording(tmp_path):
+    """The rotor stands at 2 rad from the second on."""
+    rotor = Samples([0, 1_000_000_000, 3_000_000_000], [0.5, 2.0, 2.0])
+    bag = write_recording(tmp_path / 'bag', rotor)
+    pictures = []
+    for k, options in enumerate(
+        (['--bag', str(bag), '--start-offset', '1'], ['--angle', '2'], ['--angle', '0.5'])
+    ):
+        path = tmp_path / f'{k}.png'
+        assert main(['plot', 'scheme', str(path), *options]) == 0
+        pictures.append(path.read_bytes())
+    assert pictures[0] == pictures[1] != pictures[2]
+    assert main(['plot', 'scheme', str(path), '--degrees', '114.59155902616465']) == 0
+    assert path.read_bytes() == pictures[0]
+
+
+def test_sizes_are_those_of_the_config_and_the_options(tmp_path):
+    config = tmp_path / 'small.yaml'
+    parameters = 'ring_teeth: 61, satellite_teeth: 58, eccentricity: 0.0008'
+    config.write_text(f'/**: {{ros__parameters: {{{parameters}}}}}')
+    given = ('--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.0008')
+    pictures = []
+    for k, options in enumerate((('--config', str(config)), given, ())):
+        path = tmp_path / f'{k}.png'
+        assert main(['plot', 'scheme', str(path), *options]) == 0
+        pictures.append(path.read_bytes())
+    assert pictures[0] == pictures[1] != pictures[2]
+
+
+def test_scheme_without_teeth_says_why(tmp_path, capsys):
+    """At 0.65 mm the same gears mesh."""
+    pair = ('--ring-teeth', '30', '--satellite-teeth', '28')
+    path = str(tmp_path / 'a.svg')
+    assert main(['plot', 'scheme', path, *pair, '--eccentricity', '0.0011']) == 0
+    [told] = capsys.readouterr().out.splitlines()
+    assert told.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
+    assert 'at an eccentricity of 0.0011 m' in told
+    assert main(['plot', 'scheme', path, *pair, '--eccentricity', '0.00065']) == 0
+    assert main(['plot', 'roses', path, *pair, '--eccentricity', '0.0011']) == 0
+    assert capsys.readouterr() == ('', '')
+
+
+def test_animation_has_the_promised_frames(tmp_path, capsys):
+    """Three turns of the rotor at 60 rad/s take 0.314 s, which are 13 frames, nearly 0.314/40."""
+    path = tmp_path / 'loop.gif'
+    pair = ('--ring-teeth', '4', '--satellite-teeth', '3', '--eccentricity', '0.0008')
+    speed = ('--speed', '60', '--fps', '40', '--width', '120')
+    assert main(['animate', str(path), *pair, *speed]) == 0
+    told, circles = capsys.readouterr().out.splitlines()
+    assert told == f'{path}: 13 frames, 40 in a second'
+    assert circles.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
+    assert path.read_bytes().startswith(SIGNATURES['gif'])
+    with Image.open(path) as image:
+        assert (image.n_frames, image.size) == (13, (120, 80))
+        assert image.info['duration'] in {20, 30}  # 25 ms, in whole hundredths
+
+
+def test_picture_of_the_readme_is_a_whole_turn_of_the_output():
+    """Ten frames to each of 19 turns of the rotor, and small enough for a first screen."""
+    root = Path(__file__).resolve().parents[2]
+    [name] = re.findall(r'\((docs/\S+\.gif)\)', (root / 'README.md').read_text('utf-8'))
+    assert (root / name).stat().st_size < 1.5e6
+    with Image.open(root / name) as image:
+        assert (image.n_frames, image.size, image.info['loop']) == (190, (420, 280), 0)
+
+
+def test_animation_of_a_bag_says_how_to_see_the_rotor(tmp_path, capsys):
+    path = tmp_path / 'servo.gif'
+    part = ('--start-offset', '0.3', '--duration', '0.2', '--fps', '25', '--width', '100')
+    assert main(['animate', str(path), '--bag', SERVO, *part]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == f'{path}: 5 frames, 25 in a second'
+    assert told[1].startswith('The rotor turns 0.99 times from frame to frame; --rate ')
+    rate = told[1].split('--rate ')[1].split()[0]
+    assert main(['animate', str(path), '--bag', SERVO, *part, '--rate', rate]) == 0
+    [line] = capsys.readouterr().out.splitlines()
+    with Image.open(path) as image:
+        assert line == f'{path}: {image.n_frames} frames, 25 in a second'
+        assert image.n_frames > 10
+
+
+FFMPEG = """#!{python}
+import sys
+frames = sys.stdin.buffer.read()
+with open(sys.argv[-1], 'w') as file:
+    file.write(f'{{len(frames)}} {{" ".join(sys.argv)}}')
+sys.exit({code})
+"""
+
+
+def fake_ffmpeg(folder: Path, monkeypatch, code: int) -> None:
+    folder.mkdir()
+    program = folder / 'ffmpeg'
+    program.write_text(FFMPEG.format(python=sys.executable, code=code))
+    program.chmod(0o755)
+    monkeypatch.setenv('PATH', f'{folder}{os.pathsep}{os.environ["PATH"]}')
+
+
+def test_ffmpeg_gets_every_frame_of_an_mp4(tmp_path, monkeypatch):
+    fake_ffmpeg(tmp_path / 'bin', monkeypatch, 0)
+    path = tmp_path / 'loop.mp4'
+    options = ('--speed', '12', '--duration', '0.35', '--fps', '20', '--width', '150')
+    assert main(['animate', str(path), *options]) == 0
+    size, *command = path.read_text().split()
+    width, height = map(int, command[command.index('-s') + 1].split('x'))
+    assert abs(width - 150) <= 1
+    assert abs(height - 100) <= 1
+    assert width % 2 == height % 2 == 0  # what players want
+    assert int(size) == 8 * width * height * 4
+    assert command[command.index('-framerate') + 1] == '20'
+    assert 'yuv420p' in command
+    assert {file.name for file in tmp_path.iterdir()} == {'bin', 'loop.mp4'}
+
+
+@pytest.mark.parametrize('code', [1, None], ids=['that fails', 'that is missing'])
+def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
+    if code is None:
+        monkeypatch.setenv('PATH', str(tmp_path))
+    else:
+        fake_ffmpeg(tmp_path / 'bin', monkeypatch, code)
+    assert main(['animate', str(tmp_path / 'loop.mp4'), '--duration', '0.1']) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.count('\n') == 1
+    cause = 'ffmpeg failed: ' if code else 'an MP4 needs the program ffmpeg; a GIF does not\n'
+    assert captured.err.startswith(f'gearkin: {cause}')
+    assert not (tmp_path / 'loop.mp4').exists()
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix of a plot is one of '),
+        (['plot', 'scheme', 'a'], 'a: the suffix of a plot is one of '),
+        (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
+        (
+            ['plot', 'scheme', 'a.png', '--angle', 'nan'],
+            'an angle of the rotor is finite, not nan',
+        ),
+        (['plot', 'scheme', 'a.png', '--branch', 'c'], "no branch 'c'; there are a, b"),
+        (['plot', 'scheme', 'a.png', '--module', '0'], '--module must be between 1e-06 and 0.1'),
+        (['plot', 'scheme', 'a.png', '--config', 'none.yaml'], 'none.yaml'),
+        (['plot', 'scheme', 'a.png', '--bag', 'none'], 'none: no such file or folder'),
+        (
+            ['plot', 'roses', 'a.png', '--ring-teeth', '1001', '--satellite-teeth', '1000'],
+            'petals',
+        ),
+        (['plot', 'slides', 'a.png', '--speed', '0'], 'a speed is finite and not 0'),
+        (['plot', 'output', 'a.png', '--duration', '60'], '3000 turns of the rotor are more than'),
+        (
+            ['plot', 'output', 'a.png', '--bag', SERVO, '--start-offset', '7'],
+            'no states of the rotor from 7 s to inf s; they are from 0 s to ',
+        ),
+        (
+            ['plot', 'output', 'a.png', '--bag', SERVO, '--rotor-topic', '/motor'],
+            'no topic /motor of type sensor_msgs/msg/JointState in it',
+        ),
+        (['plot', 'roses', 'a.png', '--duration', '1'], '--duration is of use with --bag only'),
+        (['animate', 'a.gif', '--start-offset', '1'], '--start-offset is of use with --bag only'),
+        (['animate', 'a.gif', '--width', '1920', '--speed', '2'], 'too large for a GIF: 1194 fr'),
+        (['animate', 'a.png'], 'a.png: the suffix of an animation is one of gif, mp4'),
+        (['animate', 'a.gif', '--width', '99'], '--width must be between 100 and 1920, not 99'),
+        (['animate', 'a.gif', '--fps', '0'], '--fps must be between 1 and 50, not 0'),
+        (['animate', 'a.gif', '--speed', '1'], '2388 frames are more than 2000: shorten it by'),
+        (['animate', 'none/a.gif', '--duration', '0.1'], 'none/a.gif: No such file or directory'),
+    ],
+)
+def test_unusable_input_gets_one_clear_line_and_no_file(
+    arguments, cause, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.count('\n') == 1
+    assert captured.err.startswith('gearkin: ')
+    assert cause in captured.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bag_without_a_rotor_topic_is_refused(tmp_path, capsys):
+    with BagWriter(tmp_path / 'bag') as writer:
+        writer.add_topic('/poses', 'geometry_msgs/msg/PoseArray')
+    for command in (['plot', 'output'], ['animate']):
+        path = tmp_path / ('a.gif' if command == ['animate'] else 'a.png')
+        assert main([*command, str(path), '--bag', str(tmp_path / 'bag')]) == 2
+        error = capsys.readouterr().err
+        assert error.count('\n') == 1
+        assert 'no topic rotor_state of type sensor_msgs/msg/JointState in it' in error
+        assert not path.exists()
+
+
+def test_without_matplotlib_there_is_one_line_and_no_file(tmp_path):
+    code = (
+        'import sys; sys.modules["matplotlib"] = None\n'
+        'from gear_kinematics.commands.cli import main\n'
+        'print(main(["plot", "scheme", "a.png"]), main(["animate", "a.gif"]))'
+    )
+    done = subprocess.run(
+        [sys.executable, '-c', code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.stdout == '2 2\n'
+    assert (
+        done.stderr
+        == 2 * "gearkin: matplotlib is not installed: pip install 'gear_kinematics[plot]'\n"
+    )
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        ['plot', '--help'],
+        *(['plot', kind, '--help'] for kind in ('scheme', 'roses', 'slides', 'output')),
+        ['animate', '--help'],
+    ],
+    ids=' '.join,
+)
+def test_help_is_there(arguments, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(arguments)
+    assert exit_.value.code == 0
+    assert capsys.readouterr().out.startswith(f'usage: gearkin {arguments[0]}')

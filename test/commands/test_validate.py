@@ -1,0 +1,739 @@
+"""gearkin validate, compute and replay as a user or a CI job runs them."""
+
+import json
+import os
+import pty
+import re
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import threading
+from contextlib import ExitStack, closing, suppress
+from pathlib import Path
+from types import MappingProxyType
+from xml.etree import ElementTree as ET
+
+import jsonschema
+import pytest
+import replaying
+from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
+from gear_recordings import old_recording
+from live import rotor_bytes
+
+from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.commands.cli import main
+
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+TYPES = {'/rotor_state': JOINT_STATE, '/output_state': JOINT_STATE, '/body_poses': POSE_ARRAY}
+SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
+CONFIG = BAGS.parent / 'config' / 'actuator.yaml'
+SAMPLES = 300
+CHANGED = 100
+"""Which output is changed, if one is."""
+EXACT = ('--tolerance-angle', '0', '--tolerance-position', '0')
+
+
+def rewrite(
+    path: Path,
+    edit=lambda *_: None,
+    rename=lambda topic: topic,
+    drop=(),
+    late=MappingProxyType({}),
+) -> Path:
+    """Write the beginning of a servo's move, each output position as `edit` gives it.
+
+    Topics that are `late` lack so many messages at the beginning.
+    """
+    number = 0
+    late = dict(late)
+    with Bag(SERVO) as bag, BagWriter(path) as writer:
+        for topic, kind in TYPES.items():
+            if topic not in drop:
+                writer.add_topic(rename(topic), kind)
+        for k, (topic, received, data) in enumerate(bag.messages(TYPES)):
+            if k == 3 * SAMPLES:
+                break
+            if topic in drop:
+                continue
+            if late.get(topic):
+                late[topic] -= 1
+                continue
+            if topic == '/output_state':
+                message = replaying.decode(data, JOINT_STATE)
+                message.position = message.position.copy()
+                edit(number, message.position)
+                data = bytes(replaying.TYPESTORE.serialize_cdr(message, JOINT_STATE))  # noqa: PLW2901
+                number += 1
+            writer.write(rename(topic), received, data)
+    return path
+
+
+def off_by_2e_9(number, position) -> None:
+    if number == CHANGED:
+        position += 2e-9
+
+
+def shifted(_, position) -> None:
+    position += 0.125
+
+
+@pytest.fixture(scope='module')
+def bags(tmp_path_factory):
+    """Make a bag of each outcome."""
+    folder = tmp_path_factory.mktemp('bags')
+    rewrite(folder / 'good')
+    rewrite(folder / 'wrong', off_by_2e_9)
+    rewrite(folder / 'shifted', shifted)
+    rewrite(folder / 'rotor_only', drop=('/output_state', '/body_poses'))
+    rewrite(folder / 'namespaced', rename=lambda topic: f'/arm{topic}')
+    (folder / 'garbage.mcap').write_bytes(b'garbage' * 1000)
+    return folder
+
+
+def facts(output: str) -> dict[str, str]:
+    """Read the plain lines about one bag."""
+    return dict(line.split(': ', 1)[1].rsplit(': ', 1) for line in output.splitlines())
+
+
+# Exit codes and plain lines.
+
+
+@pytest.mark.parametrize(
+    ('name', 'code', 'verdict', 'error'),
+    [
+        ('good', 0, 'passed', ''),
+        ('wrong', 1, 'failed', ''),
+        ('garbage.mcap', 2, 'unusable', 'gearkin: garbage.mcap: not a bag of a known kind\n'),
+    ],
+)
+def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
+    done = gearkin('validate', name, cwd=bags)
+    assert (done.returncode, done.stderr) == (code, error)
+    lines = done.stdout.splitlines()
+    assert lines[0] == f'{name}: verdict: {verdict}'
+    assert all(line.startswith(f'{name}: ') for line in lines)
+    assert done.stdout.isprintable() or done.stdout.replace('\n', '').isprintable()
+
+
+def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_only(tmp_path):
+    rewrite(tmp_path / 'late', late={'/body_poses': 40})
+    done = gearkin('validate', 'late', cwd=tmp_path)
+    assert done.returncode == 0
+    left_out = '40 before every topic was recorded'
+    assert f"late: finding: not judged, as the recorder's doing: /body_poses {left_out}\n" in (
+        done.stdout
+    )
+    assert 'late: /body_poses: left out: 40\n' in done.stdout
+    for options in ([], ['--jobs', '2']):
+        done = gearkin('validate', '--strict', *options, 'late', cwd=tmp_path)
+        assert done.returncode == 1
+        assert 'late: finding: /body_poses: 40 messages missing, the first at ' in done.stdout
+
+
+@pytest.mark.parametrize('options', [[], ['--jobs', '2']])
+def test_the_worst_verdict_of_many_counts_and_their_order_is_kept(options, bags):
+    done = gearkin('validate', *options, 'wrong', 'garbage.mcap', 'good', cwd=bags)
+    assert done.returncode == 2
+    assert done.stderr == 'gearkin: garbage.mcap: not a bag of a known kind\n'
+    assert re.findall(r'^(\S+): verdict: (\w+)$', done.stdout, re.MULTILINE) == [
+        ('wrong', 'failed'),
+        ('garbage.mcap', 'unusable'),
+        ('good', 'passed'),
+    ]
+    assert done.stdout.endswith('\nsummary: 3 bags: 1 passed, 1 failed, 1 unusable\n')
+    assert gearkin('validate', *options, 'wrong', 'good', cwd=bags).returncode == 1
+
+
+def test_all_shipped_bags_pass_each_with_its_own_config():
+    done = gearkin('validate', 'bags', cwd=BAGS.parent)
+    assert (done.returncode, done.stderr) == (0, '')
+    configs = dict(re.findall(r'^bags/(\S+): config: (.+)$', done.stdout, re.MULTILINE))
+    assert configs == {
+        'constant_speed_3000rpm': str(CONFIG),
+        'driver_faults': str(CONFIG),
+        'servo_point_to_point': str(CONFIG),
+        'single_turn_encoder': 'bags/single_turn_encoder/actuator.yaml',
+    }
+
+
+def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
+    file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
+    done = gearkin('validate', file)
+    assert done.returncode == 0, done.stdout
+    assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"}\n' in done.stdout
+    done = gearkin('validate', file, '--config', CONFIG)
+    assert done.returncode == 1
+    assert f'{file}: config: {CONFIG}\n' in done.stdout
+
+
+def test_a_bag_that_is_given_twice_is_validated_once(bags):
+    done = gearkin('validate', 'good', './good', 'good/', 'g*d', cwd=bags)
+    assert done.returncode == 0
+    assert done.stdout.count('verdict') == 1
+    assert 'summary' not in done.stdout
+
+
+# Options.
+
+
+@pytest.mark.parametrize(
+    ('name', 'options', 'code'),
+    [
+        ('wrong', ['--tolerance-angle', '1.9e-9'], 1),
+        ('wrong', ['--tolerance-angle', '2.1e-9'], 0),
+        ('wrong', ['--tolerance-position', '1'], 1),
+        ('good', EXACT, 0),
+        ('shifted', [], 1),
+        ('shifted', ['--allow-offset'], 0),
+        ('wrong', ['--allow-offset'], 1),
+        ('namespaced', [], 0),
+        ('good', ['--rotor-topic', '/rotor_state', '--output-topic', '/output_state'], 0),
+        ('good', ['--rotor-topic', '/output_state', '--output-topic', '/rotor_state'], 2),
+    ],
+)
+def test_options_decide(name, options, code, bags, capsys):
+    assert main(['validate', str(bags / name), *options]) == code
+    assert (code == 2) == bool(capsys.readouterr().err)
+
+
+def test_the_error_is_located(bags):
+    found = facts(gearkin('validate', bags / 'wrong').stdout)
+    assert found['verdict'] == 'failed'
+    assert found['/output_state: compared'] == str(SAMPLES)
+    error, unit = found['/output_state position: max error'].split()
+    assert (float(error), unit) == (pytest.approx(2e-9, rel=0.01), 'rad')
+
+
+def test_an_offset_is_named_and_its_acceptance_too(bags, capsys):
+    assert main(['validate', str(bags / 'shifted')]) == 1
+    assert 'constant 0.125 rad' in capsys.readouterr().out
+    assert main(['validate', str(bags / 'shifted'), '--allow-offset']) == 0
+    assert 'accepted: the recorded output angle is off by a constant 0.125 rad' in (
+        capsys.readouterr().out
+    )
+
+
+def test_another_config_fails_the_bag_and_is_named(bags, capsys, tmp_path):
+    config = tmp_path / 'other.yaml'
+    config.write_text('/**:\n  ros__parameters:\n    satellite_teeth: 77\n', encoding='utf-8')
+    assert main(['validate', str(bags / 'good'), '--config', str(config)]) == 1
+    assert 'ring_teeth 80, satellite_teeth 76' in capsys.readouterr().out
+
+
+UNUSABLE_CONFIGS = {
+    'missing.yaml': (None, 'No such file'),
+    'broken.yaml': ('{', 'not YAML'),
+    'empty.yaml': ('', 'no ros__parameters'),
+    'unknown.yaml': (
+        '/**:\n  ros__parameters:\n    teeth: 3\n',
+        'unknown parameter `teeth`; did you mean `ring_teeth`?',
+    ),
+    'impossible.yaml': (
+        '/**:\n  ros__parameters:\n    satellite_teeth: 80\n',
+        'satellite_teeth (80) must be less than',
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ('options', 'cause'),
+    [
+        (['--tolerance-angle=-1e-9'], 'a tolerance must not be negative'),
+        (['--tolerance-position', 'nan'], 'a tolerance must not be negative'),
+        (['--rotor-topic', '/nope'], 'good: no topic /nope of type sensor_msgs/msg/JointState'),
+        (['--poses-topic', '/output_state'], 'good: no topic /output_state of type geometry_msgs'),
+        (['--json', '-', '--junit', '-'], 'only one report can go to stdout'),
+        *((['--config', name], cause) for name, (_, cause) in UNUSABLE_CONFIGS.items()),
+        (['missing.mcap'], 'missing.mcap: no bag there'),
+        (['*.nothing'], '*.nothing: no bag there'),
+    ],
+)
+def test_unusable_arguments_get_one_line_and_code_2(
+    options, cause, bags, tmp_path, monkeypatch, capsys
+):
+    for name, (text, _) in UNUSABLE_CONFIGS.items():
+        if text is not None:
+            (tmp_path / name).write_text(text, encoding='utf-8')
+    monkeypatch.chdir(tmp_path)
+    assert main(['validate', str(bags / 'good'), *options]) == 2
+    errors = capsys.readouterr().err
+    assert errors.count('\n') == 1
+    assert cause in errors
+
+
+@pytest.mark.parametrize(
+    'options',
+    [
+        [],
+        ['good', '--jobs', '0'],
+        ['good', '--jobs', '2', '--live'],
+        ['good', '--jobs', '2', '--scheduler', 'tcp://127.0.0.1:8786'],
+        ['good', '--live', '--scheduler', 'tcp://127.0.0.1:8786'],
+        ['good', '--tolerance-angle', 'small'],
+    ],
+)
+def test_arguments_that_do_not_fit_together_get_code_2(options, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main(['validate', *options])
+    assert exit_.value.code == 2
+    errors = capsys.readouterr().err
+    assert errors.count('\n') == 1
+    assert errors.endswith('; see gearkin validate --help\n')
+
+
+# Reports in files.
+
+
+@pytest.fixture(scope='module')
+def schema():
+    path = BAGS.parent / 'docs' / 'report.schema.json'
+    return jsonschema.Draft202012Validator(json.loads(path.read_text('utf-8')))
+
+
+@pytest.mark.parametrize('stdout', [['--json', '-'], ['--json']])
+def test_json_on_stdout_is_json_alone(bags, schema, stdout):
+    done = gearkin('validate', 'good', 'wrong', 'garbage.mcap', *stdout, cwd=bags)
+    assert done.returncode == 2
+    document = json.loads(done.stdout)
+    schema.validate(document)
+    assert document['verdict'] == 'unusable'
+    assert [bag['verdict'] for bag in document['bags']] == ['pass', 'fail', 'unusable']
+    position = document['bags'][1]['topics'][0]['fields'][0]
+    assert position['name'] == 'position'
+    assert position['max_error'] == pytest.approx(2e-9, rel=0.01)
+
+
+def test_every_form_is_written_beside_the_plain_lines(bags, schema, tmp_path):
+    pytest.importorskip('plotly')
+    files = {form: tmp_path / f'report.{form}' for form in ('json', 'junit', 'html')}
+    files['json'].write_text('an old report', encoding='utf-8')
+    options = [word for form, path in files.items() for word in (f'--{form}', path)]
+    done = gearkin('validate', 'good', 'wrong', *options, cwd=bags)
+    assert (done.returncode, done.stderr) == (1, '')
+    assert done.stdout.startswith('good: verdict: passed\n')
+    assert sorted(tmp_path.iterdir()) == sorted(files.values())
+    schema.validate(json.loads(files['json'].read_text('utf-8')))
+    suites = ET.parse(files['junit']).getroot()  # noqa: S314, our own
+    assert [suite.get('failures') != '0' for suite in suites] == [False, True]
+    page = files['html'].read_text('utf-8')
+    assert page.endswith('</html>\n')
+    assert page.count('class="motion"') == 2
+    assert 'wrong' in page
+
+
+def test_without_plotly_a_page_is_an_error_and_no_file(bags, tmp_path):
+    done = gearkin(
+        'validate',
+        bags / 'good',
+        '--html',
+        tmp_path / 'page.html',
+        code=f'import sys; sys.modules["plotly"] = None; {GEARKIN}',
+    )
+    assert done.returncode == 2
+    assert done.stderr == "gearkin: plotly is not installed: pip install 'gear_kinematics[html]'\n"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize('target', ['nowhere/report.json', 'folder', 'file/report.json'])
+def test_a_report_that_cannot_be_written_is_named_and_leaves_nothing(target, bags, tmp_path):
+    (tmp_path / 'folder').mkdir()
+    (tmp_path / 'file').write_text('kept', encoding='utf-8')
+    done = gearkin('validate', bags / 'good', '--json', tmp_path / target)
+    assert done.returncode == 2
+    assert done.stderr.count('\n') == 1
+    assert str(tmp_path / target) in done.stderr
+    assert '.tmp' not in done.stderr
+    assert sorted(path.name for path in tmp_path.rglob('*')) == ['file', 'folder']
+    assert (tmp_path / 'file').read_text('utf-8') == 'kept'
+
+
+def test_a_report_that_finds_no_room_leaves_the_old_one(bags, tmp_path):
+    report = tmp_path / 'report.json'
+    report.write_text('an old report', encoding='utf-8')
+    # The limit is for gearkin, not for what measures its coverage at the end.
+    code = f"""
+import resource
+unlimited = resource.getrlimit(resource.RLIMIT_FSIZE)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, unlimited[1]))
+try:
+    {GEARKIN}
+finally:
+    resource.setrlimit(resource.RLIMIT_FSIZE, unlimited)
+"""
+    done = gearkin('validate', bags / 'good', '--json', report, code=code)
+    assert (done.returncode, done.stderr) == (2, f'gearkin: {report}: File too large\n')
+    assert list(tmp_path.iterdir()) == [report]
+    assert report.read_text('utf-8') == 'an old report'
+
+
+def test_a_report_goes_into_a_pipe_and_through_a_link(bags, tmp_path):
+    """Neither is replaced by a file: `--json >(jq .)`, or /dev/null."""
+    pipe, link, file = (tmp_path / name for name in ('pipe', 'link', 'file'))
+    os.mkfifo(pipe)
+    link.symlink_to(file)
+    with running_gearkin('validate', bags / 'good', '--json', pipe, '--junit', link) as process:
+        assert json.loads(pipe.read_text('utf-8'))['verdict'] == 'pass'
+        process.communicate(timeout=DEADLINE)
+    assert process.returncode == 0
+    assert pipe.is_fifo()
+    assert link.is_symlink()
+    assert ET.parse(file).getroot().tag == 'testsuites'  # noqa: S314, our own
+
+
+# Pipes, terminals, signals.
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'code'),
+    [
+        (['validate', 'good'], 0),
+        (['validate', 'wrong'], 1),
+        (['validate', 'good', '--json', '-'], 0),
+        (['validate', 'wrong', '--junit', '-'], 1),
+        (['describe', '--json'], 0),
+        (['urdf'], 0),
+    ],
+)
+@pytest.mark.parametrize('unbuffered', ['', '1'])
+def test_a_closed_pipe_changes_no_exit_code(arguments, code, unbuffered, bags):
+    environment = os.environ | {'PYTHONUNBUFFERED': unbuffered}
+    with running_gearkin(*arguments, cwd=bags, env=environment) as process:
+        process.stdout.close()
+        process.stdout = None
+        _, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, errors) == (code, '')
+
+
+def test_files_are_written_though_nobody_reads_the_lines(bags, tmp_path):
+    command = ['validate', bags / 'wrong', '--json', tmp_path / 'report.json']
+    with running_gearkin(*command) as process:
+        process.stdout.close()
+        process.stdout = None
+        process.communicate(timeout=DEADLINE)
+    assert json.loads((tmp_path / 'report.json').read_text('utf-8'))['verdict'] == 'fail'
+
+
+class Terminal:
+    """A pseudo-terminal that keeps what is shown on it."""
+
+    def __init__(self, stack) -> None:
+        """Open it; it is closed by `text`."""
+        self._own, self.other = pty.openpty()
+        self._shown = b''
+        self._thread = threading.Thread(target=self._read)
+        self._thread.start()
+        stack.callback(self.text)
+
+    def _read(self) -> None:
+        with suppress(OSError):  # how Linux tells that the other end is closed
+            while piece := os.read(self._own, 4096):
+                self._shown += piece
+
+    def text(self) -> str:
+        """Wait until nobody writes any more, and give what was shown."""
+        with suppress(OSError):
+            os.close(self.other)
+        self._thread.join()
+        with suppress(OSError):
+            os.close(self._own)
+        return self._shown.decode()
+
+
+@pytest.fixture
+def terminals():
+    with ExitStack() as stack:
+        yield Terminal(stack), Terminal(stack)
+
+
+ENVIRONMENT = {
+    **{name: value for name, value in os.environ.items() if name not in {'NO_COLOR', 'CI'}},
+    'TERM': 'xterm-256color',
+    'COLUMNS': '120',
+}
+
+
+def test_a_terminal_gets_tables_and_its_progress_apart(bags, terminals):
+    shown, progress = terminals
+    done = gearkin(
+        'validate', 'wrong', cwd=bags, env=ENVIRONMENT, stdout=shown.other, stderr=progress.other
+    )
+    assert done.returncode == 1
+    text = shown.text()
+    assert 'FAILED' in text
+    assert '\x1b[' in text  # colours
+    assert 'verdict:' not in text  # no plain lines
+    assert re.search(r'/output_state.*position.*2e-9|2e-9', text)
+    assert 'messages/s' not in text
+    assert '━' not in text  # no bar
+    bar = progress.text()
+    assert 'wrong' in bar
+    assert '━' in bar
+    assert 'FAILED' not in bar
+
+
+@pytest.mark.parametrize('options', [[], ['--jobs', '2']])
+def test_progress_on_a_terminal_leaves_a_pipe_clean(options, bags, terminals):
+    _, progress = terminals
+    done = gearkin(
+        'validate',
+        'good',
+        'wrong',
+        '--json',
+        '-',
+        *options,
+        cwd=bags,
+        env=ENVIRONMENT,
+        stderr=progress.other,
+    )
+    assert done.returncode == 1
+    assert len(json.loads(done.stdout)['bags']) == 2
+    assert '━' in progress.text()
+
+
+@pytest.mark.parametrize('options', [[], ['--jobs', '2']])
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_validation_ends_at_once_and_leaves_nothing(
+    options, number, bags, tmp_path
+):
+    reports = tmp_path / 'reports'
+    reports.mkdir()
+    written = ['--json', reports / 'report.json', '--junit', reports / 'report.xml']
+    with (
+        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
+        running_gearkin('validate', *options, *written, bags / 'good', blocked.path) as process,
+    ):
+        blocked.reader()
+        if number == signal.SIGINT:
+            os.killpg(process.pid, number)  # as a terminal does
+        else:
+            process.send_signal(number)
+        output, errors = process.communicate(timeout=DEADLINE)
+        assert (process.returncode, output, errors) == (130, '', '')
+        wait_until(lambda: not blocked.readers(), 'the end of the processes')
+    assert list(reports.iterdir()) == []
+
+
+def test_ctrl_c_is_for_the_process_that_ends_the_others(bags, tmp_path):
+    with ExitStack() as stack:
+        with BlockedBag(SERVO, tmp_path / 'blocked') as blocked:
+            process = stack.enter_context(
+                running_gearkin('validate', '--jobs', 2, bags / 'good', blocked.path)
+            )
+            os.kill(blocked.reader(), signal.SIGINT)
+        _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 2
+    assert errors.startswith(f'gearkin: {blocked.path}')  # which its reader found empty
+    assert errors.count('\n') == 1
+
+
+def test_processes_end_with_one_that_is_killed(bags, tmp_path):
+    with (
+        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
+        running_gearkin('validate', '--jobs', 2, bags / 'good', blocked.path) as process,
+    ):
+        blocked.reader()
+        process.kill()
+        wait_until(lambda: not blocked.readers(), 'the end of the processes')
+
+
+# compute.
+
+
+@pytest.mark.parametrize(
+    ('name', 'options'),
+    [
+        ('rotor_only', []),
+        ('rotor_only', ['--storage', 'sqlite3', '--compression', 'zstd']),
+        ('wrong', ['--compression', 'zstd']),
+        ('namespaced', []),
+    ],
+)
+def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
+    out = tmp_path / 'out'
+    done = gearkin('compute', bags / name, out, *options)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert done.stdout == (
+        f'{out}: {SAMPLES} outputs for {SAMPLES} rotor states, 0 other messages copied\n'
+    )
+    done = gearkin('validate', out, *EXACT)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    namespace = '/arm' if name == 'namespaced' else ''
+    for topic in ('output_state', 'body_poses'):
+        assert found[f'{namespace}/{topic}: compared'] == str(SAMPLES)
+
+
+@pytest.mark.parametrize(('bad', 'code'), [(0, 0), (5, 0), (6, 1)])
+def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code, tmp_path):
+    with BagWriter(source := tmp_path / 'source') as writer:
+        writer.add_topic('/rotor_state', JOINT_STATE)
+        for k in range(10):
+            position = 1e17 if k < bad else 1.0
+            writer.write('/rotor_state', k, rotor_bytes(k + 1, position=[position]))
+    done = gearkin('compute', source, tmp_path / 'out')
+    assert done.returncode == code
+    assert f'{10 - bad} outputs for 10 rotor states' in done.stdout
+    complaint = f'gearkin: {source}: most messages on /rotor_state were rejected\n'
+    assert done.stderr == (complaint if code else '')
+    with Bag(tmp_path / 'out') as bag:
+        assert bag.message_count == 10 + 2 * (10 - bad)
+
+
+def test_compute_says_what_it_left_out_and_what_it_did_not_understand(tmp_path):
+    types = [('/rotor_state', JOINT_STATE), ('/grip', 'a/msg/Grip'), ('/nod', 'a/msg/Nod')]
+    messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0])), ('/nod', 2, b'who knows')]
+    bag = old_recording(tmp_path / 'b.db3', types, messages)
+    undefined = 'copied without a definition of the type'
+    for number, (options, said) in enumerate((
+        ([], [f'{undefined}: /grip, /nod']),
+        (['--topics', '/nod'], ['left out: /grip', f'{undefined}: /nod']),
+        (['--topics'], ['left out: /grip, /nod']),
+    )):  # fmt: skip
+        out = tmp_path / f'out {number}'
+        done = gearkin('compute', bag, out, *options)
+        assert (done.returncode, done.stderr) == (0, '')
+        assert done.stdout.splitlines() == [
+            f'{out}: 1 outputs for 1 rotor states, {1 - number // 2} other messages copied',
+            *said,
+        ]
+
+
+def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
+    types = [('/rotor_state', JOINT_STATE), ('/text', 'std_msgs/msg/String')]
+    messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0]))]
+    bag = old_recording(tmp_path / 'b.db3', types, messages)
+    with closing(sqlite3.connect(bag)) as rows, rows:
+        rows.execute("UPDATE topics SET serialization_format = 'json' WHERE id = 2")
+    given = ('compute', bag, tmp_path / 'out')
+    done = gearkin(*given)
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == (
+        f"gearkin: {bag}: /text cannot be copied: its messages are 'json', not CDR; "
+        '--topics says which topics to copy\n'
+    )
+    assert gearkin(*given, '--topics').returncode == 0
+
+
+def test_compute_uses_the_config_beside_the_bag(tmp_path):
+    out = tmp_path / 'out'
+    assert gearkin('compute', SINGLE_TURN, out).returncode == 0
+    assert gearkin('validate', out, '--config', SINGLE_TURN / 'actuator.yaml').returncode == 0
+    assert gearkin('validate', out).returncode == 1
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
+    folder = tmp_path / 'results'
+    folder.mkdir()
+    with (
+        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
+        running_gearkin('compute', blocked.path, folder / 'out') as process,
+    ):
+        blocked.reader()
+        assert list(folder.iterdir())  # it has begun to write
+        process.send_signal(number)
+        output, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, output, errors) == (130, '', '')
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ('name', 'out', 'cause'),
+    [
+        ('good', 'there', 'there: exists already'),
+        ('good', 'nowhere/out', 'No such file or directory'),
+        ('garbage.mcap', 'out', 'garbage.mcap: not a bag of a known kind'),
+        ('missing', 'out', 'missing: no such file or folder'),
+        ('left_and_right', 'out', 'left_and_right: which topic is rotor_state? /left/rotor_state'),
+    ],
+)
+def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags, tmp_path):
+    with BagWriter(tmp_path / 'left_and_right') as writer:
+        for side in ('left', 'right'):
+            writer.add_topic(f'/{side}/rotor_state', JOINT_STATE)
+    if name != 'left_and_right':
+        shutil.rmtree(tmp_path / 'left_and_right')
+    (tmp_path / 'there').mkdir()
+    before = sorted(tmp_path.rglob('*'))
+    bag = (tmp_path if name == 'left_and_right' else bags) / name
+    done = gearkin('compute', bag, tmp_path / out)
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr.count('\n') == 1
+    assert cause in done.stderr
+    assert sorted(tmp_path.rglob('*')) == before
+
+
+# The live node.
+
+
+def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(bags):
+    """The recorded outputs are wrong; the file of a bag that is none is told on the way."""
+    bag = bags / 'wrong'
+    bad = bags / 'garbage.mcap'
+    done = gearkin('validate', '--live', bag, bad)
+    assert done.returncode == 2
+    assert done.stderr == f'gearkin: {bad}: not a bag of a known kind\n'
+    assert f'{bag}: verdict: passed\n' in done.stdout
+    assert f'{bag}: /output_state: compared: {SAMPLES}\n' in done.stdout
+
+
+def test_a_shipped_bag_validates_live():
+    done = gearkin('validate', '--live', SINGLE_TURN)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    assert found['/output_state: compared'] == found['/body_poses: compared'] == '2500'
+
+
+def test_a_replay_tells_what_it_did(bags):
+    done = gearkin('replay', bags / 'good', '--no-wait', '--rate', 10, '--start-offset', 0.1)
+    assert (done.returncode, done.stderr) == (0, '')
+    sent = int(re.fullmatch(r'(\d+) messages, at most [\d.]+ ms late\n', done.stdout)[1])
+    assert 200 < sent < SAMPLES
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        (['missing.mcap'], 'missing.mcap: no such file or folder'),
+        (['garbage.mcap'], 'garbage.mcap: not a bag of a known kind'),
+        (['good', '--rate', '0'], 'rate must be positive'),
+        (['good', '--rate', '-1'], 'rate must be positive'),
+        (['good', '--start-offset', '-1'], 'start offset must not be negative'),
+        (['good', '--clock', '-1'], 'clock must not be negative'),
+        (['good', '--start-offset', '1000'], 'good: nothing to play'),
+        (['good', '--topics', '/nope'], 'good: no /nope in it'),
+    ],
+)
+def test_a_replay_that_cannot_be_done_gets_one_line_and_code_2(
+    arguments, cause, bags, monkeypatch, capsys
+):
+    monkeypatch.chdir(bags)
+    assert main(['replay', '--no-wait', *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.count('\n') == 1
+    assert cause in captured.err
+
+
+@pytest.mark.parametrize('command', ['validate', 'compute', 'replay'])
+def test_help_tells_the_arguments(command, capsys):
+    with pytest.raises(SystemExit) as exit_:
+        main([command, '--help'])
+    assert exit_.value.code == 0
+    assert 'BAG' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize('arguments', [['validate', 'good'], ['compute', 'rotor_only', 'out']])
+def test_recordings_need_neither_ros_nor_dask_nor_plotly(arguments, bags, tmp_path):
+    missing = 'for name in ("rclpy", "distributed", "dask", "plotly"): sys.modules[name] = None'
+    words = [tmp_path / 'out' if word == 'out' else word for word in arguments]
+    done = subprocess.run(
+        [sys.executable, '-c', f'import sys\n{missing}\n{GEARKIN}', *words],
+        cwd=bags,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr

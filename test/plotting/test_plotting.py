@@ -1,0 +1,258 @@
+"""What is drawn, as matplotlib gets it, against 50-digit and matrix-method motion."""
+
+import math
+from io import BytesIO
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import oracle
+import pytest
+from properties import numbers_of
+
+from gear_kinematics import plotting
+from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
+from gear_kinematics.shape.outlines import bodies
+from gear_kinematics.state.trajectory import Trajectory
+
+figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
+
+from PIL import Image  # noqa: E402, comes with matplotlib
+
+from gear_kinematics.plotting.mechanism import Bodies, Centres  # noqa: E402
+
+MODULE = 0.0005  # m
+PNG = Path('figure.png')
+
+
+@pytest.fixture
+def figures(monkeypatch) -> list:
+    """Return the figures that are made."""
+    made = []
+
+    class Kept(figure_module.Figure):
+        def __init__(self, *arguments, **options):
+            super().__init__(*arguments, **options)
+            made.append(self)
+
+    monkeypatch.setattr(figure_module, 'Figure', Kept)
+    return made
+
+
+def corners(patch) -> list[np.ndarray]:
+    """The polygons of a patch, each without the point that closes it."""
+    return [polygon[:-1] for polygon in patch.get_path().to_polygons(closed_only=False)]
+
+
+def middle(polygon) -> np.ndarray:
+    """Of points that are spread evenly round it."""
+    return np.mean(polygon, axis=0)
+
+
+@pytest.mark.parametrize('rotor_angle', [0.7, 1234.5])
+def test_bodies_and_centres_are_drawn_where_the_motion_says(actuator, rotor_angle):
+    e = actuator.eccentricity
+    expected = oracle.expected_motion(numbers_of(actuator), oracle.rotor_angle_of(rotor_angle))
+    for k, motion in enumerate(expected.branches):
+        axes = figure_module.Figure().add_subplot()
+        drawn, centres = Bodies(axes, actuator, MODULE, k), Centres(axes, actuator, k)
+        drawn.show(split_turns(rotor_angle))
+        centres.show(split_turns(rotor_angle))
+        o3, o4 = (
+            np.array([float(x) for x in point[:2]])
+            for point in (motion.satellite_centre, motion.oldham_centre)
+        )
+        satellite, coupling = corners(drawn.patches['satellite']), corners(drawn.patches['oldham'])
+        assert middle(satellite[0]) == pytest.approx(o3, abs=1e-12)
+        assert middle(coupling[1]) == pytest.approx(o4, abs=1e-12)
+        assert middle(corners(drawn.patches['rotor'])[0]) == pytest.approx(o3, abs=1e-12)
+        assert middle(corners(drawn.patches['stator'])[1]) == pytest.approx([0, 0], abs=1e-12)
+        # The mark of the satellite is on the x axis of its frame.
+        mark = middle(satellite[-1]) - o3
+        turned = math.atan2(mark[1], mark[0])
+        assert oracle.turn_angle_error(turned, expected.output_angle) <= 1e-9
+
+        ends = {name: line.get_xydata() for name, line in centres.lines.items()}
+        assert ends['e'] == pytest.approx(np.array([[0, 0], o3]) / e, abs=1e-12)
+        assert ends['x'] == pytest.approx(np.array([o3, o4]) / e, abs=1e-12)
+        assert ends['y'] == pytest.approx(np.array([[0, 0], o4]) / e, abs=1e-12)
+        assert centres.points['satellite'].get_xydata()[0] == pytest.approx(o3 / e, abs=1e-12)
+        assert centres.points['oldham'].get_xydata()[0] == pytest.approx(o4 / e, abs=1e-12)
+        # Each slot goes through O4, at a right angle to the other, and the circle too (Thales).
+        (a, b), (c, d) = ends['satellite slot'], ends['arm slot']
+        assert (b - a) @ (d - c) == pytest.approx(0.0, abs=1e-12)
+        for start, end in ((a, b), (c, d)):
+            assert np.linalg.det([end - start, o4 / e - start]) == pytest.approx(0.0, abs=1e-11)
+        radii = np.hypot(*(centres.circle.get_xydata() - o3 / 2 / e).T)
+        assert radii == pytest.approx(0.5, abs=1e-12)
+        assert np.hypot(*(o4 - o3 / 2)) == pytest.approx(0.5 * e, abs=1e-12)
+
+
+def test_scheme_shows_the_bodies_named_and_the_angles(actuator, figures):
+    plotting.scheme(actuator, MODULE, PNG, split_turns(math.radians(36.1)), 1)
+    [figure] = figures
+    left, right = figure.axes
+    assert len(left.patches) == 5
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == [
+        'ring gear', 'satellite', "rotor's cam", 'Oldham coupling', 'arm'
+    ]  # fmt: skip
+    title = left.get_title()
+    assert title == 'branch b, $z_k$ = 80, $z_s$ = 76\n$φ_2$ = 36.1°, $φ_5$ = −1.9°'
+    assert {text.get_text() for text in right.texts} == {
+        '$O_1$', '$O_3$', '$O_4$', '$e$', '$x$', '$y$'
+    }  # fmt: skip
+    # The whole ring gear is in the picture.
+    ring = corners(left.patches[0])[0]
+    (low, high), (bottom, top) = left.get_xlim(), left.get_ylim()
+    assert (low, bottom) < tuple(ring.min(axis=0))
+    assert (high, top) > tuple(ring.max(axis=0))
+
+
+@pytest.mark.parametrize('rotor_angle', [0.0, math.pi * 76 / 160, 2.0, -1.0])
+def test_labels_of_the_centres_do_not_lie_on_each_other(actuator, figures, rotor_angle):
+    """Also where two centres are in one place: O4 in O3, and O4 in O1."""
+    plotting.scheme(actuator, MODULE, PNG, split_turns(rotor_angle))
+    boxes = {
+        text.get_text(): text.get_window_extent()
+        for text in figures[0].axes[1].texts
+        if text.get_text().startswith('$O')
+    }
+    assert len(boxes) == 3
+    for name, box in boxes.items():
+        overlapping = [other for other in boxes if other > name and box.overlaps(boxes[other])]
+        assert not overlapping, name
+
+
+def test_roses_have_the_law_of_the_paper(actuator, figures):
+    """r = e cos(zk ψ/(zk - zs)), with as many petals as the greatest radii."""
+    moved = Trajectory.at_constant_speed(300.0, duration=0.05)
+    plotting.roses(actuator, PNG, moved)
+    [figure] = figures
+    assert [axes.get_title() for axes in figure.axes] == [
+        'branch a: 40 petals', 'branch b: 40 petals'
+    ]  # fmt: skip
+    state = matrix_method.solve(actuator, 300.0 * moved.time)
+    for k, axes in enumerate(figure.axes):
+        circle, whole, part = (line.get_xydata() for line in axes.get_lines())
+        assert np.hypot(*circle.T) == pytest.approx(1.1)
+        x, y = whole.T
+        radius, psi = np.hypot(x, y), np.arctan2(-x, y)
+        alpha = actuator.branches[k].cam_phase
+        assert radius == pytest.approx(1.1 * np.abs(np.cos(20.0 * psi - alpha)), abs=1e-9)
+        inner = radius[1:-1]
+        tips = (inner > 1.0999) & (inner >= radius[:-2]) & (inner > radius[2:])
+        assert np.count_nonzero(tips) + (radius[0] > 1.0999) == 40
+        assert part == pytest.approx(1e3 * state.oldham_centre[:, k], abs=1e-9)
+
+
+def test_roses_of_another_pair_close(figures):
+    mechanism = Mechanism(61, 58, 0.001, (Branch('a', 0.3),))
+    plotting.roses(mechanism, PNG)
+    [axes] = figures[0].axes
+    _, whole = (line.get_xydata() for line in axes.get_lines())
+    assert axes.get_title() == 'branch a: 61 petals'
+    assert whole[0] == pytest.approx(whole[-1], abs=1e-9)
+    assert np.max(np.hypot(*whole.T)) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_too_many_petals_are_refused():
+    with pytest.raises(ValueError, match='room for 1000 petals, not for 1001'):
+        plotting.roses(Mechanism(1001, 1000, 0.001, (Branch('a'),)), PNG)
+
+
+@pytest.mark.parametrize('by_angle', [False, True])
+def test_slides_are_those_of_the_matrix_method(actuator, figures, by_angle):
+    moved = Trajectory.at_constant_speed(-20.0)
+    plotting.slides(actuator, PNG, moved, by_angle=by_angle)
+    expected = matrix_method.solve(actuator, -20.0 * moved.time, -20.0)
+    along = np.degrees(-20.0 * moved.time) if by_angle else moved.time
+    slides, speeds = figures[0].axes
+    assert speeds.get_xlabel() == ('rotor angle, °, at -20 rad/s' if by_angle else 'time, s')
+    for axes, kinds in (
+        (slides, ('satellite_slide', 'arm_slide')),
+        (speeds, ('satellite_slide_velocity', 'arm_slide_velocity')),
+    ):
+        curves = {line.get_label(): line.get_data() for line in axes.get_lines()}
+        assert set(curves) == {
+            f'{branch}, on the {part}' for branch in 'ab' for part in ('satellite', 'arm')
+        }
+        for k, branch in enumerate('ab'):
+            for part, field in zip(('satellite', 'arm'), kinds, strict=True):
+                x, y = curves[f'{branch}, on the {part}']
+                assert x == pytest.approx(along, abs=1e-9)
+                assert y == pytest.approx(1e3 * getattr(expected, field)[:, k], abs=1e-6)
+
+
+LONG = 'far_end_of_the_left_elbow'  # 25 letters
+
+
+@pytest.mark.parametrize('names', [('a', 'b'), (LONG,), ('left', LONG, 'c'), tuple('abcde')])
+def test_nothing_is_cut_off_whatever_the_branches_are_called(figures, names):
+    mechanism = Mechanism(80, 76, 0.0011, tuple(Branch(name) for name in names))
+    turn = Trajectory.at_constant_speed(20.0)
+    for picture in (
+        plotting.scheme(mechanism, MODULE, PNG, split_turns(-123.456), len(names) // 2),
+        plotting.roses(mechanism, PNG),
+        plotting.slides(mechanism, PNG, turn, by_angle=True),
+    ):
+        pixels = np.asarray(Image.open(BytesIO(picture)).convert('L'))
+        edges = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
+        assert edges.min() == 255
+    for figure in figures:
+        titles = [axes.title.get_window_extent() for axes in figure.axes]
+        assert not any(a.overlaps(b) for a, b in pairwise(titles) if a.width and b.width)
+    labels = [text.get_text() for text in figures[-1].legends[0].get_texts()]
+    assert labels == [f'{name}, on the {part}' for name in names for part in ('satellite', 'arm')]
+
+
+def test_output_turns_by_the_ratio(actuator, figures):
+    turns, angle = split_turns(np.array([0.0, 1.0, 50.0]))
+    moved = Trajectory(np.array([0.0, 0.1, 0.3]), turns, angle, np.array([1.0, -2.0, 300.0]))
+    plotting.output(actuator, PNG, moved)
+    angles, rates = (axes.get_lines()[0].get_data() for axes in figures[0].axes)
+    for curve in (angles, rates):
+        assert curve[0] == pytest.approx([0.0, 0.1, 0.3])
+    degree = math.pi / 180.0
+    assert angles[1] == pytest.approx([0.0, -1.0 / 19 / degree, -50.0 / 19 / degree])
+    assert rates[1] == pytest.approx([-1.0 / 19 / degree, 2.0 / 19 / degree, -300 / 19 / degree])
+
+
+@pytest.fixture(scope='module')
+def loop():
+    """Return a whole turn of the output in few frames: 19 turns of the rotor, and they are 20."""
+    return Trajectory.at_constant_speed(19.0, turns=19).every(2.0 * math.pi / 20, closed=True)
+
+
+def test_frames_of_a_gif_show_the_bodies_in_turn(actuator, loop):
+    """At the place of the satellite's mark there is ground, and on the other side there is not."""
+    told = []
+    content = plotting.animate(
+        actuator, MODULE, Path('a.gif'), loop, fps=25, width=300, progress=told.append
+    )
+    assert told == list(range(1, 21))
+    image = Image.open(BytesIO(content))
+    assert (image.n_frames, image.size, image.info['loop']) == (20, (300, 200), 0)
+    shapes = bodies(actuator, MODULE)
+    mark = middle(shapes['satellite'][-1])[0]
+    pixels_per_m = 100.0 / (1.02 * np.max(shapes['stator'][0]))
+    numbers = numbers_of(actuator)
+    for frame in range(20):
+        image.seek(frame)
+        assert image.info['duration'] == 40
+        colours = image.convert('RGB')
+        angle = oracle.rotor_angle_of(19.0 * 2.0 * math.pi * frame / 20)
+        expected = oracle.expected_motion(numbers, angle)
+        turn = float(expected.output_angle)
+        centre = np.array([float(x) for x in expected.branches[0].satellite_centre[:2]])
+        direction = np.array([math.cos(turn), math.sin(turn)])
+        for sign, colour in ((1.0, (255, 255, 255)), (-1.0, (128, 204, 255))):
+            x, y = pixels_per_m * (centre + sign * mark * direction)
+            assert colours.getpixel((round(99.5 + x), round(99.5 - y))) == colour
+
+
+def test_what_stands_still_is_one_long_frame(actuator):
+    still = Trajectory(*(np.zeros(5) for _ in range(4)))
+    image = Image.open(
+        BytesIO(plotting.animate(actuator, MODULE, Path('a.GIF'), still, fps=10, width=100))
+    )
+    assert (image.n_frames, image.info['duration']) == (1, 500)

@@ -1,0 +1,76 @@
+"""The benchmarks run, and what they compare with does the same job."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import oracle
+import pytest
+import textbook_node
+from mounts import with_mounts
+
+BENCHMARK = Path(__file__).resolve().parents[2] / 'benchmark'
+ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        ['kinematics.py', '--samples', '1000', '--rounds', '1'],
+        ['compute.py', '--messages', '300', '--rounds', '1'],
+        ['validation.py', '--messages', '300', '--rounds', '1', '--memory', '300'],
+    ],
+    ids=lambda arguments: arguments[0],
+)
+def test_benchmark_prints_its_results_as_json(arguments):
+    assert finite_numbers(results_of(*arguments))
+
+
+def test_benchmark_of_the_live_node_loses_none_of_a_hundred_messages():
+    results = results_of('live.py', '--rates', '1000', '--seconds', '0.1', '--rounds', '1')
+    assert finite_numbers(results)
+    assert results['rates']['1000']['node']['delivered'] == 1.0
+
+
+def test_driver_runs_where_it_cannot_ask_for_exact_sleep(tmp_path):
+    """Some containers have a /proc that is read-only."""
+    program = sys.executable, BENCHMARK / 'rotor_driver.py'
+    done = subprocess.run(
+        with_mounts('-o remount,bind,ro /proc', *program),
+        stdin=subprocess.DEVNULL, check=False, capture_output=True, text=True, timeout=60.0,
+        env=os.environ | {'ROS_LOG_DIR': str(tmp_path)},
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, '')
+    assert done.stdout == '{}\n', 'it is ready'
+
+
+def results_of(program, *options):
+    """Run a benchmark and take what it prints."""
+    done = subprocess.run(
+        [sys.executable, str(BENCHMARK / program), *options, '--json'],
+        check=True, capture_output=True, text=True, timeout=120.0,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+def finite_numbers(results) -> list[float]:
+    """Give every number, each of which is finite."""
+    if isinstance(results, dict | list):
+        parts = results.values() if isinstance(results, dict) else results
+        return [number for part in parts for number in finite_numbers(part)]
+    assert not isinstance(results, float) or math.isfinite(results)
+    return [] if isinstance(results, str) else [results]
+
+
+@pytest.mark.parametrize('rotor_angle', [0.0, 1.0, -30.0, 314.0])
+def test_textbook_node_moves_as_the_mechanism_does(rotor_angle):
+    expected = oracle.expected_motion(ACTUATOR, oracle.rotor_angle_of(rotor_angle))
+    output_angle = textbook_node.output_angle(rotor_angle)
+    assert oracle.angle_error(output_angle, expected.output_angle) <= 1e-12
+    centres = [branch.satellite_centre for branch in expected.branches]
+    centres += [branch.oldham_centre for branch in expected.branches]
+    for centre, wanted in zip(textbook_node.centres(rotor_angle), centres, strict=True):
+        assert oracle.point_error(centre, wanted, ACTUATOR.eccentricity) <= 1e-12

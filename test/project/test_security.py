@@ -1,0 +1,462 @@
+"""What a stranger on the DDS domain, or one who crafts a bag or a config, cannot do.
+
+docs/security.md says what each test stands for.
+"""
+
+import io
+import json
+import os
+import re
+import shutil
+import sqlite3
+import stat
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+import yaml
+from blocked_bags import DEADLINE, GEARKIN
+from live import live_node
+from rosbags import rosbag1
+from rosbags.typesys import Stores, get_typestore
+
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.finding import find_bags
+from gear_kinematics.commands import cli, output
+from gear_kinematics.ros.replay import ReplayError, play
+from gear_kinematics.state import parameters
+
+ROOT = Path(__file__).resolve().parents[2]
+BAG = ROOT / 'bags/servo_point_to_point'
+POLICY = ROOT / 'policies/gear_state_publisher.policy.xml'
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+ESCAPE = '\x1b[2J\x1b]0;owned\x07'
+"""Clears a terminal and renames its window."""
+
+
+# The access-control policy.
+
+
+def rules(namespace: str = '/') -> set[tuple[str, str]]:
+    """Give the rules of the policy for a node in a namespace, as verb and full name."""
+    root = ET.parse(POLICY).getroot()  # noqa: S314, the project's own file
+    [profile] = root.iterfind('enclaves/enclave/profiles/profile')
+    places = {'/': '', '~': f'{namespace.rstrip("/")}/{profile.get("node")}'}
+    return {
+        (verb, places.get(name.text[0], f'{namespace.rstrip("/")}/') + name.text.lstrip('~'))
+        for group in profile
+        for verb in group.attrib
+        for name in group
+    }
+
+
+def dds_topics(rules: set[tuple[str, str]]) -> tuple[set[str], set[str]]:
+    """Give the DDS topics that rules let a node write and read, by ROS 2's naming of topics."""
+    written, read = set(), set()
+    for verb, name in rules:
+        if verb == 'publish':
+            written.add(f'rt{name}')
+        elif verb == 'subscribe':
+            read.add(f'rt{name}')
+        else:
+            assert verb == 'reply'
+            written.add(f'rr{name}Reply')
+            read.add(f'rq{name}Request')
+    return written, read
+
+
+@pytest.fixture(scope='module')
+def live(tmp_path_factory):
+    with live_node(tmp_path_factory.mktemp('node')) as live:
+        live.peer.connect()
+        live.peer.status()  # all that the node opens at its start is open by now
+        yield live
+
+
+def endpoints(live) -> tuple[set[str], set[str]]:
+    """Give the DDS topics that the node writes and reads, as access control sees them."""
+    node, who = live.peer.node, ('gear_state_publisher', live.peer.namespace)
+    if who not in node.get_node_names_and_namespaces():
+        return set(), set()
+    written = node.get_publisher_names_and_types_by_node(*who, no_demangle=True)
+    read = node.get_subscriber_names_and_types_by_node(*who, no_demangle=True)
+    return set(dict(written)), set(dict(read))
+
+
+def test_policy_lists_exactly_what_the_node_offers_and_uses(live):
+    written, read = dds_topics(rules(live.peer.namespace))
+
+    def all_there():
+        found = endpoints(live)
+        return written <= found[0] and read <= found[1]
+
+    live.peer.wait_until(all_there, f'{sorted(written | read)}')
+    assert endpoints(live) == (written, read)
+
+
+def test_simulated_time_needs_the_clock_besides(live):
+    before, after = endpoints(live)
+    assert live.peer.set(use_sim_time=True).successful
+    live.peer.wait_until(lambda: 'rt/clock' in endpoints(live)[1], '/clock')
+    assert endpoints(live) == (before, after | {'rt/clock'})
+
+
+@pytest.mark.parametrize('name', ['frame_prefix', 'output_joint'])
+def test_names_that_xml_cannot_hold_are_refused(live, name):
+    result = live.peer.set(**{name: ESCAPE})
+    assert not result.successful
+    assert name in result.reason
+    ET.fromstring(live.peer.description().encode())  # noqa: S314, our node's
+
+
+def test_policy_is_one_plain_profile():
+    root = ET.parse(POLICY).getroot()  # noqa: S314, the project's own file
+    assert (root.tag, root.attrib) == ('policy', {'version': '0.2.0'})
+    [enclave] = root.iterfind('enclaves/enclave')
+    assert enclave.attrib == {'path': '/gear_state_publisher'}
+    [profile] = enclave.iterfind('profiles/profile')
+    assert profile.attrib == {'ns': '/', 'node': 'gear_state_publisher'}
+    verbs = {'topics': {'subscribe', 'publish'}, 'services': {'reply'}}
+    names = []
+    for group in profile:
+        assert set(group.attrib) <= verbs[group.tag]
+        assert set(group.attrib.values()) == {'ALLOW'}
+        for name in group:
+            assert name.tag == group.tag.removesuffix('s')
+            assert re.fullmatch('(/|~/)?[a-z_]+', name.text), 'a wildcard would allow more'
+            names.append(name.text)
+    assert len(names) == len(set(names)) == len(rules())
+
+
+@pytest.mark.filterwarnings('ignore::DeprecationWarning')
+def test_sros2_makes_of_the_policy_what_it_says(tmp_path):
+    """Needs a system ROS: the wheels have no sros2."""
+    pytest.importorskip('sros2', reason='sros2 is not installed')
+    from sros2 import keystore  # noqa: PLC0415, see above
+
+    enclave = '/gear_state_publisher'
+    keystore.create_keystore(tmp_path / 'keys')
+    keystore.create_enclave(tmp_path / 'keys', enclave)
+    keystore.create_permission(tmp_path / 'keys', enclave, POLICY)
+    path = tmp_path / f'keys/enclaves/{enclave}/permissions.xml'
+    grant = ET.parse(path).getroot().find('permissions/grant')  # noqa: S314, see above
+    allowed = [
+        {name.text for name in grant.iterfind(f'allow_rule/{verb}/topics/topic')}
+        for verb in ('publish', 'subscribe')
+    ]
+    # The graph itself goes over one topic more, which sros2 adds.
+    assert allowed == [topics | {'ros_discovery_info'} for topics in dds_topics(rules())]
+    assert grant.findtext('default') == 'DENY'
+    assert grant.find('deny_rule') is None
+
+
+# Crafted configs and metadata.
+
+
+def node_file(path: Path, text: str) -> Path:
+    path.write_text(f'gear_state_publisher: {{ros__parameters: {{{text}}}}}')
+    return path
+
+
+def bag_with_metadata(path: Path, text: str) -> Path:
+    shutil.copytree(BAG, path)
+    with (path / 'metadata.yaml').open('a') as file:
+        file.write(f'\n{text}\n')
+    return path
+
+
+def test_yaml_makes_no_objects(tmp_path):
+    trace = tmp_path / 'trace'
+    call = f"!!python/object/apply:os.mkdir ['{trace}']"
+    with pytest.raises(parameters.ConfigError, match='could not determine a constructor'):
+        parameters.load(node_file(tmp_path / 'config.yaml', f'rotor_joint: {call}'))
+    with pytest.raises(BagError, match='could not determine a constructor'):
+        Bag(bag_with_metadata(tmp_path / 'bag', f'more: {call}'))
+    assert not trace.exists()
+
+
+@pytest.mark.parametrize(
+    ('text', 'cause'),
+    [
+        ('x: &a [rotor], rotor_joint: *a', 'aliases are not supported'),  # as by the node
+        ('x: ' + '[' * 10_000, 'recursion'),
+        ('x: 2026-13-01', 'month'),
+    ],
+    ids=['alias', 'depth', 'date'],
+)
+def test_configs_cannot_say_endlessly_much(text, cause, tmp_path):
+    path = node_file(tmp_path / 'config.yaml', text)
+    with pytest.raises(parameters.ConfigError, match=cause) as caught:
+        parameters.load(path)
+    assert str(caught.value).startswith(f'{path}: not YAML: ')
+
+
+def merged(levels: int) -> str:
+    """Give YAML whose last mapping has 9 to the power of so many keys before they are united."""
+    lines = ['- &a0 {k: 1}']
+    lines += [f'- &a{k} {{<<: [{", ".join([f"*a{k - 1}"] * 9)}]}}' for k in range(1, levels + 1)]
+    return '\n'.join(lines)
+
+
+def test_metadata_cannot_say_endlessly_much(tmp_path):
+    bomb = 'more:\n' + merged(3)
+    assert len(yaml.safe_load(bomb)['more']) == 4
+    with pytest.raises(BagError, match='2002:merge'):
+        Bag(bag_with_metadata(tmp_path / 'bag', bomb))
+
+
+def test_quality_of_a_topic_cannot_say_endlessly_much(tmp_path, capsys):
+    path = crafted_database(tmp_path / 'b.db3', name='/motor', qos=merged(3))
+    assert cli.main(['compute', str(path), str(tmp_path / 'out')]) == 2
+    assert '2002:merge' in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_plain_aliases_in_metadata_are_read(tmp_path):
+    bag = bag_with_metadata(tmp_path / 'bag', 'more: [&a {b: c}, *a]')
+    assert Bag(bag).topics == Bag(BAG).topics
+
+
+# Crafted bags.
+
+
+def crafted_database(path: Path, *, name='/rotor_state', kind=JOINT_STATE, qos='') -> Path:
+    """Make a bag of the oldest schema with one topic and one message."""
+    with closing(sqlite3.connect(path)) as database, database:
+        database.execute(
+            'CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT,'
+            ' serialization_format TEXT, offered_qos_profiles TEXT)'
+        )
+        database.execute(
+            'CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER,'
+            ' timestamp INTEGER, data BLOB)'
+        )
+        database.execute("INSERT INTO topics VALUES (1, ?, ?, 'cdr', ?)", (name, kind, qos))
+        database.execute("INSERT INTO messages VALUES (1, 1, 1, X'00010000')")
+    return path
+
+
+def test_a_link_in_a_bag_is_followed_and_shows_nothing_but_bags(tmp_path):
+    bag = Path(shutil.copytree(BAG, tmp_path / 'bag'))
+    [file] = bag.glob('*.mcap*')
+    file.unlink()
+    file.symlink_to(BAG / file.name)
+    with Bag(bag) as linked:
+        assert sum(1 for _ in linked.messages(linked.topics)) == linked.message_count
+    (tmp_path / 'secret').write_text('password')
+    for place in (tmp_path / 'secret', '/dev/zero'):
+        file.unlink()
+        file.symlink_to(place)
+        with Bag(bag) as linked, pytest.raises(BagError) as caught:
+            next(linked.messages(linked.topics))
+        assert str(caught.value) == f'{file}: not a bag of a known kind'
+
+
+@pytest.mark.timeout(20)
+def test_metadata_without_end_is_not_read(tmp_path):
+    path = tmp_path / 'metadata.yaml'
+    path.symlink_to('/dev/zero')
+    with pytest.raises(BagError, match='not a regular file'):
+        Bag(tmp_path)
+
+
+@pytest.mark.parametrize('table', ['topics', 'messages'])
+def test_a_database_is_not_asked_for_what_it_makes_up(table, tmp_path):
+    """A view can have rows without end, and no signal interrupts sqlite."""
+    path = crafted_database(tmp_path / 'b.db3')
+    with closing(sqlite3.connect(path)) as database:
+        database.execute(f'ALTER TABLE {table} RENAME TO real')
+        database.execute(f'CREATE VIEW {table} AS SELECT * FROM real')  # noqa: S608, our names
+    with pytest.raises(BagError, match='a view stands'), Bag(path) as bag:
+        list(bag.messages(bag.topics))
+
+
+@pytest.mark.parametrize('compression', ['BZ2', 'LZ4'])
+def test_a_chunk_of_ros1_that_grows_is_refused(compression, tmp_path, monkeypatch):
+    path, size = tmp_path / 'b.bag', 2**20
+    writer = rosbag1.Writer(path)
+    writer.set_compression(rosbag1.Writer.CompressionFormat[compression])
+    with writer:
+        connection = writer.add_connection(
+            '/blank', 'std_msgs/msg/String', typestore=get_typestore(Stores.ROS1_NOETIC)
+        )
+        writer.write(connection, 1, size.to_bytes(4, 'little') + bytes(size))
+    assert path.stat().st_size < size / 100
+    monkeypatch.setattr('gear_kinematics.bag.limits._SPARE_SIZE', size // 2)
+    with pytest.raises(BagError, match='a chunk is cut off or too large'), Bag(path) as bag:
+        list(bag.messages(bag.topics))
+
+
+@pytest.mark.timeout(20)
+def test_links_among_bags_lead_in_no_circles(tmp_path):
+    bag = shutil.copytree(BAG, tmp_path / 'bag')
+    for name in 'ab':  # two of them make 2^40 paths
+        (tmp_path / name).symlink_to('.')
+    (tmp_path / 'latest').symlink_to(bag.name)
+    assert find_bags([str(tmp_path)]) == [bag, tmp_path / 'latest']
+
+
+@pytest.mark.parametrize('kind', ['trap/msg/Type', '.trap/msg/Type', 'trap', ''])
+def test_a_type_has_nothing_imported_but_messages(kind, tmp_path, monkeypatch):
+    (tmp_path / 'trap.py').write_text('')
+    monkeypatch.syspath_prepend(tmp_path)
+    path = crafted_database(tmp_path / 'b.db3', name='/x', kind=kind)
+    with Bag(path) as bag, pytest.raises(ReplayError, match='no message of that name'):
+        play(bag, {'/x': '/x'}, wait=0.0)
+    assert 'trap' not in sys.modules
+
+
+# Names on the terminal.
+
+
+@pytest.mark.parametrize('command', ['validate', 'compute', 'replay'])
+def test_names_of_topics_do_not_reach_the_terminal_raw(command, tmp_path, capsys):
+    path = crafted_database(tmp_path / 'b.db3', name=f'/a{ESCAPE}')
+    with closing(sqlite3.connect(path)) as database, database:
+        database.execute("INSERT INTO topics SELECT 2, name || 'b', type, 'cdr', '' FROM topics")
+    out = [tmp_path / 'out'] if command == 'compute' else []
+    code = cli.main([command, *map(str, [path, *out])])
+    written = ''.join(capsys.readouterr())
+    assert code == 2
+    assert r'/a\x1b[2J\x1b]0;owned\x07' in written
+    assert not [char for char in written if not char.isprintable() and char != '\n']
+
+
+def test_names_of_files_do_not_reach_the_terminal_raw(monkeypatch):
+    class Terminal(io.StringIO):
+        def isatty(self):
+            return True
+
+    screen = Terminal()
+    monkeypatch.setattr('sys.stderr', screen)
+    monkeypatch.setenv('COLUMNS', '200')
+    with output.message_progress(f'[/x]{ESCAPE}') as progress:
+        progress(1, 2)
+    assert r'[/x]\x1b[2J\x1b]0;owned\x07' in screen.getvalue()
+    assert ESCAPE not in screen.getvalue()
+
+
+# Files.
+
+
+def test_files_are_written_only_where_asked(tmp_path, monkeypatch):
+    bag = Path(shutil.copytree(BAG, tmp_path / 'bag'))
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv('HOME', str(tmp_path))
+    monkeypatch.setattr('tempfile.tempdir', str(tmp_path))
+    before = {path: path.read_bytes() for path in bag.iterdir()}
+    assert cli.main(['validate', 'bag', '--json', 'report.json']) == 0
+    assert cli.main(['compute', 'bag', 'out']) == 0
+    assert {path.name for path in tmp_path.iterdir()} == {'bag', 'report.json', 'out'}
+    assert {path: path.read_bytes() for path in bag.iterdir()} == before
+    assert json.loads(Path('report.json').read_text())['verdict'] == 'pass'
+
+
+def test_a_report_is_not_written_through_a_link_that_was_laid_for_it(tmp_path, capsys):
+    victim, target = tmp_path / 'victim', tmp_path / 'report.json'
+    victim.write_text('precious')
+    (tmp_path / f'.gearkin.{os.getpid()}.tmp').symlink_to(victim)
+    assert cli.main(['validate', str(BAG), '--json', str(target)]) == 2
+    assert str(target) in capsys.readouterr().err
+    assert victim.read_text() == 'precious'
+    assert not target.exists()
+
+
+def test_a_report_may_have_the_longest_name_there_is(tmp_path):
+    target = tmp_path / f'{"x" * 250}.json'
+    assert cli.main(['validate', str(BAG), '--json', str(target)]) == 0
+    assert list(tmp_path.iterdir()) == [target]
+    with pytest.raises(OSError, match='too long'):
+        target.with_name(f'x{target.name}').touch()
+
+
+@pytest.mark.parametrize('mode', [0o600, 0o664])
+def test_a_report_keeps_the_mode_of_the_one_it_replaces(mode, tmp_path):
+    target = tmp_path / 'report.json'
+    target.touch()
+    target.chmod(mode)
+    assert cli.main(['validate', str(BAG), '--json', str(target)]) == 0
+    assert json.loads(target.read_text())['verdict'] == 'pass'
+    assert stat.S_IMODE(target.stat().st_mode) == mode
+
+
+# The current folder, which may have come with a recording.
+
+
+@pytest.fixture
+def downloaded(tmp_path) -> Path:
+    """Return a folder with bags, and traps for who runs or obeys what else is there."""
+    folder = tmp_path / 'downloaded'
+    for name in ('one', 'two'):
+        shutil.copytree(BAG, folder / name)
+    installed = {name.partition('.')[0] for name in sys.modules if not name.startswith('_')}
+    for name in {'rclpy', 'sensor_msgs', 'sitecustomize'} | installed:
+        (folder / f'{name}.py').write_text("open('trap.sprung', 'w').close()\n")
+    for name in ('DEFAULT_FASTRTPS_PROFILES.xml', 'DEFAULT_FASTDDS_PROFILES.xml'):
+        os.mkfifo(folder / name)  # a reader hangs
+    return folder
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [['validate', '--jobs', '2', 'one', 'two'], ['validate', '--live', 'one'], ['demo']],
+    ids=['--jobs', '--live', 'demo'],
+)
+def test_nothing_in_the_current_folder_is_run_or_obeyed(
+    arguments, downloaded, tmp_path, monkeypatch
+):
+    monkeypatch.delenv('FASTRTPS_DEFAULT_PROFILES_FILE')
+    program = tmp_path / 'gearkin'  # a script, beside which Python looks and not in its folder
+    program.write_text(f"if __name__ == '__main__': {GEARKIN}")
+    done = subprocess.run(
+        [sys.executable, str(program), *arguments],
+        cwd=downloaded,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=DEADLINE,
+    )
+    assert done.returncode == 0, done.stderr
+    assert not (downloaded / 'trap.sprung').exists()
+
+
+@pytest.mark.parametrize('content', ['savefig.facecolor: ff0000', None], ids=['red', 'pipe'])
+def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, tmp_path):
+    pytest.importorskip('matplotlib')
+    for folder in ('clean', 'trapped'):
+        (tmp_path / folder).mkdir()
+    trap = tmp_path / 'trapped/matplotlibrc'
+    if content:
+        trap.write_text(content)
+    else:
+        os.mkfifo(trap)
+    clean, trapped = (
+        subprocess.run(
+            [sys.executable, '-c', GEARKIN, 'plot', 'scheme', 'scheme.svg'],
+            cwd=tmp_path / folder,
+            check=True,
+            timeout=DEADLINE,
+        )
+        and (tmp_path / folder / 'scheme.svg').read_bytes()
+        for folder in ('clean', 'trapped')
+    )
+    assert clean == trapped
+
+
+# What the documents claim.
+
+
+@pytest.mark.parametrize('name', ['docs/security.md', 'QUALITY_DECLARATION.md'])
+def test_evidence_is_there(name):
+    """Every test and file that a document cites is there."""
+    text = (ROOT / name).read_text('utf-8')
+    tests = '\n'.join(path.read_text('utf-8') for path in (ROOT / 'test').rglob('test_*.py'))
+    defined = set(re.findall(r'^def (test_\w+)\(', tests, re.MULTILINE))
+    cited = set(re.findall(r'`(test_\w+)`', text))
+    assert cited
+    assert cited <= defined
+    links = re.findall(r'\]\((?!http)([^)#]+)', text)
+    assert all((ROOT / name).parent.joinpath(link).exists() for link in links)

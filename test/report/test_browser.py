@@ -1,0 +1,200 @@
+"""The report in a browser: the mechanism moves, and is where 50 digits say."""
+
+import math
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import oracle
+import pytest
+import report_samples as samples
+
+from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.report import to_html
+from gear_kinematics.shape.outlines import bodies
+from gear_kinematics.validation.report import Series
+
+sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
+expect = sync_api.expect
+expect.set_options(timeout=30_000.0)  # a machine can be busy
+
+PIXEL = 1.0
+TIMES = [0.25 * k for k in range(41)]
+ANGLES = [0.3 * k**2 - 2.0 * k for k in range(38)] + [1e4, -1e7, 2.0**40]
+"""Of the rotor, rad: there and back, half turns in a step, and far away."""
+MECHANISMS = (
+    (Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))), 0.0005),
+    (Mechanism(11, 8, 0.004, (Branch('a', 0.4), Branch('b', 2.9), Branch('c', -1.3))), 0.0025),
+)
+"""Each with the module of its teeth."""
+
+
+@pytest.fixture(scope='module')
+def browser():
+    program = shutil.which('chromium') or shutil.which('google-chrome')
+    if program is None:
+        pytest.skip('no Chromium is installed')
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope='module')
+def tab(browser, tmp_path_factory):
+    series = Series(TIMES, ANGLES, [0.0] * 41, [0.0] * 41, [0.0] * 41)
+    reports = [
+        replace(samples.PASSING, series=series, mechanism=mechanism, module=module)
+        for mechanism, module in MECHANISMS
+    ]
+    path = tmp_path_factory.mktemp('page') / 'report.html'
+    path.write_text(to_html(reports), 'utf-8')
+    tab = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
+    tab.seen = []
+    tab.on('console', lambda message: tab.seen.append(message.text))
+    tab.on('pageerror', lambda error: tab.seen.append(str(error)))
+    tab.on('request', lambda request: tab.seen.append(request.url))
+    tab.goto(path.as_uri())
+    assert tab.seen == [path.as_uri()]
+    tab.seen.clear()
+    return tab
+
+
+@pytest.fixture(params=[0, 1], ids=['80-76', '11-8'])
+def report(tab, request):
+    """Give a mechanism with its module, and the section of the page that is about its bag."""
+    yield MECHANISMS[request.param], tab.locator(f'#bag-{request.param}')
+    assert tab.seen == []
+
+
+def select(section, sample):
+    section.locator('.figure').scroll_into_view_if_needed()  # that is when it is drawn
+    section.locator('input').fill(str(sample))
+    expect(section.locator('output')).to_have_text(f'{TIMES[sample]:.4f} s')
+
+
+def middles(section, selector):
+    """Find the middles of elements, px: (n, 2), y upwards."""
+    boxes = [element.bounding_box() for element in section.locator(selector).all()]
+    return np.array([[b['x'] + b['width'] / 2, -b['y'] - b['height'] / 2] for b in boxes])
+
+
+def assert_is_where_it_should_be(drawn_mechanism, section, sample):
+    mechanism, module = drawn_mechanism
+    phases = tuple((branch.cam_phase, 0.0) for branch in mechanism.branches)
+    numbers = oracle.Numbers(
+        mechanism.ring_teeth, mechanism.satellite_teeth, mechanism.eccentricity, phases
+    )
+    motion = oracle.expected_motion(numbers, oracle.rotor_angle_of(ANGLES[sample]))
+    rim = max(np.max(outline[:, 0]) for outline in bodies(mechanism, module)['stator'])
+    drawn = section.locator('use.stator').first.bounding_box()['width']
+    axes = middles(section, '.output_shaft.centre')
+    for body in ('satellite', 'oldham'):
+        centres = (middles(section, f'.{body}.centre') - axes) * 2 * rim / drawn
+        expected = [getattr(branch, f'{body}_centre') for branch in motion.branches]
+        assert len(centres) == len(expected)
+        for centre, point in zip(centres, expected, strict=True):
+            assert oracle.point_error(centre, point, 1.0) < PIXEL * 2 * rim / drawn
+    turns = section.locator('use.satellite').evaluate_all(
+        'all => all.map(one => [one.getScreenCTM().a, -one.getScreenCTM().b])'
+    )
+    assert len(turns) == len(mechanism.branches)
+    for cosine, sine in turns:
+        turn = math.atan2(sine, cosine)
+        assert oracle.turn_angle_error(turn, motion.output_angle) < PIXEL * 2 / drawn
+
+
+def plot(section):
+    """Find the area of the uppermost plot, px."""
+    return section.locator('.nsewdrag').first.bounding_box()
+
+
+def x_of(area, sample):
+    return area['x'] + area['width'] * TIMES[sample] / TIMES[-1]
+
+
+def test_slider_moves_the_mechanism(report):
+    for sample in (0, 7, 13, 22, 37, 38, 39, 40):
+        select(report[1], sample)
+        assert_is_where_it_should_be(*report, sample)
+
+
+def test_slider_moves_the_cursor_of_the_plots(report):
+    _, section = report
+    for sample in (5, 33):
+        select(section, sample)
+        cursor = section.locator('.shapelayer path').last.bounding_box()
+        assert cursor['x'] + cursor['width'] / 2 == pytest.approx(
+            x_of(plot(section), sample), abs=PIXEL
+        )
+        assert cursor['height'] > 4 * plot(section)['height']
+
+
+def test_cursor_in_the_plots_moves_the_mechanism(tab, report):
+    _, section = report
+    section.locator('.figure').scroll_into_view_if_needed()
+    area = plot(section)
+    for sample in (30, 11):
+        tab.mouse.move(x_of(area, sample), area['y'] + area['height'] / 2)
+        expect(section.locator('output')).to_have_text(f'{TIMES[sample]:.4f} s')
+        expect(section.locator('input')).to_have_value(str(sample))
+        assert_is_where_it_should_be(*report, sample)
+    tab.mouse.move(0, 0)
+
+
+def test_it_plays_until_it_is_paused(tab, report):
+    _, section = report
+    select(section, 3)
+    section.locator('select').select_option('1')
+    button = section.locator('.controls button')
+    button.click()
+    expect(section.locator('output')).not_to_have_text(f'{TIMES[3]:.4f} s')
+    expect(button).to_have_text('Pause')
+    button.click()
+    expect(button).to_have_text('Play')
+    two_frames = '() => new Promise(go => requestAnimationFrame(() => requestAnimationFrame(go)))'
+    tab.evaluate(two_frames)
+    there = section.locator('output').text_content()
+    tab.evaluate(two_frames)
+    assert section.locator('output').text_content() == there
+
+
+def test_it_plays_to_the_end_and_from_the_start_again(report):
+    _, section = report
+    select(section, 38)
+    section.locator('select').select_option('100')
+    button = section.locator('.controls button')
+    button.click()
+    expect(section.locator('input')).to_have_value('40')
+    expect(button).to_have_text('Play')
+    section.locator('select').select_option('0.0001')
+    button.click()
+    expect(section.locator('input')).to_have_value('0')
+    expect(button).to_have_text('Pause')
+    button.click()
+
+
+def test_dark_pages_keep_the_cursor(tab, report):
+    _, section = report
+    select(section, 9)
+    lines = section.locator('.shapelayer path')
+    count = lines.count()
+    light = lines.last.get_attribute('style')
+    tab.emulate_media(color_scheme='dark')
+    try:
+        expect(lines.last).not_to_have_attribute('style', light)
+        expect(lines).to_have_count(count)
+    finally:
+        tab.emulate_media(color_scheme='light')
+    expect(lines.last).to_have_attribute('style', light)
+
+
+def test_narrow_pages_need_no_scrolling_sideways(tab, report):
+    size = tab.viewport_size
+    tab.set_viewport_size({'width': 360, 'height': 640})
+    try:
+        expect(report[1].locator('.main-svg').first).to_have_js_property('clientWidth', 312)
+        width = tab.evaluate('document.documentElement.clientWidth')
+        expect(tab.locator('html')).to_have_js_property('scrollWidth', width)
+    finally:
+        tab.set_viewport_size(size)

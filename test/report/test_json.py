@@ -1,0 +1,135 @@
+"""The report as JSON, and its schema."""
+
+import copy
+import json
+import math
+import re
+from dataclasses import fields, replace
+from pathlib import Path
+
+import jsonschema
+import pytest
+import report_samples as samples
+
+from gear_kinematics.report import to_json
+from gear_kinematics.validation.report import BagReport
+
+DOCS = Path(__file__).resolve().parents[2] / 'docs'
+
+
+@pytest.fixture(scope='module')
+def schema():
+    return json.loads((DOCS / 'report.schema.json').read_text('utf-8'))
+
+
+@pytest.fixture(scope='module')
+def strict(schema):
+    """Admit what the schema names, and nothing besides."""
+    closed = copy.deepcopy(schema)
+    for part in (closed, *closed['$defs'].values()):
+        if 'properties' in part:
+            assert sorted(part['required']) == sorted(part['properties'])
+            part['additionalProperties'] = False
+    return jsonschema.Draft202012Validator(closed)
+
+
+def loads(text):
+    return json.loads(text, parse_constant=lambda name: pytest.fail(f'{name} is no JSON'))
+
+
+def test_schema_is_one(schema):
+    jsonschema.Draft202012Validator.check_schema(schema)
+
+
+def sane(report):
+    # A ratio that is none is refused; the hostile one is.
+    return replace(report, gear_ratio='-19')
+
+
+@pytest.mark.parametrize('report', samples.ALL, ids=lambda report: ascii(report.bag))
+def test_every_report_follows_the_schema(strict, report):
+    strict.validate(loads(to_json([sane(report)])))
+
+
+def test_many_and_no_bags_follow_the_schema(strict):
+    document = loads(to_json([sane(report) for report in samples.ALL]))
+    strict.validate(document)
+    assert len(document['bags']) == len(samples.ALL)
+    assert document['verdict'] == 'unusable'
+    none = loads(to_json([]))
+    strict.validate(none)
+    assert none['bags'] == []
+
+
+@pytest.mark.parametrize(
+    ('path', 'value'),
+    [
+        (['version'], 2),
+        (['verdict'], 'passed'),
+        (['bags', 0, 'messages'], -1),
+        (['bags', 0, 'rotor', 'rejected'], {'late': 1.5}),
+        (['bags', 0, 'topics', 0, 'fields', 0, 'worst_stamp'], '1'),
+        (['bags', 0, 'topics', 0, 'passed'], None),
+    ],
+)
+def test_schema_refuses_what_is_no_report(strict, path, value):
+    document = loads(to_json([samples.PASSING]))
+    *parents, last = path
+    part = document
+    for key in parents:
+        part = part[key]
+    part[last] = value
+    with pytest.raises(jsonschema.ValidationError):
+        strict.validate(document)
+
+
+def test_everything_but_what_is_drawn_is_there():
+    bag = loads(to_json([samples.FAILING]))['bags'][0]
+    drawn = {'series', 'mechanism', 'module'}
+    assert bag.keys() == {field.name for field in fields(BagReport)} - drawn
+    assert bag['bag'] == 'logs/2026-11-20 Prüfstand 7/läuft.mcap'
+    assert bag['rotor']['rejected'] == {'joint missing': 3, 'position not finite': 2}
+    assert bag['rotor']['longest_gaps'][0] == {
+        'stamp': 1700000001923456789,
+        'seconds': 0.0423,
+        'turned': 13.2,
+    }
+    position = bag['topics'][0]['fields'][0]
+    assert position['max_error'] == 2e-3
+    assert position['budget_used'] == pytest.approx(2e6)
+    assert position['worst_stamp'] == samples.START + 2_500_000_000
+    assert not position['passed']
+    assert [topic['passed'] for topic in bag['topics']] == [False, False]
+    assert bag['findings'] == list(samples.FAILING.findings)
+
+
+def test_numbers_that_are_none_are_null():
+    bag = loads(to_json([samples.NOT_FINITE]))['bags'][0]
+    position = bag['topics'][0]['fields'][0]
+    assert position['max_error'] is None
+    assert position['rms_error'] is None
+    assert position['budget_used'] is None
+    assert not position['passed']
+    assert bag['rotor']['rate'] is None
+    assert bag['rotor']['max_speed'] is None
+
+
+def test_errors_keep_every_digit():
+    error = math.nextafter(1e-9, 1)
+    topic = replace(samples.OUTPUT, fields=(replace(samples.POSITION, max_error=error),))
+    document = loads(to_json([replace(samples.PASSING, topics=(topic,))]))
+    assert document['bags'][0]['topics'][0]['fields'][0]['max_error'] == error
+
+
+def test_output_is_ascii_and_the_same_every_time():
+    text = to_json(samples.ALL)
+    assert text.isascii()
+    assert text == to_json(samples.ALL)
+    # Half a character, as strict readers refuse it.
+    assert not re.search(r'(?<!\\)\\ud[89a-f]', text)
+
+
+def test_example_of_the_documentation_follows_the_schema(strict):
+    page = (DOCS / 'report.md').read_text('utf-8')
+    (example,) = re.findall(r'```json\n(.*?)```', page, re.DOTALL)
+    strict.validate(loads(example))

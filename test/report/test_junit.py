@@ -1,0 +1,136 @@
+"""The report as JUnit XML."""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+import report_samples as samples
+from lxml import etree
+
+from gear_kinematics.report import to_junit
+from gear_kinematics.validation.report import Verdict
+
+WHEN = datetime(2026, 11, 21, 6, 57, 33, tzinfo=UTC)
+
+
+@pytest.fixture(scope='module')
+def schema():
+    return etree.XMLSchema(file=Path(__file__).parents[1] / 'support' / 'junit.xsd')
+
+
+def parse(*reports):
+    return etree.fromstring(to_junit(reports, WHEN).encode())
+
+
+def outcomes(suite):
+    """Give name and outcome of each test case."""
+    return [
+        (case.get('name'), *(f'{child.tag}: {child.get("message")}' for child in case))
+        for case in suite.iter('testcase')
+    ]
+
+
+@pytest.mark.parametrize('report', samples.ALL, ids=lambda report: ascii(report.bag))
+def test_every_report_is_valid(schema, report):
+    schema.assertValid(parse(report))
+
+
+def test_many_and_no_bags_are_valid(schema):
+    root = parse(*samples.ALL)
+    schema.assertValid(root)
+    assert [suite.get('id') for suite in root] == [str(k) for k in range(len(samples.ALL))]
+    schema.assertValid(parse())
+
+
+def test_schema_refuses_what_is_no_report(schema):
+    root = parse(samples.FAILING)
+    for attribute in list(root[0].attrib):
+        if attribute != 'skipped':
+            broken = etree.fromstring(etree.tostring(root))
+            del broken[0].attrib[attribute]
+            assert not schema.validate(broken)
+    root[0].append(root[0].find('testcase'))
+    assert not schema.validate(root)
+
+
+def test_passing_bag_has_a_case_for_each_topic_and_field():
+    (suite,) = parse(samples.PASSING)
+    assert outcomes(suite) == [
+        ('bag',),
+        ('input /rotor_state',),
+        ('/output_state',),
+        ('/output_state position',),
+        ('/output_state velocity',),
+        ('/output_state effort',),
+        ('/body_poses',),
+        ('/body_poses position',),
+        ('/body_poses orientation',),
+    ]
+    counts = {name: suite.get(name) for name in ('tests', 'failures', 'errors', 'skipped')}
+    assert counts == {'tests': '9', 'failures': '0', 'errors': '0', 'skipped': '0'}
+    assert suite.get('name') == 'bags/servo'
+    assert suite.get('timestamp') == '2026-11-21T06:57:33'
+
+
+def test_failing_parts_fail_with_a_message():
+    (suite,) = parse(samples.FAILING)
+    first = 'the first at stamp 1700000001123456789'
+    assert outcomes(suite) == [
+        ('bag',),
+        ('input /rotor_state',),
+        ('/output_state', f'failure: 11 messages missing, {first}'),
+        (
+            '/output_state position',
+            (
+                'failure: error 0.002 rad exceeds the tolerance 1e-9 rad at stamp '
+                '1700000002623456789, rotor angle 785.398163 rad'
+            ),
+        ),
+        ('/output_state velocity', 'failure: 5 values not finite'),
+        (
+            '/output_state effort',
+            'failure: 1 sample with the field in input or output only',
+        ),
+        ('/body_poses', 'failure: no message could be compared'),
+    ]
+    assert suite.get('failures') == '5'
+    assert suite.find('testcase/failure').text.count('\n') == 3
+    assert f'{samples.FAILING.bag}: verdict: failed\n' in suite.findtext('system-out')
+
+
+def test_unusable_bag_is_an_error_and_keeps_what_was_readable():
+    (suite,) = parse(samples.DAMAGED)
+    assert outcomes(suite)[0] == ('bag', f'error: {samples.DAMAGED.error}')
+    assert suite.get('errors') == '1'
+    assert suite.get('failures') == '0'
+    assert suite.get('tests') == '9'
+    (unexplained,) = parse(replace(samples.UNUSABLE, error=None))
+    assert unexplained.get('errors') == '1'
+
+
+def test_failing_bag_is_red_even_if_no_part_of_it_fails():
+    (suite,) = parse(replace(samples.PASSING, verdict=Verdict.FAIL, findings=('another gear',)))
+    assert outcomes(suite)[0] == ('bag', 'failure: another gear')
+    (suite,) = parse(samples.EMPTY)
+    assert outcomes(suite) == [('bag', 'failure: the bag fails')]
+    assert suite.get('failures') == '1'
+
+
+def test_characters_that_xml_forbids_are_spelled_out():
+    (suite,) = parse(samples.UNPRINTABLE)
+    assert suite.get('name') == r'run\x1b[31m\x00\n\u202e\ud800\ufffe'
+    (suite,) = parse(samples.HOSTILE_NAMES)
+    assert suite.get('name') == samples.HOSTILE
+
+
+def test_dots_do_not_split_the_class():
+    case = parse(samples.DAMAGED).find('.//testcase')
+    assert case.get('classname') == 'logs/power_cut_mcap'
+
+
+def test_the_time_is_now_by_default():
+    before = datetime.now(UTC).replace(microsecond=0, tzinfo=None)
+    root = etree.fromstring(to_junit([samples.PASSING]).encode())
+    stamp = datetime.fromisoformat(root[0].get('timestamp'))
+    assert before <= stamp <= datetime.now(UTC).replace(tzinfo=None)

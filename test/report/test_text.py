@@ -1,0 +1,261 @@
+"""The report on a terminal and in a pipe."""
+
+import io
+import re
+from dataclasses import replace
+
+import pytest
+import report_samples as samples
+from rich.console import Console
+
+from gear_kinematics.report import render, wording
+from gear_kinematics.validation.report import Verdict
+
+ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
+
+
+def piped(*reports, encoding='utf-8', **options):
+    raw = io.BytesIO()
+    with io.TextIOWrapper(raw, encoding) as file:
+        render(reports, Console(file=file, **options))
+        file.flush()
+        return raw.getvalue().decode(encoding)
+
+
+def shown(*reports, width=100):
+    file = io.StringIO()
+    render(reports, Console(file=file, force_terminal=True, width=width, color_system='standard'))
+    return file.getvalue()
+
+
+def visible(*reports, width=100):
+    return ESCAPES.sub('', shown(*reports, width=width))
+
+
+def test_pipe_has_one_fact_per_line_in_the_order_of_the_report():
+    lines = piped(samples.PASSING).splitlines()
+    assert lines[:4] == [
+        'bags/servo: verdict: passed',
+        'bags/servo: config: config/actuator.yaml',
+        'bags/servo: gear ratio: -19',
+        'bags/servo: messages: 12000',
+    ]
+    assert [line for line in lines if ': /output_state position: ' in line] == [
+        'bags/servo: /output_state position: compared: 4000',
+        'bags/servo: /output_state position: absent: 0',
+        'bags/servo: /output_state position: not finite: 0',
+        'bags/servo: /output_state position: max error: 3.2e-15 rad',
+        'bags/servo: /output_state position: rms error: 1.1e-15 rad',
+        'bags/servo: /output_state position: tolerance: 1e-9 rad',
+        'bags/servo: /output_state position: budget used: 0.00032 %',
+        'bags/servo: /output_state position: worst at stamp: 1700000002623456789 ns',
+        'bags/servo: /output_state position: worst at rotor angle: 785.398163 rad',
+    ]
+    assert [line for line in lines if ': /body_poses: ' in line] == [
+        'bags/servo: /body_poses: messages: 4000',
+        'bags/servo: /body_poses: compared: 4000',
+        'bags/servo: /body_poses: missing: 0',
+        'bags/servo: /body_poses: extra: 0',
+        'bags/servo: /body_poses: duplicates: 0',
+        'bags/servo: /body_poses: out of order: 0',
+    ]
+
+
+def test_pipe_tells_the_health_of_the_input():
+    lines = piped(samples.FAILING).splitlines()
+    prefix = f'{samples.FAILING.bag}: /rotor_state'
+    assert [line.removeprefix(prefix) for line in lines if line.startswith(prefix)] == [
+        ': joint: rotor',
+        ': messages: 4013',
+        ': valid: 4008',
+        ': rejected: 5',
+        ': rejected, joint missing: 3',
+        ': rejected, position not finite: 2',
+        ': duplicates: 1',
+        ': zero stamps: 1',
+        ': unnormalised stamps: 7',
+        ': resets: 1',
+        ': rate: 1000 Hz',
+        ': duration: 3.999 s',
+        ': gaps: 2',
+        ': jumps: 1',
+        ': overspeed: 4',
+        ': max speed: 314.159 rad/s',
+        ': referenced: no',
+        ' gap 1: until stamp: 1700000001923456789 ns',
+        ' gap 1: silence: 0.0423 s',
+        ' gap 1: rotor turned: 13.2 rad',
+        ' gap 2: until stamp: 1700000003223456789 ns',
+        ' gap 2: silence: 0.0061 s',
+        ' gap 2: rotor turned: 1.9 rad',
+    ]
+
+
+def test_every_fault_is_a_sentence_that_names_and_locates_it():
+    assert wording.remarks(samples.FAILING) == [
+        '/output_state: 11 messages missing, the first at stamp 1700000001123456789',
+        '/output_state: 8 messages too many, the first at stamp 1700000001123456790',
+        '/output_state: 1 message out of order',
+        f'/output_state: joint name "shaft" in 3 messages, the first at stamp {samples.START}',
+        (
+            '/output_state position: error 0.002 rad exceeds the tolerance 1e-9 rad '
+            'at stamp 1700000002623456789, rotor angle 785.398163 rad'
+        ),
+        '/output_state velocity: 5 values not finite',
+        '/output_state effort: 1 sample with the field in input or output only',
+        '/body_poses: no message could be compared',
+        '/body_poses: 4008 messages missing',
+        *samples.FAILING.findings,
+    ]
+
+
+@pytest.mark.parametrize('report', samples.ALL, ids=lambda report: ascii(report.bag))
+def test_sentences_tell_a_fault_wherever_a_part_fails_and_nowhere_else(report):
+    for topic in report.topics:
+        fields_passed = [not wording.field_faults(field, report) for field in topic.fields]
+        assert fields_passed == [field.passed for field in topic.fields]
+        whole = not wording.topic_faults(topic, report)
+        assert (whole and all(fields_passed)) == topic.passed
+
+
+def test_pipe_is_neither_wrapped_nor_decorated():
+    text = piped(*samples.ALL, width=40)
+    assert '\x1b' not in text
+    assert not set(text) & set('─━│┃┏•')
+    assert max(map(len, text.splitlines())) > 100
+    assert all(': ' in line for line in text.splitlines())
+
+
+def test_damage_is_told_before_the_findings_and_what_was_readable_after_it():
+    lines = piped(replace(samples.DAMAGED, findings=('slow',))).splitlines()
+    assert lines[:3] == [
+        'logs/power_cut.mcap: verdict: unusable',
+        f'logs/power_cut.mcap: error: {samples.DAMAGED.error}',
+        'logs/power_cut.mcap: finding: slow',
+    ]
+    assert 'logs/power_cut.mcap: /output_state: compared: 4000' in lines
+
+
+def test_summary_closes_a_report_on_several_bags_only():
+    closing = 'summary: 3 bags: 1 passed, 1 failed, 1 unusable'
+    reports = (samples.PASSING, samples.FAILING, samples.UNUSABLE)
+    assert piped(*reports).splitlines()[-1] == closing
+    assert 'summary' not in piped(samples.PASSING)
+    assert '3 bags: 1 passed, 1 failed, 1 unusable' in visible(*reports)
+    assert '1 bag' not in visible(samples.PASSING)
+
+
+@pytest.mark.parametrize('render_one', [piped, visible])
+def test_names_cannot_control_the_terminal(render_one):
+    text = render_one(samples.UNPRINTABLE)
+    assert not [char for char in text if not char.isprintable() and char != '\n']
+    assert r'run\x1b[31m\x00\n\u202e\ud800\ufffe' in text
+
+
+@pytest.mark.parametrize('render_one', [piped, visible])
+def test_names_are_no_markup(render_one):
+    report = replace(samples.UNUSABLE, bag='[red]a[/red] :smile:', error='[/] 100 %')
+    text = render_one(report)
+    assert '[red]a[/red] :smile:' in text
+    assert '[/] 100 %' in text
+
+
+def test_pipe_that_cannot_express_a_name_gets_it_spelled_out():
+    text = piped(samples.FAILING, encoding='ascii')
+    assert r'logs/2026-11-20 Pr\xfcfstand 7/l\xe4uft.mcap: verdict: failed' in text
+    assert 'Prüfstand 7/läuft' in piped(samples.FAILING)
+
+
+def test_terminal_shows_verdict_tables_and_sentences():
+    text = visible(samples.FAILING)
+    assert text.startswith(f'FAILED {samples.FAILING.bag}\n')
+    row = r'/output_state +4005 +3997 +11 +8 +2 +1 *\n'
+    assert re.search(row, text)
+    row = r'/output_state position \[rad\] +4000 +0 +0 +0\.002 +0\.00071 +1e-9 +2e8 % *\n'
+    assert re.search(row, text)
+    assert re.search(r'/output_state position +1700000002623456789 ns +785.398163 rad *\n', text)
+    assert '• /output_state: 1 message out of order\n' in text
+
+
+@pytest.mark.parametrize('width', [80, 100, 160])
+def test_terminal_cuts_nothing_off(width):
+    long = replace(samples.FAILING, bag='/very/long/' * 20)
+    text = visible(long, samples.PASSING, width=width)
+    assert '…' not in text
+    assert max(map(len, text.splitlines())) <= width
+    # What is broken is broken at the edge, or in a cell of the summary.
+    assert long.bag in text.replace('\n', '')
+    for number in ('1700000002623456789 ns', '0.00032 %', '4.3e-19', '13.2 rad'):
+        assert number in text
+    # A name gives way, a number never.
+    topic = replace(samples.OUTPUT, topic='/left/arm' * 5)
+    text = visible(replace(samples.PASSING, topics=(topic,)), width=width)
+    assert ' 4000 ' in text
+    assert ' 4.4e-14 ' in text
+    assert ' 0.00032 % ' in text
+
+
+def test_narrow_terminal_gets_lines():
+    assert '─' in visible(samples.FAILING, width=80)
+    narrow = visible(samples.FAILING, width=79)
+    assert narrow == piped(samples.FAILING)
+
+
+def test_colours_tell_what_is_bad():
+    failing, passing = shown(samples.FAILING), shown(samples.PASSING)
+    assert '\x1b[1;31mFAILED' in failing
+    assert re.search(r'\x1b\[1;31m *11\x1b', failing)
+    assert '\x1b[1;32mPASSED' in passing
+    assert '31m' not in passing
+
+
+def test_offset_from_the_first_sample_is_told_when_it_is_known():
+    rotor = replace(samples.ROTOR, first_stamp=samples.START)
+    text = piped(replace(samples.FAILING, rotor=rotor))
+    assert 'stamp 1700000001123456789 (+1.000000 s)' in text
+    assert '/output_state position: worst from start: +2.500000 s\n' in text
+    assert 'from start' not in piped(samples.FAILING)
+
+
+@pytest.mark.parametrize(
+    ('value', 'written'),
+    [(0.0, '0'), (3.21e-15, '3.21e-15'), (1e-9, '1e-9'), (2e8, '2e8'), (float('inf'), 'inf')],
+)
+def test_numbers_are_short(value, written):
+    assert wording.number(value) == written
+
+
+def test_zero_tolerance_is_used_up_by_any_error():
+    exact = replace(samples.POSITION, tolerance=0.0, max_error=0.0)
+    assert exact.budget_used == 0
+    assert replace(exact, max_error=1e-300).budget_used == float('inf')
+
+
+def test_not_a_number_is_the_worst_of_all():
+    position, effort = samples.POSITION, samples.NOT_FINITE.topics[0].fields[2]
+    topic = replace(samples.OUTPUT, fields=(position, effort))
+    (row,) = wording.summary_table([replace(samples.NOT_FINITE, topics=(topic,))]).rows
+    assert [cell.text for cell in row][:4] == ['logs/nan', 'failed', '4000', 'nan']
+    assert wording.field_faults(effort, samples.NOT_FINITE)
+
+
+def test_nothing_to_compare_uses_no_budget():
+    effort = [line for line in piped(samples.PASSING).splitlines() if 'effort' in line]
+    assert effort == [
+        'bags/servo: /output_state effort: compared: 0',
+        'bags/servo: /output_state effort: absent: 0',
+        'bags/servo: /output_state effort: not finite: 0',
+    ]
+
+
+def test_worst_verdict_counts():
+    passing, failing, unusable = samples.PASSING, samples.FAILING, samples.UNUSABLE
+    assert wording.worst_verdict([passing, passing]) == Verdict.PASS
+    assert wording.worst_verdict([failing, passing]) == Verdict.FAIL
+    assert wording.worst_verdict([failing, unusable, passing]) == Verdict.UNUSABLE
+    assert wording.worst_verdict([]) == Verdict.UNUSABLE
+
+
+def test_bag_without_a_name_or_anything_else():
+    assert piped(samples.EMPTY) == '(no name): verdict: failed\n(no name): messages: 0\n'
+    assert visible(samples.EMPTY).startswith('FAILED (no name)\n')

@@ -1,0 +1,147 @@
+"""Faults in the graph, of nodes that share a participant: news of it are there at once."""
+
+import itertools
+
+import pytest
+import rclpy
+from rclpy.context import Context
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.qos import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSProfile,
+    ReliabilityPolicy,
+)
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import JointState
+
+from gear_kinematics.ros.graph import find_faults
+
+BEST_EFFORT = {'reliability': ReliabilityPolicy.BEST_EFFORT}
+LATCHED = {'durability': DurabilityPolicy.TRANSIENT_LOCAL}
+SECOND = Duration(seconds=1)
+namespaces = (f'/graph_{number}' for number in itertools.count())
+
+
+@pytest.fixture(scope='module')
+def context():
+    context = Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    yield context
+    rclpy.shutdown(context=context)
+
+
+@pytest.fixture
+def make(context):
+    """Give a function that makes a node, by default in a namespace of the test's own."""
+    nodes, own = [], next(namespaces)
+
+    def make(name, namespace=own):
+        nodes.append(Node(name, context=context, namespace=namespace))
+        return nodes[-1]
+
+    yield make
+    for node in nodes:
+        node.destroy_node()
+
+
+def publisher(node, topic='out', **policies):
+    return node.create_publisher(JointState, topic, QoSProfile(depth=1, **policies))
+
+
+def subscription(node, topic='in', **policies):
+    profile = QoSProfile(depth=1, **policies)
+    return node.create_subscription(JointState, topic, lambda _: None, profile)
+
+
+@pytest.mark.parametrize(
+    ('offered', 'requested', 'policies'),
+    [
+        ({}, {}, []),
+        ({}, BEST_EFFORT, []),
+        ({}, {'history': HistoryPolicy.KEEP_ALL}, []),
+        (LATCHED, LATCHED, []),
+        ({}, LATCHED, ['DURABILITY']),
+        (BEST_EFFORT, {}, ['RELIABILITY']),
+        (BEST_EFFORT, LATCHED, ['RELIABILITY', 'DURABILITY']),
+        ({}, {'deadline': SECOND}, ['DEADLINE']),
+        ({}, {'liveliness': LivelinessPolicy.MANUAL_BY_TOPIC}, ['LIVELINESS']),
+        ({}, {'liveliness_lease_duration': SECOND}, ['LIVELINESS_LEASE_DURATION']),
+    ],
+    ids=str,
+)
+def test_listener_that_asks_for_more_than_is_offered_is_a_warning(
+    make, offered, requested, policies
+):
+    mine, other = make('mine'), make('other')
+    output = publisher(mine, **offered)
+    listener = subscription(other, 'out', **requested)
+    name = other.get_fully_qualified_name()
+    assert find_faults(mine, [], [output], ['out']) == (
+        [],
+        [f'incompatible QoS on out: {policy} (listener {name})' for policy in policies],
+    )
+    other.destroy_subscription(listener)
+    assert find_faults(mine, [], [output], ['out']) == ([], [])
+
+
+@pytest.mark.parametrize(
+    ('reliability', 'found'),
+    [('RELIABLE', True), ('BEST_EFFORT', False), ('BEST_AVAILABLE', False)],
+)
+def test_driver_that_offers_less_than_is_asked_for_is_an_error(make, reliability, found):
+    mine, driver = make('mine'), make('driver')
+    topic_input = subscription(mine, reliability=ReliabilityPolicy[reliability])
+    name = driver.get_fully_qualified_name()
+    publisher(driver, 'in')
+    assert find_faults(mine, [topic_input], [], []) == ([], [])
+    wrong = publisher(driver, 'in', **BEST_EFFORT)
+    errors = [f'incompatible QoS on in: RELIABILITY (driver {name})'] * found
+    assert find_faults(mine, [topic_input], [], []) == (errors, [])
+    driver.destroy_publisher(wrong)
+    assert find_faults(mine, [topic_input], [], []) == ([], [])
+
+
+def test_other_publishers_on_exclusive_topics_are_named_with_these(make):
+    mine, other, third = make('mine'), make('other'), make('third')
+    outputs = [publisher(mine, topic) for topic in ('a', 'b', 'c', 'shared')]
+    for topic in ('a', 'c', 'shared'):
+        publisher(other, topic)
+    publisher(third, 'c')
+    namespace = mine.get_namespace()
+    assert find_faults(mine, [], outputs, ['a', 'b', 'c']) == (
+        [],
+        [f'{namespace}/other also publishes a, c', f'{namespace}/third also publishes c'],
+    )
+
+
+def test_outputs_of_the_node_itself_may_share_a_topic(make):
+    mine = make('mine')
+    assert find_faults(mine, [], [publisher(mine), publisher(mine)], ['out']) == ([], [])
+
+
+def test_node_of_the_same_name_is_a_warning_in_the_same_namespace_only(make):
+    mine = make('mine')
+    make('mine', f'{mine.get_namespace()}/deeper')
+    assert find_faults(mine, [], [], []) == ([], [])
+    make('mine')
+    assert find_faults(mine, [], [], []) == (
+        [],
+        [f'another node is named {mine.get_fully_qualified_name()}'],
+    )
+
+
+def test_name_in_the_root_namespace_begins_with_one_slash(make):
+    mine = make('mine')
+    publisher(make('stranger', ''), f'{mine.get_namespace()}/out')
+    [fault] = find_faults(mine, [], [publisher(mine)], ['out']).warnings
+    assert fault == '/stranger also publishes out'
+
+
+def test_output_that_the_graph_does_not_know_yet_is_not_judged(make, monkeypatch):
+    mine = make('mine')
+    subscription(mine, 'out', **LATCHED)
+    monkeypatch.setattr(Node, 'get_publishers_info_by_topic', lambda *_: [])
+    assert find_faults(mine, [], [publisher(mine)], ['out']) == ([], [])

@@ -1,0 +1,94 @@
+"""What the launch files start the node with, and what they refuse to start it with."""
+
+import re
+
+import pytest
+
+from gear_kinematics.ros.launch_arguments import node_arguments
+from gear_kinematics.state.parameters import ConfigError, default_config, load
+
+NODES = {
+    '/gear_state_publisher': 81,
+    '/left/gear_state_publisher': 82,
+    '/robot/left/gear_state_publisher': 83,
+}
+
+
+@pytest.fixture
+def config(tmp_path) -> str:
+    path = tmp_path / 'nodes.yaml'
+    path.write_text(
+        ''.join(
+            f"{name}:\n  ros__parameters: {{ring_teeth: {teeth}, frame_prefix: 'own_'}}\n"
+            for name, teeth in NODES.items()
+        )
+    )
+    return str(path)
+
+
+def arguments(config, namespace='', frame_prefix='', **above):
+    """Give what there is for a launch with these arguments, as text like all of launch's."""
+    return node_arguments(
+        {'config': str(config), 'namespace': namespace, 'frame_prefix': frame_prefix, **above}
+    )
+
+
+def test_defaults_start_the_default_actuator():
+    config, parameters = arguments(default_config())
+    assert config == default_config()
+    assert parameters == load(default_config())
+
+
+@pytest.mark.parametrize(
+    ('above', 'namespace', 'node'),
+    [
+        # As launch_ros.utilities.prefix_namespace and make_namespace_absolute make the name.
+        (None, '', '/gear_state_publisher'),
+        (None, '/', '/gear_state_publisher'),
+        (None, 'left', '/left/gear_state_publisher'),
+        (None, '/left', '/left/gear_state_publisher'),
+        (None, 'left/', '/left/gear_state_publisher'),
+        (None, 'robot/left', '/robot/left/gear_state_publisher'),
+        ('', 'left', '/left/gear_state_publisher'),
+        ('robot', 'left', '/robot/left/gear_state_publisher'),
+        ('/robot', 'left', '/robot/left/gear_state_publisher'),
+        ('/robot/left', '', '/robot/left/gear_state_publisher'),
+        ('/robot', '/left', '/left/gear_state_publisher'),
+        ('/', 'left', '/left/gear_state_publisher'),
+    ],
+)
+def test_parameters_are_those_of_the_node_in_its_namespace(config, above, namespace, node):
+    ros_namespace = {} if above is None else {'ros_namespace': above}
+    parameters = arguments(config, namespace, **ros_namespace).parameters
+    assert parameters['ring_teeth'] == NODES[node]
+
+
+def test_prefix_that_was_given_holds_and_that_of_the_file_otherwise(config):
+    assert arguments(config, 'left').parameters['frame_prefix'] == 'own_'
+    assert arguments(config, 'left', 'my_').parameters['frame_prefix'] == 'my_'
+
+
+def test_home_directory_may_be_written_as_in_a_shell(config, tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    found = arguments('~/nodes.yaml', 'left')
+    assert str(found.config) == config
+    assert found.parameters['ring_teeth'] == NODES['/left/gear_state_publisher']
+
+
+@pytest.mark.parametrize(
+    ('config', 'text'),
+    [
+        ('nowhere.yaml', 'nowhere.yaml: No such file or directory'),
+        ('~/nowhere.yaml', 'nowhere.yaml: No such file or directory'),
+        ('.', '.: Is a directory'),
+    ],
+)
+def test_file_that_is_not_there_is_refused(tmp_path, monkeypatch, config, text):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    with pytest.raises(ConfigError, match=rf'{re.escape(text)}$'):
+        arguments(config)
+
+
+def test_file_without_parameters_of_the_node_is_refused(config):
+    with pytest.raises(ConfigError, match='no parameters of /right/gear_state_publisher in it'):
+        arguments(config, 'right')

@@ -1,0 +1,493 @@
+"""Bags played into DDS: by a process of their own to a listener, and into a live node."""
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from contextlib import contextmanager
+from itertools import count, islice, pairwise
+from pathlib import Path
+
+import pytest
+import rclpy
+from live import DEADLINE, rotor_bytes
+from rclpy.context import Context
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile
+from rclpy.signals import SignalHandlerOptions
+from replaying import SECOND, decode
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import JointState
+
+from gear_kinematics.bag import Bag, BagError, BagWriter, DamagedBagError
+from gear_kinematics.bag.schedule import due_messages
+from gear_kinematics.ros import live
+from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.live import ReplayError, live_messages, replay_node
+from gear_kinematics.ros.replay import play
+from gear_kinematics.state import parameters
+
+ROOT = Path(__file__).resolve().parents[2]
+BAGS = ROOT / 'bags'
+ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: 'geometry_msgs/msg/PoseArray'}
+PERIOD = 2_000_000  # ns
+COUNT = 500
+DURATION = (COUNT - 1) * PERIOD / SECOND  # s
+SLEW = 0.005  # s: by which the clocks of stamps and of the player may drift apart
+PLAY = """
+import json, sys
+from gear_kinematics.bag import Bag
+from gear_kinematics.ros.replay import play, stopped_by_signals
+path, topics, options = sys.argv[1], *map(json.loads, sys.argv[2:])
+with Bag(path) as bag, stopped_by_signals() as stopped:
+    played = play(bag, topics, stopped=stopped, **options)
+    print(played.messages, played.worst_delay)
+"""
+names = (f'/played_{os.getpid()}_{number}' for number in count())
+
+
+def write(path: Path, messages, types) -> Path:
+    with BagWriter(path) as writer:
+        for topic, kind in types.items():
+            writer.add_topic(topic, kind)
+        for message in messages:
+            writer.write(*message)
+    return path
+
+
+def rotor_states(times) -> list[tuple[str, int, bytes]]:
+    return [
+        (ROTOR, received, rotor_bytes(received - 500, position=[0.01 * number]))
+        for number, received in enumerate(times)
+    ]
+
+
+@pytest.fixture(scope='module')
+def bag_path(tmp_path_factory) -> Path:
+    """Make a second of a driver's messages, and an output beside every tenth."""
+    path = tmp_path_factory.mktemp('bags') / 'second'
+    messages = []
+    for number, message in enumerate(rotor_states(SECOND + PERIOD * k for k in range(COUNT))):
+        messages.append(message)
+        if number % 10 == 0:
+            messages.append((OUTPUT, *message[1:]))
+    return write(path, messages, {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE})
+
+
+@pytest.fixture(scope='module')
+def recorded(bag_path) -> list[bytes]:
+    with Bag(bag_path) as bag:
+        return [data for _, _, data in bag.messages([ROTOR])]
+
+
+class Listener:
+    """Keeps what it hears, with the time of sending, s. It hears only within the waits."""
+
+    def __init__(self) -> None:
+        self.heard: dict[str, list[tuple[float, bytes]]] = {}
+        context = Context()
+        rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+        self.node = Node('listener', context=context)
+        self._executor = SingleThreadedExecutor(context=context)
+        self._executor.add_node(self.node)
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        leave(self.node)
+
+    def listen(self, name, kind=JointState) -> list[tuple[float, bytes]]:
+        heard = self.heard.setdefault(name, [])
+        self.node.create_subscription(
+            kind,
+            name,
+            lambda data, about: heard.append((about['source_timestamp'] / SECOND, data)),
+            QoSProfile(depth=2000),
+            raw=True,
+        )
+        return heard
+
+    def wait_until(self, condition, what) -> None:
+        deadline = time.monotonic() + DEADLINE
+        while not condition():
+            assert time.monotonic() < deadline, f'waited in vain for {what}'
+            self._executor.spin_once(timeout_sec=0.02)
+
+
+@pytest.fixture
+def listener():
+    listener = Listener()
+    yield listener
+    listener.close()
+
+
+@contextmanager
+def playing(path: Path, topics, **options):
+    """Play in a process of its own, which ends with 0 and without a word on stderr."""
+    command = [sys.executable, '-c', PLAY, str(path), json.dumps(topics), json.dumps(options)]
+    with subprocess.Popen(
+        command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        try:
+            yield process
+            said, errors = process.communicate(timeout=DEADLINE)
+        except BaseException:
+            process.kill()
+            raise
+    assert (process.returncode, errors) == (0, '')
+    sent, worst_delay = said.split()
+    process.sent, process.worst_delay = int(sent), float(worst_delay)
+
+
+def assert_took(heard, process, duration) -> None:
+    """Hold the time from the first message to the last against the bag's, in s."""
+    took = heard[-1][0] - heard[0][0]
+    # However busy the machine is: nothing is early, and by how much it is late is known.
+    assert abs(took - duration) <= process.worst_delay + SLEW
+
+
+def data_of(heard) -> list[bytes]:
+    return [data for _, data in heard]
+
+
+def stamps(heard) -> list[int]:
+    headers = (decode(data, JOINT_STATE).header.stamp for data in data_of(heard))
+    return [stamp.sec * SECOND + stamp.nanosec for stamp in headers]
+
+
+# The process and a listener.
+
+
+def test_the_rotor_topic_is_played_whole_in_order_and_in_its_time(bag_path, recorded, listener):
+    name = next(names)
+    heard, clock = listener.listen(name), listener.listen('/clock', Clock)
+    with playing(bag_path, {ROTOR: name}) as process:
+        listener.wait_until(lambda: len(heard) >= COUNT, 'every message')
+    assert process.sent == COUNT
+    assert data_of(heard) == recorded
+    assert_took(heard, process, DURATION)
+    assert clock == []
+
+
+def test_twice_the_rate_takes_half_the_time(tmp_path, listener):
+    times = [SECOND // 2 * number for number in range(5)]
+    path = write(tmp_path / 'sparse', rotor_states(times), {ROTOR: JOINT_STATE})
+    slow, fast = next(names), next(names)
+    heard = {name: listener.listen(name) for name in (slow, fast)}
+    with (
+        playing(path, {ROTOR: slow}, rate=1.0) as slow_process,
+        playing(path, {ROTOR: fast}, rate=2.0) as fast_process,
+    ):
+        listener.wait_until(lambda: all(len(h) == 5 for h in heard.values()), 'every message')
+    assert_took(heard[slow], slow_process, 2.0)
+    assert_took(heard[fast], fast_process, 1.0)
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_loop_repeats_until_a_signal(number, bag_path, recorded, listener):
+    name = next(names)
+    heard = listener.listen(name)
+    # At a rate at which a listener on a busy machine stays within its queue, however many rounds.
+    with playing(bag_path, {ROTOR: name}, loop=True) as process:
+        listener.wait_until(lambda: len(heard) >= 2.5 * COUNT, 'the third round')
+        process.send_signal(number)
+    assert len(heard) <= process.sent
+    assert data_of(heard) == (recorded * (len(heard) // COUNT + 1))[: len(heard)]
+    back = [k for k, (a, b) in enumerate(pairwise(stamps(heard)), start=1) if b < a]
+    assert back == list(range(COUNT, len(heard), COUNT))
+
+
+def test_a_signal_ends_a_long_silence(tmp_path, listener):
+    path = write(tmp_path / 'silence', rotor_states([SECOND, 3600 * SECOND]), {ROTOR: JOINT_STATE})
+    name = next(names)
+    heard = listener.listen(name)
+    with playing(path, {ROTOR: name}) as process:
+        listener.wait_until(lambda: heard, 'the first message')
+        process.send_signal(signal.SIGINT)
+    assert process.sent == 1
+
+
+def test_start_offset_and_duration_cut_out_a_part(bag_path, recorded, listener):
+    name = next(names)
+    heard = listener.listen(name)
+    with playing(bag_path, {ROTOR: name}, start_offset=0.3, duration=0.1) as process:
+        listener.wait_until(lambda: len(heard) >= 51, 'every message')
+    assert process.sent == 51
+    assert data_of(heard) == recorded[150:201]
+
+
+def test_several_topics_are_played_in_their_order(bag_path, recorded, listener):
+    rotor, output = next(names), next(names)
+    heard = listener.listen(rotor), listener.listen(output)
+    with playing(bag_path, {ROTOR: rotor, OUTPUT: output}, rate=5.0) as process:
+        listener.wait_until(lambda: len(heard[0]) + len(heard[1]) >= COUNT * 1.1, 'every message')
+    assert process.sent == COUNT * 1.1
+    assert data_of(heard[0]) == recorded
+    assert data_of(heard[1]) == recorded[::10]
+
+
+def test_the_clock_is_published_on_request_and_increases_with_the_time_of_the_bag(
+    bag_path, listener
+):
+    name = next(names)
+    heard, clock = listener.listen(name), listener.listen('/clock', Clock)
+    with playing(bag_path, {ROTOR: name}, clock=100.0, rate=0.5):
+        listener.wait_until(lambda: len(heard) == COUNT, 'every message')
+    messages = [decode(data, 'rosgraph_msgs/msg/Clock').clock for data in data_of(clock)]
+    times = [message.sec * SECOND + message.nanosec for message in messages]
+    # Listeners to the clock come upon it late, and a busy machine gives fewer.
+    assert 10 < len(times) <= 0.5 + 100.0 * 2.0 * DURATION
+    assert all(a < b for a, b in pairwise(times))
+    assert times[0] >= SECOND
+    assert times[-1] <= SECOND + DURATION * SECOND
+    assert times[-1] - times[0] > 0.3 * DURATION * SECOND
+
+
+def test_the_first_message_waits_for_the_subscriber(bag_path, recorded, listener):
+    name = next(names)
+    with playing(bag_path, {ROTOR: name}, rate=10.0):
+        listener.wait_until(lambda: listener.node.count_publishers(name), 'the publisher')
+        heard = listener.listen(name)
+        listener.wait_until(lambda: len(heard) >= COUNT, 'every message')
+    assert data_of(heard) == recorded
+
+
+def test_a_signal_ends_the_wait(bag_path, listener):
+    name = next(names)
+    with playing(bag_path, {ROTOR: name}) as process:
+        listener.wait_until(lambda: listener.node.count_publishers(name), 'the publisher')
+        process.send_signal(signal.SIGINT)
+    assert process.sent == 0
+
+
+# In this process.
+
+
+def test_the_node_offers_no_services_that_nobody_would_answer():
+    with replay_node('') as node:
+        assert not list(node.services)
+
+
+def test_without_a_wait_nobody_needs_to_listen(bag_path):
+    seen = []
+    with Bag(bag_path) as bag:
+        played = play(bag, {ROTOR: next(names)}, rate=100.0, wait=0.0, progress=seen.append)
+    assert played.messages == COUNT
+    assert (seen[0], seen[-1]) == (0, COUNT)
+    assert seen == sorted(seen)
+
+
+def test_a_wait_in_vain_names_the_topic(bag_path):
+    name = next(names)
+    with Bag(bag_path) as bag, pytest.raises(ReplayError, match=f'{name} after 0.1 s'):
+        play(bag, {ROTOR: name}, wait=0.1)
+
+
+class Scripted:
+    """A bag of given messages, and perhaps an exception behind them."""
+
+    path = Path('scripted')
+
+    def __init__(self, messages, error=None, types=TYPES) -> None:
+        self.topics = types
+        self._messages = messages
+        self._error = error
+
+    def messages(self, topics):
+        yield from (message for message in self._messages if message[0] in topics)
+        if self._error:
+            raise self._error
+
+
+def schedule(times, topics=(ROTOR,), **options) -> list[tuple[float, int]]:
+    source = Scripted([(ROTOR, round(time * SECOND), b'') for time in times])
+    options = {'rate': 1.0} | options
+    found = islice(due_messages(source, topics, **options), 10)
+    return [(pytest.approx(due, abs=1e-9), received / SECOND) for due, (_, received, _) in found]
+
+
+@pytest.mark.parametrize(
+    ('options', 'expected'),
+    [
+        ({}, [(0.0, 5.0), (1.0, 6.0), (1.5, 6.5), (4.0, 9.0)]),
+        ({'rate': 2.0}, [(0.0, 5.0), (0.5, 6.0), (0.75, 6.5), (2.0, 9.0)]),
+        ({'start_offset': 0.5}, [(0.0, 6.0), (0.5, 6.5), (3.0, 9.0)]),
+        ({'start_offset': 1.0, 'duration': 0.5}, [(0.0, 6.0), (0.5, 6.5)]),
+        ({'duration': 0.0}, [(0.0, 5.0)]),
+    ],
+    ids=str,
+)
+def test_what_is_due_when(options, expected):
+    assert schedule([5.0, 6.0, 6.5, 9.0], **options) == expected
+
+
+@pytest.mark.parametrize(
+    ('times', 'options', 'due'),
+    [
+        ([5.0, 6.0, 7.0], {}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
+        ([5.0, 6.0, 7.0], {'rate': 2.0}, [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5]),
+        ([5.0, 6.0, 7.0], {'start_offset': 0.5}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
+        ([5.0], {'rate': 4.0}, [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.25]),
+    ],
+    ids=str,
+)
+def test_a_loop_goes_on_after_a_mean_period(times, options, due):
+    assert [moment for moment, _ in schedule(times, loop=True, **options)] == due
+
+
+@pytest.mark.parametrize(
+    ('topics', 'options', 'error', 'words'),
+    [
+        ({'/motor': '/x'}, {}, BagError, ['scripted', '/motor', '/rotor_state']),
+        ({POSES: '/x'}, {}, BagError, ['scripted', 'nothing to play', POSES]),
+        ({ROTOR: '/x'}, {'start_offset': 2.0}, BagError, ['scripted', 'nothing to play']),
+        ({ROTOR: '/x y'}, {}, ReplayError, ['/x y']),
+        ({'/grip': '/x'}, {}, ReplayError, ['/grip', 'acme_msgs/msg/Grip']),
+        ({'/odd': '/x'}, {}, ReplayError, ['/odd', 'sensor_msgs/msg/Odd']),
+        ({ROTOR: '/x'}, {'rate': 0.0}, ValueError, ['rate']),
+        ({ROTOR: '/x'}, {'rate': math.nan}, ValueError, ['rate']),
+        ({ROTOR: '/x'}, {'start_offset': -1.0}, ValueError, ['start offset']),
+        ({ROTOR: '/x'}, {'clock': math.nan}, ValueError, ['clock']),
+    ],
+    ids=lambda x: str(x) if isinstance(x, dict) else '',
+)
+def test_what_cannot_be_played_is_told_at_once_in_one_line(topics, options, error, words):
+    types = TYPES | {'/grip': 'acme_msgs/msg/Grip', '/odd': 'sensor_msgs/msg/Odd'}
+    messages = [(topic, SECOND, b'') for topic in (ROTOR, '/grip', '/odd')]
+    with pytest.raises(error) as caught:
+        play(Scripted(messages, types=types), topics, **options)
+    assert all(word in str(caught.value) for word in words)
+    assert '\n' not in str(caught.value)
+
+
+def test_what_is_before_damage_is_played(listener):
+    name = next(names)
+    heard = listener.listen(name)
+    messages = rotor_states([SECOND + k for k in range(5)])
+    with pytest.raises(DamagedBagError, match='torn'):
+        play(Scripted(messages, DamagedBagError('torn')), {ROTOR: name})
+    listener.wait_until(lambda: len(heard) == 5, 'every message')
+
+
+# Into a live node.
+
+
+def config(name: str = 'actuator', **changed) -> dict:
+    return parameters.load(ROOT / 'config' / f'{name}.yaml') | changed
+
+
+def by_topic(messages) -> dict[str, list[bytes]]:
+    found = {topic: [] for topic in TYPES}
+    for topic, _, data in messages:
+        found[topic].append(data)
+    return found
+
+
+@pytest.mark.parametrize(
+    ('name', 'settings', 'rate'),
+    [
+        ('driver_faults', 'actuator', 1.0),
+        ('constant_speed_3000rpm', 'actuator', 1000.0),
+        ('single_turn_encoder', 'single_turn', 1000.0),
+    ],
+)
+def test_a_live_node_publishes_what_it_published_when_recorded(name, settings, rate):
+    seen = []
+    with Bag(BAGS / name) as bag:
+        recorded = by_topic(bag.messages(TYPES))
+        published = list(live_messages(bag, config(settings), rate=rate, progress=seen.append))
+    assert by_topic(published) == recorded
+    times = [message.received for message in published]
+    assert times == sorted(times)
+    assert seen[-1] == len(recorded[ROTOR])
+
+
+def test_live_messages_take_the_topic_the_joint_and_the_prefix_of_somebody_else():
+    data = [rotor_bytes(SECOND + k, ['m1'], [1.0]) for k in range(20)]
+    source = Scripted(
+        [('/m', SECOND + k, d) for k, d in enumerate(data)], types={'/m': JOINT_STATE}
+    )
+    settings = config(rotor_joint='', frame_prefix='left_')
+    found = by_topic(live_messages(source, settings, rotor_topic='/m'))
+    assert found[ROTOR] == data
+    assert [decode(d, JOINT_STATE).name for d in found[OUTPUT]] == [['left_output_shaft']] * 20
+    assert [decode(d, TYPES[POSES]).header.frame_id for d in found[POSES]] == ['left_stator'] * 20
+
+
+@pytest.mark.parametrize('little_endian', [True, False])
+def test_live_messages_stamp_what_has_no_stamp(little_endian):
+    times = [SECOND, SECOND + 7]
+    data = rotor_bytes(0, position=[1.0], little_endian=little_endian)
+    found = by_topic(live_messages(Scripted([(ROTOR, t, data) for t in times]), config()))
+    for topic in (ROTOR, OUTPUT):
+        assert stamps([(0.0, d) for d in found[topic]]) == times
+
+
+def test_a_consumer_that_dawdles_loses_nothing():
+    messages = rotor_states(SECOND + k for k in range(6000))
+    found = Counter()
+    for number, message in enumerate(live_messages(Scripted(messages), config())):
+        found[message.topic] += 1
+        if number == 9000:
+            time.sleep(1.2)  # the consumer's own business, in which the node goes on
+    assert found == dict.fromkeys(TYPES, 6000)
+
+
+def test_what_the_node_made_of_the_part_before_damage_is_given():
+    messages = rotor_states(SECOND + k for k in range(30))
+    found = []
+    with pytest.raises(DamagedBagError, match='torn'):
+        found.extend(live_messages(Scripted(messages, DamagedBagError('torn')), config()))
+    assert Counter(message.topic for message in found) == dict.fromkeys(TYPES, 30)
+
+
+@pytest.fixture
+def processes(monkeypatch) -> list[subprocess.Popen]:
+    """The node processes that are started."""
+    started = []
+
+    class Noted(subprocess.Popen):
+        def __init__(self, *arguments, **options) -> None:
+            super().__init__(*arguments, **options)
+            started.append(self)
+
+    monkeypatch.setattr(live.subprocess, 'Popen', Noted)
+    return started
+
+
+def test_the_node_ends_with_its_consumer(processes):
+    messages = live_messages(Scripted(rotor_states([SECOND, 3600 * SECOND])), config())
+    assert next(messages).topic == ROTOR
+    messages.close()
+    [process] = processes
+    assert process.returncode == 0
+
+
+def test_a_node_that_ends_is_an_error(processes):
+    messages = live_messages(Scripted(rotor_states(SECOND + k for k in range(5000))), config())
+    next(messages)
+    # Killed, it may take a lock in shared memory with it, which Fast DDS does not survive here.
+    processes[0].terminate()
+    with pytest.raises(ReplayError, match='has ended'):
+        list(messages)
+
+
+def test_a_node_that_does_not_start_says_why():
+    with pytest.raises(ReplayError, match=r'has ended.*ring_teeth'):
+        next(live_messages(Scripted(rotor_states([SECOND])), config(ring_teeth=10**6)))
+
+
+@pytest.mark.parametrize(
+    ('topic', 'words'),
+    [('/motor', ['/motor', ROTOR]), (POSES, [POSES, 'PoseArray', 'JointState'])],
+)
+def test_live_messages_name_an_unusable_topic(topic, words):
+    with pytest.raises(BagError) as caught:
+        next(live_messages(Scripted([]), config(), rotor_topic=topic))
+    assert all(word in str(caught.value) for word in words)

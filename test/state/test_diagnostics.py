@@ -1,0 +1,252 @@
+"""The report on the rotor input: levels, messages and values, at times of the test's own."""
+
+import math
+import struct
+from dataclasses import replace
+
+import pytest
+from diagnostic_msgs.msg import DiagnosticStatus
+from live import SECOND, rotor_bytes
+
+from gear_kinematics.kinematics import solve
+from gear_kinematics.state import diagnostics
+from gear_kinematics.state.diagnostics import ERROR, OK, WARN, GraphFaults, InputMonitor
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+SETTINGS = InputSettings(
+    rotor_joint='rotor',
+    rotor_direction=1,
+    rotor_zero=0.0,
+    rotor_encoder='multi_turn',
+    max_rotor_speed=650.0,
+    max_rotor_acceleration=6500.0,
+)
+TIMEOUT = 1.0
+START = 1000.0
+
+
+class Bench:
+    """An input, its monitor and a mechanism, with a clock that the test turns."""
+
+    def __init__(self, mechanism, settings=SETTINGS) -> None:
+        self.mechanism = mechanism
+        self.input = RotorInput(settings)
+        self.monitor = InputMonitor(started=START)
+
+    def feed(self, at, *messages) -> None:
+        for data in messages:
+            self.monitor.last_input = at
+            try:
+                self.input.accept(data, lambda: SECOND)
+            except RejectedInputError:
+                continue
+            self.monitor.published += 1
+
+    def report(self, at):
+        return self.monitor.report(self.input, self.mechanism, TIMEOUT, at)
+
+
+def good(stamp=1, position=1.0) -> bytes:
+    return rotor_bytes(stamp, position=[position])
+
+
+def unnormalised(seconds, nanoseconds) -> bytes:
+    return good()[:4] + struct.pack('<iI', seconds, nanoseconds) + good()[12:]
+
+
+BAD = rotor_bytes(1, position=[math.nan])
+NO_JOINT = rotor_bytes(1, ['wheel'], [1.0])
+
+
+@pytest.fixture
+def bench(actuator) -> Bench:
+    return Bench(actuator)
+
+
+def test_levels_are_those_of_diagnostic_status():
+    levels = [DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR]
+    assert [bytes([level]) for level in (OK, WARN, ERROR)] == levels
+
+
+def test_valid_input_is_ok(bench):
+    bench.feed(START + 0.5, good())
+    report = bench.report(START + 1.0)
+    assert (report.level, report.message) == (OK, 'ok')
+
+
+def test_rejects_since_the_last_report_are_a_warning_and_then_over(bench):
+    bench.feed(START + 0.5, good(), BAD, NO_JOINT, BAD)
+    report = bench.report(START + 1.0)
+    assert report.level == WARN
+    assert 'position not finite 2' in report.message
+    assert 'joint missing 1' in report.message
+    bench.feed(START + 1.5, good(2))
+    report = bench.report(START + 2.0)
+    assert (report.level, report.message) == (OK, 'ok')
+    assert report.values['rejected: position not finite'] == '2'
+    bench.feed(START + 2.5, BAD)
+    report = bench.report(START + 3.0)
+    assert report.level == WARN
+    assert 'position not finite 1' in report.message
+    assert 'joint missing' not in report.message
+
+
+def test_what_the_middleware_lost_since_the_last_report_is_a_warning_and_then_over(bench):
+    bench.feed(START + 0.5, good())
+    bench.monitor.lost += 3
+    bench.monitor.unsent += 2
+    report = bench.report(START + 1.0)
+    assert (report.level, report.message) == (WARN, 'lost 3; not sent 2')
+    bench.feed(START + 1.5, good(2))
+    report = bench.report(START + 2.0)
+    assert (report.level, report.message) == (OK, 'ok')
+    assert (report.values['lost messages'], report.values['not sent']) == ('3', '2')
+
+
+@pytest.mark.parametrize(('drivers', 'level'), [(0, OK), (1, OK), (2, WARN), (3, WARN)])
+def test_more_than_one_driver_is_a_warning(bench, drivers, level):
+    bench.feed(START + 0.5, good())
+    bench.monitor.drivers = drivers
+    report = bench.report(START + 1.0)
+    assert report.level == level
+    assert report.values['drivers'] == str(drivers)
+    assert (f'{drivers} drivers' in report.message) is (level == WARN)
+
+
+@pytest.mark.parametrize(('silence', 'level'), [(0.9, OK), (1.0, OK), (1.1, ERROR), (60.0, ERROR)])
+def test_silence_beyond_the_timeout_is_an_error(bench, silence, level):
+    bench.feed(START + 10.0, good())
+    report = bench.report(START + 10.0 + silence)
+    assert report.level == level
+    assert ('no input' in report.message) is (level == ERROR)
+
+
+def test_silence_from_the_start_is_an_error_after_the_timeout(bench):
+    assert bench.report(START + 0.5).level == OK
+    report = bench.report(START + 1.5)
+    assert report.level == ERROR
+    assert 'no input' in report.message
+    assert report.values['age of last input (s)'] == 'none'
+
+
+def test_input_after_silence_is_ok_again(bench):
+    assert bench.report(START + 5.0).level == ERROR
+    bench.feed(START + 5.5, good())
+    assert bench.report(START + 6.0).level == OK
+
+
+def test_rejected_input_is_no_silence(bench):
+    bench.feed(START + 5.0, BAD)
+    report = bench.report(START + 5.5)
+    assert report.level == WARN
+    assert 'no input' not in report.message
+
+
+def test_unreferenced_encoder_is_an_error_until_home(actuator):
+    bench = Bench(actuator, replace(SETTINGS, rotor_encoder='single_turn'))
+    bench.feed(START + 0.5, good())
+    report = bench.report(START + 1.0)
+    assert report.level == ERROR
+    assert 'not referenced' in report.message
+    assert report.values['referenced'] == 'false'
+    bench.input.home(0.0)
+    report = bench.report(START + 1.5)
+    assert (report.level, report.message) == (OK, 'ok')
+    assert report.values['referenced'] == 'true'
+
+
+@pytest.mark.parametrize(
+    ('faults', 'level', 'message'),
+    [
+        (GraphFaults(errors=['deaf']), ERROR, 'deaf'),
+        (GraphFaults(warnings=['mute', 'double']), WARN, 'mute; double'),
+        (GraphFaults(errors=['deaf'], warnings=['mute']), ERROR, 'deaf; mute'),
+    ],
+)
+def test_fault_in_the_graph_is_told_as_long_as_it_lasts(bench, faults, level, message):
+    bench.feed(START + 0.5, good())
+    bench.monitor.graph = faults
+    for _ in range(2):
+        report = bench.report(START + 1.0)
+        assert (report.level, report.message) == (level, message)
+    bench.monitor.graph = GraphFaults()
+    report = bench.report(START + 1.0)
+    assert (report.level, report.message) == (OK, 'ok')
+
+
+def test_error_outranks_warning_and_both_are_told(bench):
+    bench.feed(START + 0.5, BAD)
+    bench.monitor.graph = GraphFaults(warnings=['listener out of reach'])
+    report = bench.report(START + 3.0)
+    assert report.level == ERROR
+    for part in ('no input', 'listener out of reach', 'position not finite 1'):
+        assert part in report.message
+
+
+def test_values_count_what_happened(bench):
+    bench.feed(
+        START + 1.0,
+        rotor_bytes(0, position=[1.0]),  # no stamp: 1 s of the clock
+        good(SECOND),  # duplicate
+        good(SECOND + 5),
+        good(SECOND),  # out of order
+        good(20 * SECOND),
+        good(5 * SECOND),  # reset
+        unnormalised(5, SECOND + 1),
+        rotor_bytes(6 * SECOND, position=[1e17]),
+        BAD,
+        b'garbage',
+    )
+    values = bench.report(START + 1.25).values
+    assert values == {
+        'rate (Hz)': '8.0',  # 10 messages in 1.25 s
+        'received': '10',
+        'published': '6',
+        'rejected: not a JointState': '1',
+        'rejected: out of order': '1',
+        'rejected: position not finite': '1',
+        'rejected: position too large': '1',
+        'lost messages': '0',
+        'not sent': '0',
+        'drivers': '0',
+        'duplicate stamps': '1',
+        'zero stamps': '1',
+        'unnormalised stamps': '1',
+        'clock resets': '1',
+        'age of last input (s)': '0.250',
+        'referenced': 'true',
+        'loop-closure residual (m)': values['loop-closure residual (m)'],
+    }
+
+
+def test_rate_is_that_since_the_last_report(bench):
+    bench.feed(START + 0.5, *(good(n) for n in range(1, 31)))
+    assert bench.report(START + 1.0).values['rate (Hz)'] == '30.0'
+    bench.feed(START + 1.5, *(good(n) for n in range(31, 41)))
+    assert bench.report(START + 3.0).values['rate (Hz)'] == '5.0'
+    assert bench.report(START + 4.0).values['rate (Hz)'] == '0.0'
+
+
+def test_two_reports_at_the_same_moment_divide_by_nothing(bench):
+    bench.feed(START, good())
+    bench.report(START + 1.0)
+    assert bench.report(START + 1.0).values['rate (Hz)'] == '0.0'
+
+
+@pytest.mark.parametrize('position', [0.0, 1.0, -3e5, 1e9, 1e16])
+def test_residual_is_that_of_a_closed_loop(mechanism, position):
+    bench = Bench(mechanism)
+    assert bench.report(START + 0.5).values['loop-closure residual (m)'] == 'none'
+    bench.feed(START + 0.5, good(1, position))
+    residual = float(bench.report(START + 1.0).values['loop-closure residual (m)'])
+    # A few roundings of lengths of a millimetre.
+    assert 0.0 <= residual < 1e-15
+
+
+def test_residual_shows_a_loop_that_does_not_close(bench, monkeypatch):
+    monkeypatch.setattr(
+        diagnostics, 'solve', lambda mechanism, rotor_angle: solve(mechanism, rotor_angle + 0.1)
+    )
+    bench.feed(START + 0.5, good())
+    assert float(bench.report(START + 1.0).values['loop-closure residual (m)']) > 1e-5

@@ -1,0 +1,181 @@
+"""The encoder at the output beside the rotor's: errors that are put in have to come out."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from live import SECOND, START, rotor_bytes
+
+from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor
+from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+MS = SECOND // 1000
+ROTOR = InputSettings('rotor', 1, 0.0, 'multi_turn', 650.0, 6500.0)
+SETTINGS = EncoderSettings('', 1, 0.0, 10.0, 0.1, 0.01)
+TIMEOUT, LIMIT = 1.0, 0.003
+NOW = 50.0
+
+
+class Bench:
+    """Both encoders and the monitor."""
+
+    def __init__(self, actuator, settings=SETTINGS) -> None:
+        self.rotor = RotorInput(ROTOR)
+        self.encoder = OutputEncoder(actuator, settings)
+        self.monitor = EncoderMonitor()
+
+    def turn(self, stamp, position):
+        sample = self.rotor.accept(rotor_bytes(stamp, position=[position]), lambda: 0)
+        return self.encoder.follow(sample)
+
+    def measure(self, stamp, position, *, joint='shaft', now=0, at=NOW):
+        self.monitor.last_input = at
+        data = rotor_bytes(stamp, [joint], [position])
+        return self.encoder.accept(data, lambda: now)
+
+    def report(self, at=NOW, limit=LIMIT):
+        return self.monitor.report(self.encoder, limit, TIMEOUT, at)
+
+
+@pytest.fixture
+def bench(actuator) -> Bench:
+    return Bench(actuator)
+
+
+@pytest.mark.parametrize(('direction', 'zero'), [(1, 0.0), (-1, 0.0), (1, 2.5), (-1, -40.0)])
+def test_error_is_the_measured_angle_less_a_nineteenth_of_the_rotors(actuator, direction, zero):
+    settings = replace(SETTINGS, output_encoder_direction=direction, output_encoder_zero=zero)
+    bench = Bench(actuator, settings)
+    found, put_in = [], []
+    bench.measure(START - MS, 0.0)  # there is an encoder, but no rotor yet
+    for k in range(2000):
+        rotor = 0.3 * k
+        found += bench.turn(START + k * MS, rotor)
+        # A third of the way to the next rotor state, which is yet to come.
+        error = 1e-3 * math.sin(0.01 * k)
+        angle = -(rotor + 0.1) / 19.0 + error
+        found += bench.measure(START + k * MS + MS // 3, zero + direction * angle)
+        put_in.append(error)
+    # What the third of a millisecond lacks is 0.3 rad / 19 / 3e6 of a nanosecond's third.
+    assert [sample.stamp for sample in found] == [START + k * MS + MS // 3 for k in range(1999)]
+    np.testing.assert_allclose([s.error for s in found], put_in[:-1], rtol=0, atol=1e-8)
+    assert bench.encoder.compared == 1999
+    assert bench.encoder.not_compared == {'no ideal angle before': 1}
+
+
+def test_nothing_is_reported_without_an_encoder(bench):
+    for k in range(3):
+        assert not bench.turn(START + k * MS, 1.0)
+    assert bench.report() is None
+
+
+def test_nothing_is_compared_across_a_gap(bench):
+    bench.measure(START, 0.0)
+    bench.turn(START, 0.0)
+    assert len(bench.turn(START + 100 * MS, 0.0)) == 1
+    assert len(bench.measure(START + 50 * MS, 0.0)) == 1
+    assert len(bench.measure(START + 150 * MS, 0.0)) == 0
+    assert len(bench.turn(START + 201 * MS, 0.0)) == 0
+    assert bench.encoder.not_compared['gap of the ideal angle'] == 1
+
+
+def test_joint_is_looked_up_by_its_name(actuator):
+    bench = Bench(actuator, replace(SETTINGS, output_encoder_joint='shaft'))
+    with pytest.raises(RejectedInputError, match='joint missing'):
+        bench.measure(START, 0.0, joint='wheel')
+    bench.turn(START, 0.0)
+    [sample] = bench.measure(START, 0.25) or bench.turn(START + MS, 0.0)
+    assert sample.error == pytest.approx(0.25)
+    assert bench.encoder.received == 2
+    assert bench.encoder.rejected == {'joint missing': 1}
+
+
+def test_message_without_a_stamp_has_that_of_the_clock(bench):
+    bench.measure(START, 0.0)
+    bench.turn(START, 0.0)
+    bench.turn(START + 2 * MS, 0.0)
+    [sample] = bench.measure(0, 0.5, now=START + MS)
+    assert (sample.stamp, sample.error) == (START + MS, 0.5)
+
+
+def test_window_starts_anew_where_the_clock_is_set_back(bench):
+    for start in (START, START - 50 * SECOND):
+        for k in range(5):
+            bench.measure(start + k * MS, 0.125 if start == START else 0.375)
+            bench.turn(start + k * MS, 0.0)
+    assert bench.encoder.window.both.mean == pytest.approx(0.375)
+    assert bench.encoder.window.both.peak_to_peak == 0.0
+
+
+# Diagnostics.
+
+
+def swing(bench, amplitude, *, samples=400):
+    """Go there and back, behind by half the play each way."""
+    for k in range(samples):
+        angle = 0.2 * math.sin(k * math.tau / samples)
+        behind = -amplitude if math.cos(k * math.tau / samples) > 0.0 else amplitude
+        bench.measure(START + k * MS, angle + behind)
+        bench.turn(START + k * MS, -19.0 * angle)
+
+
+def test_report_gives_the_figures_of_the_window(bench):
+    swing(bench, 0.001)
+    report = bench.report()
+    assert (report.level, report.message) == (OK, 'ok')
+    values = report.values
+    assert float(values['peak to peak (rad)']) == pytest.approx(0.002, abs=1e-6)
+    assert float(values['mean (rad)']) == pytest.approx(0.0, abs=2e-5)
+    assert float(values['mean forward (rad)']) == pytest.approx(-0.001, abs=1e-4)
+    assert float(values['mean backward (rad)']) == pytest.approx(0.001, abs=1e-4)
+    assert float(values['lost motion (rad)']) == pytest.approx(0.002, abs=2e-4)
+    assert values['received'] == '400'
+    assert values['samples'] == values['compared'] == '400'
+    assert not any(key.startswith(('rejected', 'not compared')) for key in values)
+
+
+def test_error_above_the_limit_is_a_warning(bench):
+    swing(bench, 0.0016)
+    report = bench.report()
+    assert (report.level, report.message) == (WARN, 'peak to peak 0.0032 rad')
+
+
+@pytest.mark.parametrize('before', [True, False], ids=['after a report', 'at once'])
+def test_silence_is_a_warning_and_leaves_no_figures(bench, before):
+    swing(bench, 0.001)
+    if before:
+        bench.report()
+    report = bench.report(NOW + 2.5)
+    assert (report.level, report.message) == (WARN, 'no output_encoder for 2.5 s')
+    assert report.values['samples'] == '0'
+    assert report.values['mean (rad)'] == report.values['lost motion (rad)'] == 'none'
+
+
+def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
+    bench.turn(START, 0.0)
+    for k in range(3):
+        bench.measure(START - 5 * SECOND + k * MS, 0.0)
+        bench.turn(START + k * MS, 0.0)
+    report = bench.report()
+    assert (report.level, report.message) == (WARN, 'no rotor angle of the same time')
+    assert report.values['not compared: no ideal angle before'] == '3'
+
+
+def test_rejects_and_losses_since_the_last_report_are_a_warning_and_then_over(bench):
+    swing(bench, 0.001)
+    with pytest.raises(RejectedInputError):
+        bench.measure(START + 500 * MS, math.nan)
+    bench.monitor.lost += 2
+    report = bench.report()
+    assert report.level == WARN
+    assert report.message == 'rejected: position not finite 1; lost 2'
+    assert report.values['rejected: position not finite'] == '1'
+    assert report.values['lost messages'] == '2'
+    bench.measure(START + 450 * MS, 0.0)
+    bench.turn(START + 450 * MS, 0.0)
+    report = bench.report()
+    assert (report.level, report.message) == (OK, 'ok')
+    assert report.values['rejected: position not finite'] == '1'

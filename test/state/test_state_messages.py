@@ -1,0 +1,237 @@
+"""The published messages against the motion at 50 digits, and their layout."""
+
+import math
+from itertools import combinations
+from operator import itemgetter
+
+import oracle
+import pytest
+from geometry_msgs.msg import PoseArray
+from hypothesis import example, given
+from hypothesis import strategies as st
+from live import SECOND, rotor_bytes
+from properties import mechanisms, numbers_of
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
+
+from gear_kinematics.kinematics import Branch, Mechanism, RotorPosition, solve, split_turns
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample
+from gear_kinematics.state.state_messages import StateMessages
+
+STAMP = 12_345_678_901
+NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
+TYPES = {
+    'output_state': JointState,
+    'body_poses': PoseArray,
+    'mechanism_joint_states': JointState,
+}
+DIGITS = 1e-12  # of the eccentricity, of a radian within the turn
+LARGEST_ANGLE = 2**51 * math.tau  # rad: the node takes no position beyond
+OUTPUTS = ('output_state', 'body_poses')
+TINY = 1e-20  # rates below: the oracle differentiates numerically, at 50 digits
+
+
+def encode(mechanism, sample, names=NAMES):
+    """Give the three messages as rclpy reads them."""
+    encoded = dict(StateMessages(mechanism, **names).encode(sample))
+    assert list(encoded) == list(TYPES)
+    return [deserialize_message(encoded[topic], kind) for topic, kind in TYPES.items()]
+
+
+def sample_at(rotor_angle, velocity=None, effort=None) -> RotorSample:
+    return RotorSample(STAMP, split_turns(rotor_angle), velocity, effort)
+
+
+def assert_poses(poses, expected, numbers) -> None:
+    """Hold a PoseArray against the oracle: satellites in branch order, then couplings."""
+    branches = expected.branches
+    centres = [branch.satellite_centre for branch in branches]
+    centres += [branch.oldham_centre for branch in branches]
+    assert len(poses) == len(centres)
+    for pose, centre in zip(poses, centres, strict=True):
+        position = (pose.position.x, pose.position.y)
+        assert oracle.point_error(position, centre, numbers.eccentricity) <= DIGITS
+        assert pose.position.z == centre[2]
+        assert (pose.orientation.x, pose.orientation.y) == (0.0, 0.0)
+        assert math.hypot(pose.orientation.z, pose.orientation.w) == pytest.approx(1.0, abs=1e-15)
+        angle = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
+        assert oracle.turn_angle_error(angle, expected.output_angle) <= DIGITS
+
+
+def assert_joint_states(message, derivatives, numbers, *, velocity: bool) -> None:
+    """Hold mechanism_joint_states against the oracle."""
+    expected, rates = derivatives.value, derivatives.first
+    count, e = len(numbers.branches), numbers.eccentricity
+    angles, slides = message.position[: 1 + count], message.position[1 + count : -1]
+    assert oracle.angle_error(message.position[-1], expected.output_angle) <= DIGITS
+    for k, branch in enumerate(expected.branches):
+        turned = angles[0] + angles[1 + k]
+        assert oracle.turn_angle_error(turned, branch.satellite_angle) <= DIGITS
+        assert oracle.length_error(slides[k], branch.satellite_slide, e) <= DIGITS
+    if not velocity:
+        assert len(message.velocity) == 0
+        return
+    speed = message.velocity[0]
+    scale = abs(speed) + abs(message.velocity[-1]) + TINY
+    assert oracle.angle_error(message.velocity[-1], rates.output_angle) <= 1e-14 * scale
+    for k, branch in enumerate(rates.branches):
+        turned = message.velocity[1 + k] + speed
+        assert oracle.angle_error(turned, rates.output_angle) <= 1e-14 * scale
+        slide = message.velocity[1 + count + k]
+        assert oracle.length_error(slide, branch.satellite_slide, e) <= 1e-12 * scale
+
+
+@given(mechanisms(), st.floats(-20.0, 20.0), st.floats(-700.0, 700.0))
+def test_messages_hold_the_motion(mechanism, rotor_angle, velocity):
+    # The output of 2:1 turns as fast as the rotor, that of 400:1 399 times: few turns of both.
+    rotor_angle /= max(1.0, float(abs(1 / mechanism.gear_ratio)))
+    numbers = numbers_of(mechanism)
+    state, poses, joints = encode(mechanism, sample_at(rotor_angle, velocity))
+    exact = oracle.rotor_angle_of(rotor_angle)
+    derivatives = oracle.expected_derivatives(numbers, exact, velocity, 0.0)
+    expected = derivatives.value
+    assert oracle.angle_error(state.position[0], expected.output_angle) <= DIGITS
+    output_rate = derivatives.first.output_angle
+    assert oracle.angle_error(state.velocity[0], output_rate) <= 1e-14 * abs(output_rate) + TINY
+    assert_poses(poses.poses, expected, numbers)
+    assert joints.position[0] == pytest.approx(rotor_angle, abs=1e-14)
+    assert joints.velocity[0] == velocity
+    assert_joint_states(joints, derivatives, numbers, velocity=True)
+
+
+@pytest.mark.parametrize('turns', [1, -1, 10**6, -(10**10) - 7, 10**14 + 3])
+@pytest.mark.parametrize('angle', [0.0, 0.4, -3.1])
+def test_bodies_keep_their_places_after_any_number_of_turns(mechanism, turns, angle):
+    numbers = numbers_of(mechanism)
+    sample = RotorSample(STAMP, RotorPosition(turns, angle), None, None)
+    state, poses, _ = encode(mechanism, sample)
+    exact = oracle.mp.mpf(angle) + 2 * oracle.mp.pi * turns
+    expected = oracle.expected_motion(numbers, exact)
+    assert_poses(poses.poses, expected, numbers)
+    spacing = 2.0 * math.ulp(float(expected.output_angle))
+    assert oracle.angle_error(state.position[0], expected.output_angle) <= spacing
+
+
+def test_default_order_of_the_poses(actuator):
+    # By hand at φ2 = 0: cams at (0, ±e), and there the couplings too, as sin β is 0.
+    _, message, _ = encode(actuator, sample_at(0.0))
+    places = [(pose.position.x, pose.position.y, pose.position.z) for pose in message.poses]
+    for place, expected in zip(
+        places,
+        [(0, 0.0011, 0.04), (0, -0.0011, -0.04), (0, 0.0011, 0.04), (0, -0.0011, -0.04)],
+        strict=True,
+    ):
+        assert place == pytest.approx(expected, abs=1e-15)
+    # By hand at a quarter turn: cams at (∓e, 0), and the couplings elsewhere.
+    _, message, _ = encode(actuator, sample_at(0.5 * math.pi))
+    places = [(pose.position.x, pose.position.y) for pose in message.poses]
+    assert places[0] == pytest.approx((-0.0011, 0.0), abs=1e-15)
+    assert places[1] == pytest.approx((0.0011, 0.0), abs=1e-15)
+    beta = 0.5 * math.pi * (1.0 + 1.0 / 19.0)
+    assert math.hypot(*places[2]) == pytest.approx(abs(0.0011 * math.cos(beta)), abs=1e-15)
+
+
+@pytest.mark.parametrize('velocity', [None, 3.8])
+@pytest.mark.parametrize('effort', [None, 0.5])
+def test_fields_that_the_input_lacks_stay_empty(actuator, velocity, effort):
+    # 80/76 teeth: i = -19, by hand.
+    state, _, joints = encode(actuator, sample_at(1.9, velocity, effort))
+    assert list(state.name) == ['output_shaft']
+    assert list(state.position) == [pytest.approx(-0.1, abs=1e-16)]
+    assert list(state.velocity) == ([] if velocity is None else [pytest.approx(-0.2)])
+    assert list(state.effort) == ([] if effort is None else [pytest.approx(-9.5)])
+    assert len(joints.velocity) == (0 if velocity is None else len(joints.name))
+    assert len(joints.effort) == 0
+
+
+@pytest.mark.parametrize('topics', [subset for n in range(4) for subset in combinations(TYPES, n)])
+def test_only_what_is_wanted_is_encoded(actuator, topics):
+    messages = StateMessages(actuator, **NAMES)
+    sample = sample_at(1.9, 3.8, 0.5)
+    every = dict(messages.encode(sample))
+    assert list(messages.encode(sample, topics)) == [(topic, every[topic]) for topic in topics]
+
+
+def test_power_is_the_same_on_both_sides(mechanism):
+    state, _, _ = encode(mechanism, sample_at(1.0, 3.0, 0.25))
+    assert state.velocity[0] * state.effort[0] == pytest.approx(3.0 * 0.25, rel=1e-14)
+
+
+def test_names_and_frames_carry_the_prefix(actuator):
+    names = {'output_joint': 'shoulder', 'frame_prefix': 'left/'}
+    state, poses, joints = encode(actuator, sample_at(0.0), names)
+    assert list(state.name) == ['left/shoulder']
+    assert poses.header.frame_id == 'left/stator'
+    assert list(joints.name) == [
+        'left/rotor', 'left/satellite_a', 'left/satellite_b', 'left/oldham_a', 'left/oldham_b',
+        'left/shoulder',
+    ]  # fmt: skip
+
+
+def test_frame_of_the_poses_is_the_stator(actuator):
+    _, poses, _ = encode(actuator, sample_at(0.0))
+    assert poses.header.frame_id == 'stator'
+
+
+@pytest.mark.parametrize('stamp', [0, 1, STAMP, -1, 2**31 * 10**9 - 1])
+def test_every_message_has_the_stamp_of_the_sample(actuator, stamp):
+    for message in encode(actuator, sample_at(0.0)._replace(stamp=stamp)):
+        header = message.header.stamp
+        assert (header.sec, header.nanosec) == divmod(stamp, 10**9)
+
+
+@given(
+    mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(width=64, allow_nan=False)
+)
+def test_no_number_is_too_large_to_be_encoded(mechanism, position, velocity):
+    if math.isinf(velocity):
+        velocity = math.copysign(1.7e308, velocity)
+    state, poses, _ = encode(mechanism, sample_at(position, velocity, velocity))
+    assert math.isfinite(state.position[0])
+    assert len(poses.poses) == 2 * len(mechanism.branches)
+
+
+@given(mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(-1e4, 1e4))
+def test_messages_have_the_bits_of_a_batch(mechanism, position, velocity):
+    sample = sample_at(position, velocity)
+    state, poses, joints = encode(mechanism, sample)
+    batch = solve(mechanism, [position], velocity, rotor_turns=[0.0])
+    assert state.position[0] == joints.position[-1] == batch.output_angle[0]
+    assert state.velocity[0] == joints.velocity[-1] == batch.output_velocity[0]
+    places = [[pose.position.x, pose.position.y] for pose in poses.poses]
+    assert places == [*batch.satellite_centre[0].tolist(), *batch.oldham_centre[0].tolist()]
+    slides = slice(1 + len(mechanism.branches), -1)
+    assert joints.position[slides].tolist() == batch.satellite_slide[0].tolist()
+    assert joints.velocity[slides].tolist() == batch.satellite_slide_velocity[0].tolist()
+
+
+rates = st.none() | st.floats(-1e300, 1e300)
+
+
+@given(
+    mechanisms(),
+    st.lists(
+        st.tuples(
+            st.integers(0, 2**31 * SECOND - 1),
+            st.floats(-LARGEST_ANGLE, LARGEST_ANGLE) | st.floats(-1e3, 1e3),
+            rates,
+            rates,
+        ),
+        max_size=20,
+    ),
+    st.sampled_from([1, -1]),
+)
+@example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0)] * 2, -1)
+def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction):
+    """To the last bit, by way of the input, which gives numbers for turns and NaN for None."""
+    settings = InputSettings('', direction, 0.0, 'multi_turn', 650.0, 6500.0)
+    messages = [
+        rotor_bytes(stamp, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both))
+        for stamp, angle, *both in sorted(inputs, key=itemgetter(0))
+    ]
+    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
+    states = StateMessages(mechanism, **NAMES)
+    samples = [one_by_one.accept(data, lambda: 1) for data in messages]
+    expected = [dict(states.encode(sample, OUTPUTS)) for sample in samples]
+    found = states.encode_outputs(at_once.accept_batch(messages, [1] * len(messages)))
+    assert found == {topic: [each[topic] for each in expected] for topic in OUTPUTS}

@@ -1,0 +1,100 @@
+"""gearkin as a process, and bags in the midst of which it can be caught."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+BAGS = Path(__file__).resolve().parents[2] / 'bags'
+DEADLINE = 60.0  # s: far beyond anything but a failure
+GEARKIN = 'import sys; from gear_kinematics.__main__ import gearkin; sys.exit(gearkin())'
+
+
+def gearkin(*arguments, code=GEARKIN, **options) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end."""
+    command = [sys.executable, '-c', code, *map(str, arguments)]
+    options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': DEADLINE} | options
+    return subprocess.run(command, text=True, check=False, **options)
+
+
+@contextmanager
+def running_gearkin(*arguments, code=GEARKIN, **options):
+    """Start a command, in a process group of its own of which nothing is left at the end."""
+    command = [sys.executable, '-c', code, *map(str, arguments)]
+    options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE} | options
+    with started(command, **options) as process:
+        yield process
+
+
+@contextmanager
+def started(command, **options):
+    """Start a process and kill its group at the end."""
+    with subprocess.Popen(command, text=True, start_new_session=True, **options) as process:
+        try:
+            yield process
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+
+
+def wait_until(condition, what):
+    """Wait until a condition holds, and return what it gave."""
+    deadline = time.monotonic() + DEADLINE
+    while not (result := condition()):
+        assert time.monotonic() < deadline, f'waited in vain for {what}'
+        time.sleep(0.01)
+    return result
+
+
+class BlockedBag:
+    """A copy of a bag at which every reader stops, because its file is a pipe without data.
+
+    A context manager; at its end the readers find the file empty.
+    """
+
+    def __init__(self, source: Path, path: Path) -> None:
+        """Make the copy."""
+        self.path = path
+        shutil.copytree(source, path)
+        (self._file,) = (file for file in path.iterdir() if file.suffix in {'.mcap', '.db3'})
+        self._whole = path / 'whole'
+        self._file.rename(self._whole)
+        os.mkfifo(self._file)
+
+    def __enter__(self):
+        # Open for both, so that neither this nor a reader waits for the other.
+        self._pipe = os.open(self._file, os.O_RDWR)
+        return self
+
+    def __exit__(self, *_):
+        os.close(self._pipe)
+
+    def readers(self) -> list[int]:
+        """Give the ids of the processes that are at it."""
+        found = []
+        for process in Path('/proc').glob('[0-9]*'):
+            with suppress(OSError):  # it, or a file of its, is gone meanwhile
+                links = [link.readlink() for link in (process / 'fd').iterdir()]
+                if self._file in links and int(process.name) != os.getpid():
+                    found.append(int(process.name))
+        return sorted(found)
+
+    def reader(self) -> int:
+        """Wait for the first process that is at it, and sleeps: a signal will wake it."""
+
+        def sleeping() -> list[int]:
+            return [reader for reader in self.readers() if self._state(reader) == 'S']
+
+        return wait_until(sleeping, f'a reader of {self.path}')[0]
+
+    @staticmethod
+    def _state(process: int) -> str:
+        return Path(f'/proc/{process}/stat').read_text('utf-8').rpartition(')')[2].split()[0]
+
+    def heal(self) -> None:
+        """Put the whole file in its place, for those that come from now on."""
+        self._whole.rename(self._file)

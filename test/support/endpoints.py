@@ -1,0 +1,208 @@
+"""A driver and a listener as processes of their own, on any host, told what to do through pipes.
+
+A line on stdin names a method of theirs and its arguments, and a line on stdout is what it
+returned, both in JSON. They end with their stdin.
+"""
+
+import json
+import math
+import struct
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from threading import Event, Thread
+from typing import Any, NamedTuple
+
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseArray
+from live import DEADLINE, SECOND, START, rotor_bytes, stamp_of
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.signals import SignalHandlerOptions
+from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
+
+from gear_kinematics.ros.leaving import leave
+
+PERIOD = SECOND // 100  # ns
+STEP = 0.3  # rad within the period
+OUTPUTS = {'output_state': JointState, 'body_poses': PoseArray}
+
+
+class Line(NamedTuple):
+    """From the driver through a node to a listener, in a ROS namespace of its own."""
+
+    reliability: str
+    depth: int
+    """Messages that the driver keeps for the node."""
+    encoder: str
+
+
+class Report(NamedTuple):
+    """What a node says in its diagnostics."""
+
+    stamp: int
+    message: str
+    values: dict[str, str]
+
+
+def reading(number: int, encoder: str) -> float:
+    """Give the position in the driver's message of this number. The rotor turns steadily."""
+    angle = STEP * number
+    return math.remainder(angle, math.tau) if encoder == 'single_turn' else angle
+
+
+def rotor_message(number: int, encoder: str) -> bytes:
+    """Give the driver's message of this number."""
+    return rotor_bytes(START + number * PERIOD, position=[reading(number, encoder)])
+
+
+def number_of(output: bytes) -> int:
+    """Give the number of the driver's message with the stamp that an output begins with."""
+    seconds, nanoseconds = struct.unpack_from('<iI', output, 4)
+    return (seconds * SECOND + nanoseconds - START) // PERIOD
+
+
+class Endpoint:
+    """A participant in ROS."""
+
+    def __init__(self, name: str) -> None:
+        rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+        self._node = Node(name)
+
+    def close(self) -> None:
+        leave(self._node)
+
+
+class Driver(Endpoint):
+    """Drives every line at once. After a pause the stamps go on from where they stopped."""
+
+    def __init__(self, lines: dict[str, list]) -> None:
+        super().__init__('driver')
+        self._publishers = []
+        for name, line in lines.items():
+            reliability, depth, encoder = line
+            qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy[reliability])
+            publisher = self._node.create_publisher(JointState, f'/{name}/rotor_state', qos)
+            self._publishers.append((publisher, encoder))
+        self._sent = 0
+        self._paused = Event()
+        self._thread = Thread()
+
+    def drive(self) -> None:
+        self._paused.clear()
+        self._thread = Thread(target=self._publish)
+        self._thread.start()
+
+    def pause(self) -> int:
+        self._paused.set()
+        self._thread.join()
+        return self._sent
+
+    def sent(self) -> int:
+        return self._sent
+
+    def close(self) -> None:
+        self.pause()
+        super().close()
+
+    def _publish(self) -> None:
+        due = time.monotonic()
+        while not self._paused.wait(max(0.0, due - time.monotonic())):
+            for publisher, encoder in self._publishers:
+                publisher.publish(rotor_message(self._sent, encoder))
+            self._sent += 1
+            due += PERIOD / SECOND
+
+
+class Listener(Endpoint):
+    """Keeps what the node of a line publishes, and calls its service."""
+
+    def __init__(self, name: str) -> None:
+        super().__init__('listener')
+        qos = QoSProfile(depth=2000)
+        node_name = f'/{name}/gear_state_publisher'
+        self._outputs: dict[str, list[bytes]] = {topic: [] for topic in OUTPUTS}
+        self._report: Report | None = None
+
+        def keep_report(message: DiagnosticArray) -> None:
+            [status] = message.status
+            if status.hardware_id == node_name:
+                values = {pair.key: pair.value for pair in status.values}
+                self._report = Report(stamp_of(message), status.message, values)
+
+        for topic, kind in OUTPUTS.items():
+            keep = self._outputs[topic].append
+            self._node.create_subscription(kind, f'/{name}/{topic}', keep, qos, raw=True)
+        self._node.create_subscription(DiagnosticArray, '/diagnostics', keep_report, qos)
+        self._homing = self._node.create_client(Trigger, f'{node_name}/home')
+        self._executor = SingleThreadedExecutor()
+        self._executor.add_node(self._node)
+        self._thread = Thread(target=self._executor.spin)
+        self._thread.start()
+
+    def newest(self) -> int:
+        """Give the number of the newest message that is answered on every topic, or -1."""
+        return min(number_of(data[-1]) if data else -1 for data in self._outputs.values())
+
+    def outputs(self, first: int) -> list[list[str]]:
+        """Give the answers on every topic from that to the driver's `first` on, as digits."""
+        return [
+            [data.hex() for data in messages if number_of(data) >= first]
+            for messages in self._outputs.values()
+        ]
+
+    def report(self) -> Report | None:
+        """Give the node's newest report."""
+        return self._report
+
+    def home(self) -> str:
+        """Home the node and give its answer."""
+        assert self._homing.wait_for_service(DEADLINE)
+        return self._homing.call(Trigger.Request()).message
+
+    def close(self) -> None:
+        self._executor.shutdown()
+        self._thread.join()
+        super().close()
+
+
+class Remote:
+    """An endpoint in a process of its own."""
+
+    def __init__(self, process: subprocess.Popen) -> None:
+        self._process = process
+
+    def __call__(self, method: str, *arguments) -> Any:
+        """Let it do something and give what that returns."""
+        print(json.dumps([method, *arguments]), file=self._process.stdin, flush=True)
+        answer = self._process.stdout.readline()
+        assert answer, f'the process ended in {method}'
+        return json.loads(answer)
+
+
+@contextmanager
+def running(kind: type[Endpoint], argument, **options) -> Iterator[Remote]:
+    """Run an endpoint; in the end it has exit code 0."""
+    command = [sys.executable, __file__, kind.__name__, json.dumps(argument)]
+    pipes = {'stdin': subprocess.PIPE, 'stdout': subprocess.PIPE}
+    with subprocess.Popen(command, text=True, **pipes, **options) as process:
+        yield Remote(process)
+    assert process.returncode == 0
+
+
+def main() -> None:
+    kind, argument = sys.argv[1:]
+    endpoint = {'Driver': Driver, 'Listener': Listener}[kind](json.loads(argument))
+    with closing(endpoint):
+        for line in sys.stdin:
+            method, *arguments = json.loads(line)
+            print(json.dumps(getattr(endpoint, method)(*arguments)), flush=True)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,123 @@
+"""Recordings of gears that are known, simulated without anything of the code under test."""
+
+import csv
+import sqlite3
+from collections.abc import Iterable, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from gear_kinematics.bag import BagWriter
+from gear_kinematics.wire.cdr import JointStateTemplate
+
+
+class Gear(NamedTuple):
+    """Play and a spring in series, moved against Coulomb friction."""
+
+    play: float  # rad
+    stiffness: float  # N·m/rad
+    friction: float  # N·m
+
+    def torque(self, angle: float) -> float:
+        """What the gear holds against an angle, N·m."""
+        if abs(angle) <= 0.5 * self.play:
+            return 0.0
+        return self.stiffness * (
+            angle - 0.5 * self.play if angle > 0.0 else angle + 0.5 * self.play
+        )
+
+
+def creep(gear: Gear, torques: Sequence[float], angle: float = 0.0) -> np.ndarray:
+    """Angles under torques that change slowly: it creeps as long as friction does not hold it."""
+    step, angles = 2e-6, []
+    for torque in torques:
+        while torque - gear.torque(angle) > gear.friction:
+            angle += step
+        while torque - gear.torque(angle) < -gear.friction:
+            angle -= step
+        angles.append(angle)
+    return np.array(angles)
+
+
+def ramps(*tests: tuple[float, int]) -> np.ndarray:
+    """Torques 0 → +T → 0 → -T → 0, each test with its T and the samples of a quarter of it."""
+    parts = []
+    for amplitude, count in tests:
+        for start, end, quarters in (
+            (0.0, amplitude, 1),
+            (amplitude, -amplitude, 2),
+            (-amplitude, 0.0, 1),
+        ):
+            parts.append(np.linspace(start, end, quarters * count, endpoint=False))
+    return np.concatenate([*parts, [0.0]])
+
+
+def quantised(values: np.ndarray, step: float) -> np.ndarray:
+    return np.round(values / step) * step
+
+
+def write_csv(path: Path, **columns: Sequence[float]) -> Path:
+    with path.open('w', newline='', encoding='utf-8') as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(zip(*(np.asarray(c).tolist() for c in columns.values()), strict=True))
+    return path
+
+
+class Samples(NamedTuple):
+    """Of a joint."""
+
+    stamps: Sequence[int]  # ns
+    positions: Sequence[float]
+    efforts: Sequence[float] | None = None
+
+
+def write_recording(path: Path, rotor: Samples, encoder: Samples | None = None) -> Path:
+    """Write a bag with /rotor_state and /output_encoder, in the order of their stamps."""
+    recorded = {'/rotor_state': ('rotor', rotor)}
+    if encoder:
+        recorded['/output_encoder'] = ('output_shaft', encoder)
+    messages = [
+        (stamp, topic, data)
+        for topic, (joint, samples) in recorded.items()
+        for stamp, data in _messages(joint, samples)
+    ]
+    with BagWriter(path) as writer:
+        for topic in recorded:
+            writer.add_topic(topic, 'sensor_msgs/msg/JointState')
+        for stamp, topic, data in sorted(messages):
+            writer.write(topic, stamp, data)
+    return path
+
+
+def _messages(joint: str, samples: Samples):
+    template = JointStateTemplate([joint], velocity=False, effort=samples.efforts is not None)
+    columns = [samples.positions, *([] if samples.efforts is None else [samples.efforts])]
+    for stamp, *numbers in zip(samples.stamps, *columns, strict=True):
+        yield int(stamp), template.encode(int(stamp), *([float(number)] for number in numbers))
+
+
+def old_recording(
+    path: Path,
+    types: Sequence[tuple[str, str]],
+    messages: Iterable[tuple[str, int, bytes]],
+) -> Path:
+    """Write a database as ROS 2 Humble does: without definitions of types, and hashes."""
+    numbers = {topic: number for number, (topic, _) in enumerate(types, start=1)}
+    with closing(sqlite3.connect(path)) as rows, rows:
+        rows.execute(
+            'CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL,'
+            ' serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)'
+        )
+        rows.execute(
+            'CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL,'
+            ' timestamp INTEGER NOT NULL, data BLOB NOT NULL)'
+        )
+        rows.executemany("INSERT INTO topics VALUES (NULL, ?, ?, 'cdr', '')", types)
+        rows.executemany(
+            'INSERT INTO messages VALUES (NULL, ?, ?, ?)',
+            ((numbers[topic], received, data) for topic, received, data in messages),
+        )
+    return path

@@ -1,0 +1,320 @@
+"""How both programs start and end: signals, closed streams, and what is missing."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, started, wait_until
+from mounts import with_mounts
+
+from gear_kinematics.ros import shared_memory
+from gear_kinematics.ros.shared_memory import check_shared_memory
+
+BAG = BAGS / 'servo_point_to_point'
+NODE = [sys.executable, '-P', '-m', 'gear_kinematics.ros']
+PIPES = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE}
+READY = 'gear ratio'
+
+
+# Signals.
+
+
+def has(pid: int, number: signal.Signals, disposition: str) -> bool:
+    """Tell whether a process catches (SigCgt) or ignores (SigIgn) a signal."""
+    status = Path(f'/proc/{pid}/status').read_text('utf-8')
+    [mask] = (line.split()[1] for line in status.splitlines() if line.startswith(disposition))
+    return bool(int(mask, 16) >> (number - 1) & 1)
+
+
+def wait_for_handlers(process) -> None:
+    """Wait until a program handles signals: SIGTERM, which Python does not by itself."""
+    wait_until(lambda: has(process.pid, signal.SIGTERM, 'SigCgt'), 'handlers of signals')
+
+
+def moments(longest: float, count: int) -> Iterator[tuple[float, float | None]]:
+    """Give moments all over the start of a program, s, and for half of them another up to 50 ms.
+
+    The moments are what is tested; nothing is waited for.
+    """
+    for k in range(count):
+        yield longest * (k + 0.5) / count, 0.05 * (7 * k % count) / count if k % 2 else None
+
+
+def interrupted(process, delay: float, again: float | None) -> tuple[int, str, str]:
+    """Interrupt a program at a moment of its start, perhaps again, and take how it ended."""
+    wait_for_handlers(process)
+    time.sleep(delay)
+    process.send_signal(signal.SIGINT)
+    if again is not None:
+        time.sleep(again)
+        process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=DEADLINE)
+    return process.returncode, output, errors
+
+
+def test_nothing_heavy_is_imported_before_signals_are_handled():
+    code = 'import sys, gear_kinematics.__main__; print(*sorted(sys.modules))'
+    done = subprocess.run(
+        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=DEADLINE
+    )
+    imported = {name for name in done.stdout.split() if name.startswith('gear_kinematics.')}
+    names = ('__main__', 'ros', 'ros.shared_memory')
+    assert imported == {f'gear_kinematics.{name}' for name in names}
+    assert not {'numpy', 'rclpy', 'argparse', 'rich', 'yaml'} & set(done.stdout.split())
+
+
+def test_a_node_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
+    options = PIPES | {'env': os.environ | {'ROS_LOG_DIR': str(tmp_path)}}
+    with started(NODE, **options) as process:
+        wait_for_handlers(process)
+        begun = time.monotonic()
+        assert READY in process.stderr.readline()
+        longest = 1.2 * (time.monotonic() - begun)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(DEADLINE) == 0
+    early = 0
+    for delay, again in moments(longest, 40):
+        with started(NODE, **options) as process:
+            code, output, errors = interrupted(process, delay, again)
+        assert (code, output) == (0, ''), errors
+        assert 'Traceback' not in errors
+        early += READY not in errors
+    assert early >= 10, 'most of the signals came too late to tell anything'
+
+
+def test_gearkin_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
+    folder = tmp_path / 'results'
+    folder.mkdir()
+    command = [sys.executable, '-c', GEARKIN, 'compute']
+    with BlockedBag(BAG, tmp_path / 'blocked') as blocked:
+        command += [str(blocked.path), str(folder / 'out')]
+        with started(command, **PIPES) as process:
+            wait_for_handlers(process)
+            begun = time.monotonic()
+            blocked.reader()
+            longest = 1.2 * (time.monotonic() - begun)
+        assert [path.name.startswith('.out') for path in folder.iterdir()] == [True]
+        left = list(folder.iterdir())  # by the kill
+        for delay, again in moments(longest, 20):
+            with started(command, **PIPES) as process:
+                ended = interrupted(process, delay, again)
+            assert ended == (130, '', '')
+            assert list(folder.iterdir()) == left
+
+
+def gearkin_doing(main: str) -> subprocess.CompletedProcess[str]:
+    """Run gearkin with something else to do, which can interrupt() it."""
+    return gearkin(
+        code=f"""
+import os, signal, sys, time
+from gear_kinematics.__main__ import gearkin
+from gear_kinematics.commands import cli
+def interrupt():
+    os.kill(os.getpid(), signal.SIGINT)
+{main}
+cli.main = main
+sys.exit(gearkin())
+"""
+    )
+
+
+def test_a_second_signal_does_not_disturb_the_clean_up_after_the_first():
+    done = gearkin_doing("""
+def main():
+    try:
+        interrupt()
+        time.sleep(60.0)
+    finally:
+        interrupt()
+        print('cleaned up')
+""")
+    assert (done.returncode, done.stdout, done.stderr) == (130, 'cleaned up\n', '')
+
+
+def test_an_interruption_that_python_drops_is_repeated():
+    done = gearkin_doing("""
+class Interrupting:
+    def __del__(self):
+        interrupt()
+        time.sleep(60.0)
+def main():
+    Interrupting()
+    while True:
+        time.sleep(60.0)
+""")
+    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+
+
+@pytest.mark.parametrize('end', ['', 'while True: time.sleep(60.0)'], ids=['ends', 'hangs'])
+def test_an_import_may_end_before_an_interruption_unless_it_takes_long(end, tmp_path):
+    (tmp_path / 'imported.py').write_text(f"""
+import __main__, time
+try:
+    __main__.interrupt()
+except KeyboardInterrupt:
+    print('lost')
+{end}
+""")
+    done = gearkin_doing(f"""
+def main():
+    sys.path.insert(0, {str(tmp_path)!r})
+    import imported
+    while True:
+        time.sleep(60.0)
+""")
+    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+
+
+def test_a_background_job_of_a_script_is_not_interrupted(tmp_path):
+    command = ['sh', '-c', 'trap "" INT; exec "$@"', 'sh', sys.executable, '-c', GEARKIN]
+    with (
+        BlockedBag(BAG, tmp_path / 'blocked') as blocked,
+        started([*command, 'validate', str(blocked.path)], **PIPES) as process,
+    ):
+        blocked.reader()
+        assert has(process.pid, signal.SIGINT, 'SigIgn')
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(DEADLINE) == 130
+
+
+# Streams that are closed.
+
+
+def closing(streams: str, *command) -> list[str]:
+    """Give the command that runs a program with some streams closed."""
+    return ['sh', '-c', f'exec "$@" {streams}', 'sh', *map(str, command)]
+
+
+@pytest.mark.parametrize('streams', ['2>&-', '>&-', '<&-', '<&- >&- 2>&-'])
+def test_gearkin_needs_no_open_streams(streams, tmp_path):
+    report = tmp_path / 'report.json'
+    command = [sys.executable, '-c', GEARKIN, 'validate', '--jobs', '2']
+    for bags, code in (([BAG, BAGS / 'driver_faults'], 0), ([tmp_path / 'none'], 2)):
+        done = subprocess.run(
+            closing(streams, *command, *bags, '--json', report),
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=DEADLINE,
+        )
+        assert done.returncode == code, done.stderr
+        assert 'Traceback' not in done.stderr
+        assert bool(done.stdout) == (code == 0 and '>&-' not in streams.split())
+    assert [bag['verdict'] for bag in json.loads(report.read_text())['bags']] == ['pass', 'pass']
+
+
+def test_a_node_opens_nothing_in_place_of_a_closed_stream(tmp_path):
+    command = closing('<&- >&- 2>&-', *NODE)
+    with started(command, env=os.environ | {'ROS_LOG_DIR': str(tmp_path)}) as process:
+        wait_until(lambda: READY in ''.join(map(Path.read_text, tmp_path.iterdir())), 'its log')
+        for number in range(3):
+            assert Path(f'/proc/{process.pid}/fd/{number}').samefile('/dev/null')
+        process.send_signal(signal.SIGINT)
+        assert process.wait(DEADLINE) == 0
+
+
+def test_an_error_that_cannot_be_said_has_its_exit_code():
+    with Path('/dev/full').open('w') as full:
+        assert gearkin('validate', 'nowhere', stderr=full).returncode == 2
+
+
+# What is not installed.
+
+ROS = "rclpy is not installed: source a ROS 2 installation, or pip install 'gear_kinematics[ros]'"
+
+
+@pytest.mark.parametrize(
+    'arguments', [['demo'], ['replay', BAG], ['validate', '--live', BAG]], ids=lambda x: x[0]
+)
+def test_without_ros_there_is_one_line_that_names_the_extra(arguments):
+    done = gearkin(*arguments, code=f'import sys; sys.modules["rclpy"] = None; {GEARKIN}')
+    assert (done.returncode, done.stdout, done.stderr) == (2, '', f'gearkin: {ROS}\n')
+
+
+def test_without_ros_the_node_says_so():
+    code = (
+        'import sys; sys.modules["rclpy"] = None\n'
+        'from gear_kinematics.__main__ import gear_state_publisher\n'
+        'sys.exit(gear_state_publisher())'
+    )
+    done = gearkin(code=code)
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == f'gear_state_publisher: {ROS}\n'
+
+
+def test_without_a_message_package_the_node_names_it():
+    code = (
+        'import sys; sys.modules["visualization_msgs"] = None\n'
+        'from gear_kinematics.__main__ import gear_state_publisher\n'
+        'sys.exit(gear_state_publisher())'
+    )
+    done = gearkin(code=code)
+    assert done.returncode == 2
+    [line] = done.stderr.splitlines()
+    assert line.startswith('gear_state_publisher: ')
+    assert 'visualization_msgs' in line
+
+
+# Shared memory.
+
+
+def in_shared_memory(size: str, *command: object) -> list[str]:
+    """Give the command that runs a program with so much shared memory."""
+    return with_mounts(f'-t tmpfs -o size={size} none /dev/shm', *command)
+
+
+@pytest.mark.parametrize(
+    ('program', 'arguments'),
+    [
+        ('gear_state_publisher', NODE),
+        *(
+            ('gearkin', [sys.executable, '-c', GEARKIN, *arguments])
+            for arguments in (['demo'], ['replay', BAG], ['validate', '--live', BAG])
+        ),
+    ],
+    ids=['node', 'demo', 'replay', 'validate --live'],
+)
+def test_without_shared_memory_there_is_one_line_and_no_bus_error(program, arguments):
+    done = subprocess.run(
+        in_shared_memory('4k', *arguments),
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=DEADLINE,
+    )
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == (
+        f'{program}: ROS cannot start, /dev/shm is full: remove what crashed processes left '
+        'there, or enlarge it (docker run --shm-size)\n'
+    )
+
+
+def test_a_node_warns_of_little_shared_memory_and_starts(tmp_path):
+    environment = os.environ | {'ROS_LOG_DIR': str(tmp_path)}
+    with started(in_shared_memory('200k', *NODE), env=environment, **PIPES) as process:
+        lines = iter(process.stderr.readline, '')
+        warning = next(lines)
+        assert warning.startswith('gear_state_publisher: only 200 KiB are free in /dev/shm, ')
+        assert any(READY in line for line in lines)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(DEADLINE) == 0
+
+
+@pytest.mark.parametrize(
+    ('free', 'participants', 'warned'),
+    [(1024, 1, False), (1023, 1, True), (2047, 2, True), (2048, 2, False), (8, 1, True)],
+)
+def test_a_mebibyte_of_shared_memory_is_enough_for_a_participant(
+    free, participants, warned, monkeypatch
+):
+    status = SimpleNamespace(f_frsize=1024, f_bavail=free)
+    monkeypatch.setattr(shared_memory.os, 'statvfs', lambda _: status)
+    warning = check_shared_memory(participants)
+    assert f'only {free} KiB are free' in warning if warned else warning is None

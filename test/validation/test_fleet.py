@@ -1,0 +1,581 @@
+"""Finding bags and topics; bags in processes and on a cluster, whose workers are killed."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from contextlib import ExitStack, contextmanager, suppress
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from blocked_bags import (
+    BAGS,
+    DEADLINE,
+    GEARKIN,
+    BlockedBag,
+    gearkin,
+    running_gearkin,
+    started,
+    wait_until,
+)
+
+from gear_kinematics.bag import Bag, BagError, BagWriter
+from gear_kinematics.bag.finding import find_bags
+from gear_kinematics.bag.roles import Topics, find_topics
+from gear_kinematics.state import parameters
+from gear_kinematics.validation.fleet import (
+    Task,
+    validate_bag,
+    validate_on_this_machine,
+)
+from gear_kinematics.validation.report import Verdict
+from gear_kinematics.validation.validator import Tolerances
+
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+SHIPPED = [
+    'constant_speed_3000rpm',
+    'driver_faults',
+    'servo_point_to_point',
+    'single_turn_encoder',
+]
+COMPARED = {
+    'constant_speed_3000rpm': 3000,
+    'driver_faults': 1265,
+    'servo_point_to_point': 3000,
+    'single_turn_encoder': 2500,
+}
+
+
+def task(path: Path, **options) -> Task:
+    folder = BAGS / path.name
+    beside = folder / 'actuator.yaml'
+    config = beside if beside.exists() else parameters.default_config()
+    return Task(path, parameters.load(config), str(config), Tolerances(), **options)
+
+
+# Bags.
+
+
+@pytest.fixture
+def tree(tmp_path, monkeypatch):
+    for name in (
+        'fleet/one/metadata.yaml',
+        'fleet/one/one_0.mcap',
+        'fleet/one/one_1.mcap',
+        'fleet/deep/er/two.db3',
+        'fleet/deep/three.mcap',
+        'fleet/deep/four.mcap.lz4',
+        'fleet/deep/five.bag',
+        'fleet/deep/notes.txt',
+        'killed/six_0.mcap',
+        'killed/six_1.mcap',
+        'killed/six_10.mcap',
+        'logs/seven[1].mcap',
+        'empty/notes.txt',
+    ):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+DEEP = [
+    'fleet/deep/er/two.db3',
+    'fleet/deep/five.bag',
+    'fleet/deep/four.mcap.lz4',
+    'fleet/deep/three.mcap',
+]
+
+
+@pytest.mark.parametrize(
+    ('patterns', 'found'),
+    [
+        (['fleet/deep/three.mcap'], ['fleet/deep/three.mcap']),
+        (['fleet/deep/notes.txt'], ['fleet/deep/notes.txt']),  # was named, and will be refused
+        (['fleet/one'], ['fleet/one']),
+        (['fleet/one/'], ['fleet/one']),
+        (['fleet/one/one_1.mcap'], ['fleet/one/one_1.mcap']),
+        (['fleet/deep'], DEEP),
+        (['fleet'], [*DEEP, 'fleet/one']),
+        (['killed'], ['killed']),  # one recording, though nobody wrote its metadata
+        (['.'], [*DEEP, 'fleet/one', 'killed', 'logs/seven[1].mcap']),
+        (['fleet/*'], [*DEEP, 'fleet/one']),
+        (['fleet/**'], [*DEEP, 'fleet/one']),
+        (
+            ['fleet/**/*.mcap'],
+            ['fleet/deep/three.mcap', *(f'fleet/one/one_{k}.mcap' for k in '01')],
+        ),
+        (['fleet/d*/*.db3', 'fleet/**/two.db3'], None),
+        (['logs/seven[1].mcap'], ['logs/seven[1].mcap']),  # as it is, before it is a pattern
+        (['fleet/one', 'fleet', './fleet/one'], ['fleet/one', *DEEP]),  # each once, in this order
+    ],
+)
+@pytest.mark.parametrize('absolute', [False, True])
+def test_bags_are_found_once_and_in_order(absolute, patterns, found, tree):
+    start = f'{tree}/' if absolute else ''
+    given = [start + pattern for pattern in patterns]
+    if found is None:
+        with pytest.raises(BagError, match=f'^{re.escape(given[0])}: no bag there$'):
+            find_bags(given)
+        return
+    assert [str(path) for path in find_bags(given)] == [start + name for name in found]
+
+
+@pytest.mark.parametrize('pattern', ['missing', 'missing.mcap', 'empty', 'empty/*', '**/*.txt'])
+@pytest.mark.usefixtures('tree')
+def test_a_pattern_that_nothing_fits_is_named(pattern):
+    with pytest.raises(BagError, match=f'^{re.escape(pattern)}: no bag there$'):
+        find_bags(['fleet', pattern])
+
+
+# Topics.
+
+
+def bag_with(joint_states: str, pose_arrays: str = '') -> SimpleNamespace:
+    kinds = dict.fromkeys(joint_states.split(), JOINT_STATE)
+    kinds |= dict.fromkeys(pose_arrays.split(), POSE_ARRAY)
+    return SimpleNamespace(path=Path('some.mcap'), topics=kinds | {'/rosout': 'rcl/msg/Log'})
+
+
+@pytest.mark.parametrize(
+    ('joint_states', 'pose_arrays', 'given', 'found'),
+    [
+        ('/rotor_state /output_state', '/body_poses', {}, Topics()),
+        (
+            '/arm/rotor_state /arm/output_state /arm/mechanism_joint_states /joint_states',
+            '/arm/body_poses /markers',
+            {},
+            Topics('/arm/rotor_state', '/arm/output_state', '/arm/body_poses'),
+        ),
+        # By type alone.
+        ('/motor /output_state', '/p', {}, Topics('/motor', '/output_state', '/p')),
+        ('/rotor_state /shaft', '/p', {}, Topics('/rotor_state', '/shaft', '/p')),
+        # Those that are named are none of the others.
+        ('/a /b', '/p', {'rotor': '/a'}, Topics('/a', '/b', '/p')),
+        ('/a /b', '/p', {'output': '/a'}, Topics('/b', '/a', '/p')),
+        ('/a /b', '/p /q', {'rotor': '/a', 'poses': '/q'}, Topics('/a', '/b', '/q')),
+        (
+            '/rotor_state /output_state /old/output_state',
+            '/body_poses',
+            {'output': '/old/output_state'},
+            Topics('/rotor_state', '/old/output_state', '/body_poses'),
+        ),
+        # Two nodes: those beside the one that is named.
+        (
+            '/left/rotor_state /left/output_state /right/rotor_state /right/output_state',
+            '/left/body_poses /right/body_poses',
+            {'rotor': '/right/rotor_state'},
+            Topics('/right/rotor_state', '/right/output_state', '/right/body_poses'),
+        ),
+        (
+            '/left/rotor_state /left/output_state /output_state',
+            '/left/body_poses',
+            {'rotor': '/left/rotor_state', 'output': '/output_state'},
+            Topics('/left/rotor_state', '/output_state', '/left/body_poses'),
+        ),
+    ],
+)
+def test_topics_are_found_by_name_then_by_type(joint_states, pose_arrays, given, found):
+    assert find_topics(bag_with(joint_states, pose_arrays), given) == found
+    if not given:
+        assert find_topics(bag_with(joint_states, pose_arrays)) == found
+
+
+@pytest.mark.parametrize(
+    ('joint_states', 'pose_arrays', 'given', 'error'),
+    [
+        ('/rotor_state /output_state', '', {}, f'no topic body_poses of type {POSE_ARRAY} in it'),
+        ('/rotor_state', '/p', {}, f'no topic output_state of type {JOINT_STATE} in it'),
+        ('/output_state', '/p', {}, f'no topic rotor_state of type {JOINT_STATE} in it'),
+        (
+            '/left/rotor_state /right/rotor_state /output_state',
+            '/p',
+            {},
+            'which topic is rotor_state? /left/rotor_state, /right/rotor_state',
+        ),
+        ('/b /a', '/p', {}, 'which topic is output_state? /a, /b'),
+        (
+            '/rotor_state /output_state',
+            '/body_poses',
+            {'rotor': '/motor'},
+            f'no topic /motor of type {JOINT_STATE} in it',
+        ),
+        (
+            '/rotor_state /output_state',
+            '/body_poses',
+            {'poses': '/output_state'},
+            f'no topic /output_state of type {POSE_ARRAY} in it',
+        ),
+    ],
+)
+def test_a_topic_that_is_not_found_is_named_with_its_bag(joint_states, pose_arrays, given, error):
+    with pytest.raises(BagError) as raised:
+        find_topics(bag_with(joint_states, pose_arrays), given)
+    assert str(raised.value) == f'some.mcap: {error}'
+
+
+def test_outputs_are_no_rotor_where_only_that_is_wanted():
+    names = '/output_state /motor /mechanism_joint_states'
+    assert find_topics(bag_with(names), outputs=False).rotor == '/motor'
+
+
+# One bag.
+
+
+def test_a_shipped_bag_is_reported():
+    told = []
+    report = validate_bag(
+        task(BAGS / 'driver_faults'), lambda count, total: told.append((count, total))
+    )
+    assert report.verdict == Verdict.PASS
+    assert report.bag == str(BAGS / 'driver_faults')
+    assert report.config == str(parameters.default_config())
+    assert report.error is None
+    assert [topic.compared for topic in report.topics] == [1265, 1265]
+    assert sum(count for count, _ in told) == report.messages == 1314 + 2 * 1265
+    assert {total for _, total in told} == {report.messages}
+
+
+def cut(path: Path) -> None:
+    shutil.copy(BAGS / 'servo_point_to_point' / 'servo_point_to_point_0.mcap', path)
+    os.truncate(path, path.stat().st_size // 2)
+
+
+def of_wrong_type(path: Path) -> None:
+    with BagWriter(path) as writer:
+        writer.add_topic('/rotor_state', 'std_msgs/msg/String')
+        writer.add_topic('/output_state', JOINT_STATE)
+        writer.add_topic('/body_poses', POSE_ARRAY)
+
+
+def without_messages(path: Path) -> None:
+    with BagWriter(path) as writer:
+        writer.add_topic('/rotor_state', JOINT_STATE)
+        writer.add_topic('/output_state', JOINT_STATE)
+        writer.add_topic('/body_poses', POSE_ARRAY)
+
+
+def with_bad_metadata(path: Path) -> None:
+    path.mkdir()
+    (path / 'metadata.yaml').write_text('- {\n', encoding='utf-8')
+
+
+BAD_BAGS = [
+    (lambda _: None, 'no such file'),
+    (Path.touch, 'the file is empty'),
+    (lambda path: path.write_bytes(b'\x00garbage\xff' * 1000), 'not a bag of a known kind'),
+    (Path.mkdir, 'neither metadata.yaml nor'),
+    (with_bad_metadata, 'metadata.yaml: '),
+    (of_wrong_type, 'no topic rotor_state of type sensor_msgs/msg/JointState'),
+    (without_messages, 'no usable rotor states'),
+]
+
+
+@pytest.mark.parametrize(('make', 'error'), BAD_BAGS)
+def test_a_bad_bag_is_reported_as_unusable_in_one_line(make, error, tmp_path):
+    make(tmp_path / 'bad.mcap')
+    report = validate_bag(task(tmp_path / 'bad.mcap'))
+    assert report.verdict == Verdict.UNUSABLE
+    assert report.bag == str(tmp_path / 'bad.mcap')
+    assert error in report.error
+    assert '\n' not in report.error
+
+
+BROKEN = """import gear_kinematics.validation.fleet as fleet
+honest = fleet.find_topics
+def find_topics(bag, *_, **__):
+    return 1 // (bag.path.name != 'driver_faults') and honest(bag)
+fleet.find_topics = find_topics
+"""
+
+
+@pytest.mark.parametrize('options', [[], ['--debug']])
+def test_an_unexpected_error_makes_one_bag_unusable_and_no_other(options):
+    bags = [BAGS / name for name in ('driver_faults', 'constant_speed_3000rpm')]
+    done = subprocess.run(
+        [sys.executable, '-c', BROKEN + GEARKIN, 'validate', *options, *bags],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert done.returncode == 2
+    said = f'gearkin: {bags[0]}: unexpected ZeroDivisionError: '
+    lines = done.stderr.splitlines()
+    assert lines[-1].startswith(said)
+    assert lines[-1].endswith('; --debug shows where') == (not options)
+    assert ('Traceback' in done.stderr) == bool(options)
+    assert len(lines) == 1 or options
+    assert f'{bags[0]}: verdict: unusable\n' in done.stdout
+    assert f'{bags[1]}: verdict: passed\n' in done.stdout
+
+
+def test_a_bag_that_is_cut_off_is_reported_as_far_as_it_goes(tmp_path):
+    path = tmp_path / 'cut.mcap'
+    cut(path)
+    readable = []
+    with Bag(path) as bag, pytest.raises(BagError):
+        readable.extend(bag.messages(bag.topics))
+    report = validate_bag(task(path))
+    assert report.verdict == Verdict.UNUSABLE
+    assert re.fullmatch(rf'{path}: at byte \d+: cut off within a record', report.error)
+    assert 3000 < report.messages == len(readable) < 9000
+    assert report.rotor.valid > 1000
+    for topic in report.topics:
+        assert topic.compared > 1000
+        assert all(field.passed for field in topic.fields)
+
+
+# Processes.
+
+
+def test_processes_report_what_one_after_the_other_does():
+    tasks = [task(BAGS / name) for name in SHIPPED]
+    tasks.append(task(BAGS / 'missing'))
+    reports = sorted(validate_on_this_machine(tasks, 2), key=lambda report: report.bag)
+    one_by_one = sorted(map(validate_bag, tasks), key=lambda report: report.bag)
+    assert reports == one_by_one
+    assert [report.verdict for report in reports].count(Verdict.PASS) == len(SHIPPED)
+
+
+def copies(folder: Path, count: int = 1) -> list[Path]:
+    """Copy every shipped bag, as a fleet's would be."""
+    return [
+        Path(shutil.copytree(BAGS / name, folder / str(k) / name))
+        for k in range(count)
+        for name in SHIPPED
+    ]
+
+
+def check_reports(path: Path, bags: list[Path], lost: Path | None = None) -> None:
+    """Every bag is reported, once, in order, and with all of its messages."""
+    reports = json.loads(path.read_text('utf-8'))['bags']
+    assert [report['bag'] for report in reports] == [str(bag) for bag in bags]
+    for bag, report in zip(bags, reports, strict=True):
+        if bag == lost:
+            assert report['verdict'] == 'unusable'
+            assert report['error'].endswith('lost, because its worker died again and again')
+            assert report['topics'] == []
+        else:
+            assert report['verdict'] == 'pass'
+            assert [t['compared'] for t in report['topics']] == [COMPARED[bag.name]] * 2
+
+
+def kill_readers(blocked: BlockedBag, process) -> int:
+    """Kill whoever reads a bag, until the process ends; tells how many there were."""
+    killed = []
+
+    def ended() -> bool:
+        for reader in blocked.readers():
+            with suppress(ProcessLookupError):  # it has ended meanwhile
+                os.kill(reader, signal.SIGKILL)
+                killed.append(reader)
+        return process.poll() is not None
+
+    wait_until(ended, 'the end of gearkin')
+    return len(set(killed))
+
+
+def test_as_many_bags_as_there_are_jobs_are_under_way(tmp_path):
+    with ExitStack() as stack:
+        blocked = [
+            stack.enter_context(BlockedBag(BAGS / SHIPPED[k], tmp_path / str(k))) for k in range(2)
+        ]
+        process = stack.enter_context(running_gearkin('validate', '--jobs', 2, tmp_path))
+        readers = {bag.reader() for bag in blocked}
+        assert len(readers) == 2
+        assert process.pid not in readers
+
+
+def test_a_bag_whose_process_died_is_begun_again(tmp_path):
+    bags = [*copies(tmp_path / 'bags'), tmp_path / 'bags' / 'driver_faults']
+    report = tmp_path / 'report.json'
+    with (
+        BlockedBag(BAGS / 'driver_faults', bags[-1]) as blocked,
+        running_gearkin('validate', '--jobs', 2, '--json', report, *bags) as process,
+    ):
+        reader = blocked.reader()
+        blocked.heal()
+        os.kill(reader, signal.SIGKILL)
+        _, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, errors) == (0, '')
+    check_reports(report, bags)
+
+
+@pytest.mark.parametrize('place', [0, 8], ids=['first', 'last'])
+def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(place, tmp_path):
+    bags = copies(tmp_path / 'bags', 2)
+    lost = tmp_path / 'bags' / 'killer'
+    bags.insert(place, lost)
+    report = tmp_path / 'report.json'
+    arguments = ['validate', '--jobs', 2, '--json', report]
+    with (
+        BlockedBag(BAGS / 'driver_faults', lost) as blocked,
+        running_gearkin(*arguments, *bags, stdout=subprocess.DEVNULL) as process,
+    ):
+        killed = kill_readers(blocked, process)
+        _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 2
+    assert errors == f'gearkin: {lost}: lost, because its worker died again and again\n'
+    assert killed == 3
+    check_reports(report, bags, lost)
+
+
+# A cluster.
+
+
+class Cluster:
+    """A Dask scheduler and workers on the loopback interface, in a folder of their own."""
+
+    def __init__(self, folder: Path, stack: ExitStack, *, allowed_failures: int = 3) -> None:
+        """Start the scheduler."""
+        folder.mkdir()
+        self._folder = folder
+        self._stack = stack
+        self._environment = os.environ | {
+            'DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES': str(allowed_failures),
+            'PYTHONPATH': os.pathsep.join(map(str, (BAGS.parent, *filter(None, sys.path)))),
+        }
+        self._file = folder / 'scheduler.json'
+        self.scheduler = self._start('scheduler', '--port', '0')
+        wait_until(lambda: self._file.exists() and self._file.stat().st_size, 'the scheduler')
+        self.address = wait_until(self._address, "the scheduler's address")
+
+    def _address(self) -> str:
+        try:
+            return json.loads(self._file.read_text('utf-8'))['address']
+        except ValueError:
+            return ''
+
+    def add_worker(self, *arguments: str):
+        """Start a worker of one thread; none is left to itself when its scheduler is gone."""
+        log = self._folder / f'worker {len(list(self._folder.iterdir()))}'
+        return self._start('worker', '--nthreads', '1', '--local-directory', str(log), *arguments)
+
+    def _start(self, role: str, *arguments: str):
+        log = self._stack.enter_context(
+            (self._folder / f'{role} {len(list(self._folder.iterdir()))}.log').open('w')
+        )
+        command = [sys.executable, '-m', 'dask', role, '--scheduler-file', str(self._file)]
+        command += ['--host', '127.0.0.1', '--no-dashboard', *arguments]
+        return self._stack.enter_context(
+            started(command, cwd=self._folder, env=self._environment, stdout=log, stderr=log)
+        )
+
+
+@contextmanager
+def cluster(folder: Path, **options):
+    pytest.importorskip('distributed')
+    with ExitStack() as stack:
+        yield Cluster(folder, stack, **options)
+
+
+def test_the_bags_of_a_killed_worker_are_done_by_another(tmp_path, monkeypatch):
+    copies(tmp_path / 'bags', 6)
+    monkeypatch.chdir(tmp_path)  # the workers are elsewhere
+    bags = find_bags(['bags'])
+    bags.insert(8, Path('blocked') / 'driver_faults')
+    with (
+        BlockedBag(BAGS / 'driver_faults', tmp_path / bags[8]) as blocked,
+        cluster(tmp_path / 'cluster') as dask,
+    ):
+        workers = {worker.pid: worker for worker in (dask.add_worker('--no-nanny') for _ in '12')}
+        options = ['--scheduler', dask.address, '--json', 'report.json']
+        with running_gearkin('validate', *options, *bags) as process:
+            victim = workers[blocked.reader()]
+            blocked.heal()
+            victim.kill()
+            output, errors = process.communicate(timeout=DEADLINE)
+        assert victim.wait() == -signal.SIGKILL
+        (other,) = (worker for worker in workers.values() if worker is not victim)
+        assert other.poll() is None
+    assert (process.returncode, errors) == (0, '')
+    assert output.endswith('\nsummary: 25 bags: 25 passed, 0 failed, 0 unusable\n')
+    check_reports(tmp_path / 'report.json', bags)
+
+
+def test_a_bag_that_kills_every_worker_is_lost_and_no_other(tmp_path):
+    bags = copies(tmp_path / 'bags', 3)
+    lost = tmp_path / 'bags' / 'killer'
+    bags.insert(3, lost)
+    with (
+        BlockedBag(BAGS / 'driver_faults', lost) as blocked,
+        cluster(tmp_path / 'cluster', allowed_failures=1) as dask,
+    ):
+        for _ in range(2):  # begun again by their nannies
+            dask.add_worker('--nanny')
+        options = ['--scheduler', dask.address, '--json', tmp_path / 'report.json']
+        with running_gearkin('validate', *options, *bags, stdout=subprocess.DEVNULL) as process:
+            killed = kill_readers(blocked, process)
+            _, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 2
+    assert errors == f'gearkin: {lost}: lost, because its worker died again and again\n'
+    assert killed == 4
+    check_reports(tmp_path / 'report.json', bags, lost)
+
+
+IMPATIENT = (
+    'import gear_kinematics.validation.fleet as f; f._PATIENCE = f._CONNECT_TIMEOUT = 1.0; '
+    f'{GEARKIN}'
+)
+
+
+def test_a_cluster_that_has_no_workers_or_ends_is_an_error(tmp_path):
+    with cluster(tmp_path / 'cluster') as dask:
+        arguments = ['validate', '--scheduler', dask.address, BAGS / 'driver_faults']
+        done = gearkin(*arguments, code=IMPATIENT)
+        assert done.returncode == 2
+        cause = 'the cluster has no workers for it'
+        assert done.stderr == f'gearkin: {BAGS / "driver_faults"}: {cause}\n'
+        with (
+            BlockedBag(BAGS / 'driver_faults', tmp_path / 'blocked') as blocked,
+            running_gearkin(*arguments[:-1], blocked.path) as process,
+        ):
+            dask.add_worker('--no-nanny')
+            blocked.reader()
+            dask.scheduler.kill()
+            output, errors = process.communicate(timeout=DEADLINE)
+    assert process.returncode == 2
+    assert errors.startswith(f'gearkin: {tmp_path / "blocked"}: not done by the cluster: ')
+    assert 'lost the connection to the scheduler' in errors
+    assert errors.count('\n') == 1
+    assert 'verdict: unusable' in output
+
+
+@pytest.mark.parametrize(
+    ('address', 'cause'),
+    [
+        ('tcp://127.0.0.1:9', 'no Dask scheduler there: Timed out'),
+        ('tcp://nowhere.invalid:8786', 'no Dask scheduler there: Timed out'),
+        ('quark://127.0.0.1:9', "unknown address scheme 'quark'"),
+        ('nonsense', 'missing port number'),
+    ],
+)
+def test_an_unreachable_scheduler_is_an_error_in_one_line(address, cause):
+    pytest.importorskip('distributed')
+    done = gearkin(
+        'validate', BAGS / 'driver_faults', '--scheduler', address, code=IMPATIENT, timeout=10.0
+    )
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr.startswith(f'gearkin: {address}: ')
+    assert cause in done.stderr
+    assert done.stderr.count('\n') == 1
+
+
+def test_without_dask_a_scheduler_is_an_error():
+    done = gearkin(
+        'validate',
+        BAGS / 'driver_faults',
+        '--scheduler',
+        'tcp://127.0.0.1:9',
+        code=f'import sys; sys.modules["distributed"] = None; {GEARKIN}',
+    )
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == (
+        "gearkin: distributed is not installed: pip install 'gear_kinematics[dask]'\n"
+    )

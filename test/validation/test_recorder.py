@@ -1,0 +1,360 @@
+"""Recordings as `ros2 bag record` makes them: right ones pass, and each fault is found."""
+
+import math
+import random
+import struct
+from pathlib import Path
+
+import numpy as np
+import pytest
+import replaying
+from rosbag2_recorder import Message, record
+from rosbags.rosbag2 import Reader
+
+from gear_kinematics.report import wording
+from gear_kinematics.state import parameters
+from gear_kinematics.validation.fleet import Task, validate_bag
+from gear_kinematics.validation.recorder import BEFORE, NO_INPUT
+from gear_kinematics.validation.report import BagReport, Verdict
+from gear_kinematics.validation.validator import Tolerances, Validator
+
+ROOT = Path(__file__).resolve().parents[2]
+RECORDED = ROOT.parent / 'shared' / 'data' / 'recorded'
+ROTOR, OUTPUT, POSES = TOPICS = '/rotor_state', '/output_state', '/body_poses'
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: POSE_ARRAY}
+SECOND = 1_000_000_000
+RATES = {  # Hz: a recording, and which of its messages; the output follows from each alone
+    50: ('servo_point_to_point', 10),
+    100: ('servo_point_to_point', 5),
+    200: ('constant_speed_3000rpm', 5),
+    500: ('servo_point_to_point', 1),
+    1000: ('constant_speed_3000rpm', 1),
+}
+
+
+@pytest.fixture(scope='module')
+def config() -> dict:
+    return parameters.load(parameters.default_config())
+
+
+@pytest.fixture(scope='module')
+def traffic() -> dict[int, list[Message]]:
+    """What goes over the topics for 6 s at each rate."""
+
+    def at(name: str, every: int) -> list[Message]:
+        with Reader(ROOT / 'bags' / name) as reader:
+            messages = [
+                Message(c.topic, received, bytes(data)) for c, received, data in reader.messages()
+            ]
+        count = dict.fromkeys(TOPICS, 0)
+        kept = []
+        for message in messages:
+            if count[message.topic] % every == 0:
+                kept.append(message)
+            count[message.topic] += 1
+        length = messages[-1].received - messages[0].received + 2_000_000
+        times = math.ceil(6 * SECOND / length)
+        return [shifted(m, k * length) for k in range(times) for m in kept]
+
+    return {rate: at(*source) for rate, source in RATES.items()}
+
+
+def shifted(message: Message, nanoseconds: int) -> Message:
+    """The same message at another time."""
+    stamp = stamp_of(message) + nanoseconds
+    data = bytearray(message.data)
+    struct.pack_into('<iI', data, 4, *divmod(stamp, SECOND))
+    return Message(message.topic, message.received + nanoseconds, bytes(data))
+
+
+def stamp_of(message: Message) -> int:
+    seconds, nanoseconds = struct.unpack_from('<iI', message.data, 4)
+    return seconds * SECOND + nanoseconds
+
+
+def recording(traffic: dict[int, list[Message]], seed: int) -> list[Message]:
+    """Record, from a second after the node has started or from before that, to before its end."""
+    rng = random.Random(seed)  # noqa: S311, of faults, not of secrets
+    rate = list(RATES)[seed % len(RATES)]
+    messages = traffic[rate]
+    start, end = messages[0].received, messages[-1].received
+    node_is_late = rng.random() < 0.3
+    if node_is_late:
+        begun = start + SECOND
+        messages = [m for m in messages if m.topic == ROTOR or m.received > begun]
+    first = rng.random() < 0.5
+    return record(
+        messages,
+        rng,
+        begin=start - SECOND if first else start + round(rng.uniform(0.0, 1.0) * SECOND),
+        end=end + SECOND if rng.random() < 0.3 else end - SECOND // 3,
+        late=rng.choice([0.004, 0.03, 0.7]),
+    )
+
+
+def validate(messages: list[Message], config: dict, **options) -> BagReport:
+    validator = Validator(config, **options)
+    validator.feed(messages)
+    return validator.report('bag')
+
+
+@pytest.mark.parametrize('seed', range(50))
+def test_what_the_recorder_loses_fails_nothing(traffic, config, seed):
+    messages = recording(traffic, seed)
+    report = validate(messages, config)
+    assert report.verdict == Verdict.PASS
+    there = {topic: {stamp_of(m) for m in messages if m.topic == topic} for topic in TOPICS}
+    for topic in report.topics:
+        own = there[topic.topic]
+        assert topic.compared == len(own & there[ROTOR])
+        left_out = len(own - there[ROTOR]) + len(there[ROTOR] - own)
+        assert sum(topic.left_out.values()) == left_out
+        assert topic.compared > 0.5 * len(own)
+    strict = validate(messages, config, strict=True)
+    assert [t.missing + t.extra for t in strict.topics] == [
+        sum(t.left_out.values()) for t in report.topics
+    ]
+
+
+# Faults
+
+
+def edited(message: Message, edit) -> Message:
+    content = replaying.decode(message.data, TYPES[message.topic])
+    edit(content)
+    data = bytes(replaying.TYPESTORE.serialize_cdr(content, TYPES[message.topic]))
+    return message._replace(data=data)
+
+
+def turn_a_little(content) -> None:
+    content.position = content.position + 1e-6
+
+
+def swap_satellites(content) -> None:
+    content.poses[0], content.poses[1] = content.poses[1], content.poses[0]
+
+
+def one_changed(messages: list[Message], topic: str, place: float, edit) -> list[Message]:
+    """Change the message of a topic that is at a place of those whose input is there."""
+    there = {stamp_of(m) for m in messages if m.topic == ROTOR}
+    own = [k for k, m in enumerate(messages) if m.topic == topic and stamp_of(m) in there]
+    chosen = own[round(place * (len(own) - 1))]
+    return [edited(m, edit) if k == chosen else m for k, m in enumerate(messages)]
+
+
+def settled_by(messages: list[Message]) -> int:
+    """A second after the last topic began, ns: no loss is excused from there on."""
+    return max(next(m.received for m in messages if m.topic == t) for t in TOPICS) + SECOND
+
+
+def moment(messages: list[Message], place: float) -> int:
+    """A moment at which outputs are judged in any case, ns."""
+    begin, end = settled_by(messages), messages[-1].received
+    return begin + round(place * (end - SECOND // 3 - begin))
+
+
+def five_poses_missing(messages: list[Message], place: float) -> list[Message]:
+    after = moment(messages, place)
+    own = [k for k, m in enumerate(messages) if m.topic == POSES and m.received > after][:5]
+    return [m for k, m in enumerate(messages) if k not in own]
+
+
+def doubled(messages: list[Message], place: float) -> list[Message]:
+    there = {stamp_of(m) for m in messages if m.topic == ROTOR}
+    own = [k for k, m in enumerate(messages) if m.topic == OUTPUT and stamp_of(m) in there]
+    first = round(place * (len(own) - 10))
+    chosen = set(own[first : first + 10])
+    return [m for k, m in enumerate(messages) for _ in range(1 + (k in chosen))]
+
+
+def node_killed(messages: list[Message], place: float) -> list[Message]:
+    last = moment(messages, 0.6 * place + 0.1)
+    return [m for m in messages if m.topic == ROTOR or m.received <= last]
+
+
+FAULTS = {
+    'angle off by 1e-6': (
+        lambda messages, place: one_changed(messages, OUTPUT, place, turn_a_little),
+        'error 1e-6 rad exceeds',
+    ),
+    'satellites swapped': (
+        lambda messages, place: one_changed(messages, POSES, place, swap_satellites),
+        'in another order: satellite_b, satellite_a, oldham_a, oldham_b',
+    ),
+    'five poses missing': (five_poses_missing, '5 messages missing'),
+    'doubled outputs': (doubled, '10 messages too many'),
+    'node killed': (node_killed, 'the node may have ended'),
+}
+
+
+@pytest.mark.parametrize('place', [0.0, 0.5, 1.0], ids=['beginning', 'middle', 'end'])
+@pytest.mark.parametrize('fault', FAULTS)
+@pytest.mark.parametrize('seed', range(10))
+def test_a_fault_is_found_wherever_it_is(traffic, config, seed, fault, place):
+    change, said = FAULTS[fault]
+    report = validate(change(recording(traffic, seed), place), config)
+    assert report.verdict == Verdict.FAIL
+    assert any(said in remark for remark in wording.remarks(report))
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_a_loss_after_a_quiet_while_is_found_at_once(traffic, config, seed):
+    """A recorder that has lost nothing for a while has settled, before a second has passed."""
+    rng = random.Random(seed)  # noqa: S311, of faults, not of secrets
+    messages = traffic[500]
+    begin = messages[0].received + SECOND
+    recorded = record(messages, rng, begin=begin, end=messages[-1].received, late=0.004)
+    after = settled_by(recorded) - 2 * SECOND // 3
+    lost = [k for k, m in enumerate(recorded) if m.topic == POSES and m.received > after][:5]
+    report = validate([m for k, m in enumerate(recorded) if k not in lost], config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.missing for t in report.topics] == [0, 5]
+
+
+def test_an_output_for_a_rejected_input_is_too_many(traffic, config):
+    """Its input was recorded, and calls for no output."""
+    messages = list(traffic[500][:3000])
+
+    def spoil(content) -> None:
+        content.position = np.array([math.nan])
+
+    k = next(k for k, m in enumerate(messages) if k > 1500 and m.topic == ROTOR)
+    messages[k] = edited(messages[k], spoil)
+    report = validate(messages, config)
+    assert report.verdict == Verdict.FAIL
+    assert [(t.extra, t.first_extra) for t in report.topics] == [(1, stamp_of(messages[k]))] * 2
+
+
+def test_outputs_of_another_time_are_too_many(traffic, config):
+    """A stamp before or after all inputs is the recorder's doing only if it was received then."""
+    messages = list(traffic[500][:3000])
+    for k, nanoseconds in ((1500, 100 * SECOND), (1800, -100 * SECOND)):
+        (output,) = [m for m in messages[k : k + 3] if m.topic == OUTPUT]
+        stranger = shifted(output, nanoseconds)._replace(received=output.received)
+        messages.insert(messages.index(output) + 1, stranger)
+    report = validate(messages, config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.extra for t in report.topics] == [2, 0]
+
+
+def test_a_driver_slower_than_a_hertz_may_be_recorded_too(traffic, config):
+    own = {topic: [m for m in traffic[500] if m.topic == topic][:40] for topic in TOPICS}
+    slow = [shifted(own[topic][k], 2 * k * SECOND) for k in range(40) for topic in TOPICS]
+    report = validate(slow[1:-1], config)  # the first input and the last poses got lost
+    assert report.verdict == Verdict.PASS
+    assert [t.compared for t in report.topics] == [39, 38]
+
+
+# Single-turn encoders
+
+
+@pytest.fixture(scope='module')
+def single_turn() -> tuple[dict, list[Message]]:
+    with Reader(ROOT / 'bags' / 'single_turn_encoder') as reader:
+        messages = [Message(c.topic, t, bytes(data)) for c, t, data in reader.messages()]
+    return parameters.load(ROOT / 'config' / 'single_turn.yaml'), messages
+
+
+def output_turns(message: Message) -> float:
+    """The rotor angle of an output, turns."""
+    (angle,) = replaying.decode(message.data, JOINT_STATE).position
+    return -19.0 * angle / math.tau
+
+
+def test_turns_before_the_recording_are_taken_from_the_outputs(single_turn):
+    config, messages = single_turn
+    later = messages[len(messages) // 2 :]
+    assert abs(output_turns(next(m for m in later if m.topic == OUTPUT))) > 1.0
+    report = validate(later, config)
+    assert report.verdict == Verdict.PASS
+    (said,) = [f for f in report.findings if 'before the recording' in f]
+    first = output_turns(next(m for m in later if m.topic == OUTPUT))
+    assert str(round(first)) in said or str(math.floor(first)) in said
+    assert all(field.max_error < 1e-12 for topic in report.topics for field in topic.fields)
+
+
+@pytest.mark.parametrize('seed', range(5))
+def test_turns_are_taken_again_after_holes_that_hide_some(single_turn, seed):
+    config, messages = single_turn
+    rng = random.Random(seed)  # noqa: S311, of faults, not of secrets
+    inputs = [k for k, m in enumerate(messages) if m.topic == ROTOR]
+    lost = set()
+    for hole in rng.sample(range(200, len(inputs) - 200, 150), 5):
+        lost |= set(inputs[hole : hole + rng.randrange(20, 90)])
+    report = validate([m for k, m in enumerate(messages) if k not in lost], config)
+    assert report.verdict == Verdict.PASS
+    assert [t.left_out for t in report.topics] == [{NO_INPUT: len(lost)}] * 2
+
+
+def test_poses_tell_the_turns_where_they_are_recorded_alone(single_turn):
+    """Between two holes of the rotor's topic, before the output's topic was recorded."""
+    config, messages = single_turn
+    messages = messages[len(messages) // 2 :]
+    inputs = [k for k, m in enumerate(messages) if m.topic == ROTOR]
+    hole = set(inputs[40:100])
+    begun = messages[inputs[90]].received
+    recorded = [
+        m
+        for k, m in enumerate(messages)
+        if k not in hole and (m.topic != OUTPUT or m.received > begun)
+    ]
+    report = validate(recorded, config)
+    assert report.verdict == Verdict.PASS
+    assert report.topics[1].compared > report.topics[0].compared
+
+
+def test_a_turn_lost_by_the_node_is_found(single_turn):
+    config, messages = single_turn
+    outputs = [k for k, m in enumerate(messages) if m.topic == OUTPUT]
+    slipped = set(outputs[len(outputs) // 2 :])
+
+    def slip(content) -> None:
+        content.position = content.position - math.tau / 19
+
+    report = validate(
+        [edited(m, slip) if k in slipped else m for k, m in enumerate(messages)], config
+    )
+    assert report.verdict == Verdict.FAIL
+
+
+def test_turns_of_poses_and_angle_have_to_agree(single_turn):
+    config, messages = single_turn
+
+    def slip(content) -> None:
+        content.position = content.position - math.tau / 19
+
+    changed = [edited(m, slip) if m.topic == OUTPUT else m for m in messages]
+    report = validate(changed, config)
+    assert [t.passed for t in report.topics] == [True, False]
+
+
+def test_turns_of_a_multi_turn_encoder_are_no_matter_of_inference(traffic, config):
+    def slip(content) -> None:
+        content.position = content.position - math.tau / 19
+
+    changed = [edited(m, slip) if m.topic == OUTPUT else m for m in traffic[500][:900]]
+    assert validate(changed, config).verdict == Verdict.FAIL
+
+
+# The shared recordings
+
+JUDGED = {  # compared, and left out, of each output topic; counted by their stamps
+    'calm_1': [(2959, {NO_INPUT: 41}), (2959, {NO_INPUT: 41})],
+    'calmr_2': [(2422, {BEFORE: 578}), (2422, {BEFORE: 578})],
+    'doc200_1': [(667, {BEFORE: 20}), (667, {BEFORE: 20})],
+    'doc200_2': [(368, {}), (368, {NO_INPUT: 1})],
+    'opt_6': [(2959, {BEFORE: 2, NO_INPUT: 3}), (2959, {BEFORE: 2, NO_INPUT: 2})],
+    'q500_1': [(1045, {NO_INPUT: 51}), (1045, {NO_INPUT: 52})],
+    'q50_1': [(68, {BEFORE: 96}), (68, {BEFORE: 96})],
+}
+
+
+@pytest.mark.skipif(not RECORDED.is_dir(), reason='no recordings of rosbag2 beside this checkout')
+@pytest.mark.parametrize('name', JUDGED)
+def test_recordings_of_rosbag2_pass(config, name):
+    task = Task(RECORDED / name, config, '', Tolerances())
+    report = validate_bag(task)
+    assert report.verdict == Verdict.PASS
+    assert [(t.compared, t.left_out) for t in report.topics] == JUDGED[name]
+    assert all(f.max_error < 1e-12 for t in report.topics for f in t.fields)

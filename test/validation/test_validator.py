@@ -1,0 +1,698 @@
+"""Recordings with one thing changed: each change is found, named and located."""
+
+import math
+import struct
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import replaying
+from rosbags.rosbag2 import Reader
+
+from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.state import parameters
+from gear_kinematics.validation.matching import WINDOW
+from gear_kinematics.validation.report import BagReport, TopicReport, Verdict
+from gear_kinematics.validation.validator import Message, Tolerances, Topics, Validator
+
+BAGS = Path(__file__).resolve().parents[2] / 'bags'
+ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: POSE_ARRAY}
+SECOND = 1_000_000_000
+CHANGED = 100
+"""Which message of its topic is changed."""
+
+
+@pytest.fixture(scope='module')
+def config() -> dict:
+    return parameters.load(parameters.default_config())
+
+
+def read(name: str) -> list[Message]:
+    with Reader(BAGS / name) as reader:
+        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
+
+
+@pytest.fixture(scope='module')
+def recorded() -> list[Message]:
+    """The first 300 samples of a servo's move, and their outputs."""
+    return read('servo_point_to_point')[:900]
+
+
+def validate(messages: list[Message], config: dict, **options) -> BagReport:
+    validator = Validator(config, **options)
+    validator.feed(messages)
+    return validator.report('bag')
+
+
+def topic_of(report: BagReport, topic: str) -> TopicReport:
+    (found,) = (t for t in report.topics if t.topic == topic)
+    return found
+
+
+def field_of(report: BagReport, topic: str, name: str):
+    (found,) = (f for f in topic_of(report, topic).fields if f.name == name)
+    return found
+
+
+def edited(data: bytes, topic: str, edit: Callable) -> bytes:
+    """Change a message by means of rosbags: `edit` changes the message object."""
+    message = replaying.TYPESTORE.deserialize_cdr(data, TYPES[topic])
+    for name in ('position', 'velocity', 'effort'):
+        if hasattr(message, name):
+            setattr(message, name, getattr(message, name).copy())
+    edit(message)
+    return bytes(replaying.TYPESTORE.serialize_cdr(message, TYPES[topic]))
+
+
+def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[list[Message], int]:
+    """Change one message of a topic; also give its original stamp."""
+    changed, count, stamp = [], 0, 0
+    for name, received, data in messages:
+        if name == topic:
+            count += 1
+            if count == CHANGED:
+                stamp = replaying.stamp_of(replaying.decode(data, TYPES[topic]))
+                data = edited(data, topic, edit)  # noqa: PLW2901
+        changed.append((name, received, data))
+    assert stamp
+    return changed, stamp
+
+
+def change_all(messages: list[Message], topic: str, edit: Callable) -> list[Message]:
+    return [
+        (name, received, edited(data, topic, edit) if name == topic else data)
+        for name, received, data in messages
+    ]
+
+
+def index_of(messages: list[Message], topic: str, number: int = CHANGED) -> int:
+    return [k for k, (name, _, _) in enumerate(messages) if name == topic][number - 1]
+
+
+def set_stamp(message, stamp: int) -> None:
+    message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, SECOND)
+
+
+@pytest.mark.parametrize(
+    ('name', 'single_turn', 'messages', 'compared'),
+    [
+        ('servo_point_to_point', False, 9000, 3000),
+        ('constant_speed_3000rpm', False, 9000, 3000),
+        ('single_turn_encoder', True, 7500, 2500),
+        ('driver_faults', False, 1314 + 2 * 1265, 1265),
+    ],
+)
+@pytest.mark.parametrize('tolerance', [1e-9, 1e-12])
+def test_shipped_recordings_pass(name, single_turn, messages, compared, tolerance, config):
+    if single_turn:
+        config = parameters.load(BAGS.parent / 'config' / 'single_turn.yaml')
+    tolerances = Tolerances(tolerance, tolerance * 0.0011)
+    for solver in ({}, {'solver': matrix_method.solve}):
+        report = validate(read(name), config, tolerances=tolerances, **solver)
+        assert report.verdict == Verdict.PASS
+        assert report.messages == messages
+        assert [t.compared for t in report.topics] == [compared, compared]
+        assert [t.missing + t.extra + t.out_of_order for t in report.topics] == [0, 0]
+        assert report.gear_ratio == '-19'
+
+
+def test_the_input_is_described(config):
+    rotor = validate(read('driver_faults'), config).rotor
+    assert rotor.rejected == {
+        'out of order': 12,
+        'position not finite': 12,
+        'joint missing': 12,
+        'position missing': 13,
+    }
+    assert (rotor.messages, rotor.valid, rotor.duplicates) == (1314, 1265, 12)
+    assert rotor.rate == pytest.approx(500.0, rel=0.01)
+    assert rotor.duration == pytest.approx(3.0, abs=0.01)
+    assert rotor.gaps == 2
+    assert [gap.seconds for gap in rotor.longest_gaps] == pytest.approx([0.302, 0.122], abs=0.004)
+
+
+def add(field: str, difference: float):
+    def edit(message) -> None:
+        getattr(message, field)[0] += difference
+
+    return edit
+
+
+def move(body: int, axis: str, difference: float):
+    def edit(message) -> None:
+        position = message.poses[body].position
+        setattr(position, axis, getattr(position, axis) + difference)
+
+    return edit
+
+
+def turn(body: int, angle: float):
+    def edit(message) -> None:
+        q = message.poses[body].orientation
+        half = math.atan2(q.z, q.w) + 0.5 * angle
+        q.z, q.w = math.sin(half), math.cos(half)
+
+    return edit
+
+
+@pytest.mark.parametrize(
+    ('topic', 'field', 'edit', 'error'),
+    [
+        (OUTPUT, 'position', add('position', 2e-9), 2e-9),
+        (OUTPUT, 'position', add('position', -2e-9), 2e-9),
+        (OUTPUT, 'velocity', add('velocity', 2e-9), 2e-9),
+        (OUTPUT, 'effort', add('effort', 2e-9), 2e-9),
+        (POSES, 'position', move(0, 'x', 2e-9), 2e-9),
+        (POSES, 'position', move(1, 'y', -2e-9), 2e-9),
+        (POSES, 'position', move(2, 'z', 2e-9), 2e-9),
+        (POSES, 'position', move(3, 'x', 2e-9), 2e-9),
+        (POSES, 'orientation', turn(3, 2e-9), 2e-9),
+    ],
+)
+def test_a_value_that_is_off_by_2e_9_is_found_and_located(
+    recorded, config, topic, field, edit, error
+):
+    changed, stamp = change_one(recorded, topic, edit)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.FAIL
+    found = field_of(report, topic, field)
+    assert not found.passed
+    assert found.max_error == pytest.approx(error, rel=0.05)
+    assert found.rms_error == pytest.approx(error / math.sqrt(found.compared), rel=0.05)
+    assert found.worst_stamp == stamp
+    index = index_of(recorded, ROTOR)
+    rotor = replaying.decode(recorded[index][2], JOINT_STATE)
+    assert found.worst_rotor_angle == rotor.position[0]
+    failed = [f.name for t in report.topics for f in t.fields if not f.passed]
+    assert failed == [field]
+    assert validate(changed, config, tolerances=Tolerances(3e-9, 3e-9)).passed
+
+
+def test_a_negated_quaternion_is_the_same_rotation(recorded, config):
+    def negate(message) -> None:
+        q = message.poses[1].orientation
+        q.x, q.y, q.z, q.w = -q.x, -q.y, -q.z, -q.w
+
+    changed, stamp = change_one(recorded, POSES, negate)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.PASS
+    (finding,) = report.findings
+    assert finding.startswith('orientations with w < 0')
+    assert finding.endswith(f'1 message, the first at stamp {stamp}')
+
+
+@pytest.mark.parametrize('value', [math.nan, math.inf])
+def test_a_value_that_is_not_finite_is_found(recorded, config, value):
+    for topic, field, edit in (
+        (OUTPUT, 'position', lambda m: m.position.__setitem__(0, value)),
+        (POSES, 'position', lambda m: setattr(m.poses[2].position, 'y', value)),
+        (POSES, 'orientation', lambda m: setattr(m.poses[2].orientation, 'w', value)),
+    ):
+        changed, stamp = change_one(recorded, topic, edit)
+        report = validate(changed, config)
+        assert report.verdict == Verdict.FAIL
+        found = field_of(report, topic, field)
+        assert (found.non_finite, found.first_non_finite) == (1, stamp)
+
+
+@pytest.mark.parametrize('value', [1.4e154, -1e200, 1.7976931348623157e308, 5e-324])
+@pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
+@pytest.mark.parametrize('field', ['position', 'velocity', 'effort'])
+def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topic, field, value):
+    """What a flipped bit makes of a float: nothing overflows, and all else is compared."""
+
+    def spoil(message) -> None:
+        getattr(message, field)[0] = value
+
+    changed, stamp = change_one(recorded, topic, spoil)
+    for name in ('servo', 'allowed'):
+        report = validate(changed, config, allow_offset=name == 'allowed')
+        assert report.verdict == Verdict.FAIL
+        assert sum(t.compared for t in report.topics) >= 598
+        worst = {f.worst_stamp for t in report.topics for f in t.fields if not f.passed}
+        assert worst <= {stamp, None}
+
+
+@pytest.mark.parametrize('value', [1e17, 1e100])
+def test_garbage_in_the_first_output_tells_no_turns(value):
+    """Of a single-turn encoder, whose turns before the recording the next output tells."""
+    config = parameters.load(BAGS.parent / 'config' / 'single_turn.yaml')
+    messages = read('single_turn_encoder')
+    index = index_of(messages, OUTPUT, 1)
+    topic, received, data = messages[index]
+    messages[index] = topic, received, edited(data, topic, lambda m: m.position.fill(value))
+    report = validate(messages, config)
+    assert report.verdict == Verdict.FAIL
+    assert [t.compared for t in report.topics] == [2500, 2500]
+    errors = field_of(report, OUTPUT, 'position')
+    assert errors.max_error == pytest.approx(value)
+    assert errors.rms_error == pytest.approx(value / math.sqrt(2500))
+    assert not any('turns' in finding for finding in report.findings)
+
+
+@pytest.mark.parametrize('value', [1e17, 1e300])
+def test_garbage_in_the_only_output_is_no_offset(recorded, config, value):
+    changed = change_all(recorded[:3], OUTPUT, lambda m: m.position.fill(value))
+    report = validate(changed, config, allow_offset=True)
+    assert report.verdict == Verdict.FAIL
+    assert not any('accepted' in finding for finding in report.findings)
+
+
+@pytest.mark.parametrize('value', [1.4e154, 1e300])
+def test_garbage_in_one_pose_is_an_error_of_that_pose(recorded, config, value):
+    for edit in (
+        lambda m: setattr(m.poses[2].position, 'y', value),
+        lambda m: setattr(m.poses[2].position, 'z', -value),
+        lambda m: setattr(m.poses[0].orientation, 'w', value),
+    ):
+        changed, stamp = change_one(recorded, POSES, edit)
+        report = validate(changed, config)
+        (failed,) = (f for f in topic_of(report, POSES).fields if not f.passed)
+        assert failed.worst_stamp == stamp
+        assert failed.max_error == pytest.approx(value, rel=1.1)
+
+
+def test_a_field_that_lacks_is_found(recorded, config):
+    def without_effort(message) -> None:
+        message.effort = np.zeros(0)
+
+    changed, stamp = change_one(recorded, OUTPUT, without_effort)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.FAIL
+    found = field_of(report, OUTPUT, 'effort')
+    assert (found.absent, found.first_absent) == (1, stamp)
+    report = validate(change_one(recorded, ROTOR, without_effort)[0], config)
+    assert field_of(report, OUTPUT, 'effort').absent == 1
+
+
+@pytest.mark.parametrize('topic', [OUTPUT, POSES])
+def test_a_message_that_was_dropped_is_missing(recorded, config, topic):
+    index = index_of(recorded, topic)
+    _, stamp = change_one(recorded, topic, lambda _: None)
+    report = validate(recorded[:index] + recorded[index + 1 :], config)
+    found = topic_of(report, topic)
+    assert (found.missing, found.extra, found.compared) == (1, 0, 299)
+    assert found.first_missing == stamp
+    assert report.verdict == Verdict.FAIL
+
+
+@pytest.mark.parametrize('topic', [OUTPUT, POSES])
+def test_a_message_that_is_there_twice_is_extra(recorded, config, topic):
+    index = index_of(recorded, topic)
+    _, stamp = change_one(recorded, topic, lambda _: None)
+    report = validate(recorded[: index + 1] + recorded[index:], config)
+    found = topic_of(report, topic)
+    assert (found.missing, found.extra, found.duplicates) == (0, 1, 1)
+    assert found.first_extra == stamp
+    assert report.verdict == Verdict.FAIL
+
+
+@pytest.mark.parametrize('topic', [OUTPUT, POSES])
+def test_two_messages_that_were_swapped_are_out_of_order(recorded, config, topic):
+    one, other = index_of(recorded, topic), index_of(recorded, topic, CHANGED + 1)
+    swapped = list(recorded)
+    swapped[one], swapped[other] = swapped[other], swapped[one]
+    report = validate(swapped, config)
+    found = topic_of(report, topic)
+    assert (found.missing, found.extra, found.out_of_order) == (0, 0, 1)
+    assert found.first_out_of_order == change_one(recorded, topic, lambda _: None)[1]
+    assert report.verdict == Verdict.FAIL
+
+
+@pytest.mark.parametrize('topic', [OUTPUT, POSES])
+def test_a_stamp_that_is_off_by_1_ns_is_missing_and_extra(recorded, config, topic):
+    _, stamp = change_one(recorded, topic, lambda _: None)
+    changed, _ = change_one(recorded, topic, lambda m: set_stamp(m, stamp + 1))
+    found = topic_of(validate(changed, config), topic)
+    assert (found.missing, found.extra, found.compared) == (1, 1, 299)
+    assert (found.first_missing, found.first_extra) == (stamp, stamp + 1)
+
+
+def test_a_flipped_sign_is_named(recorded, config):
+    def flip(message) -> None:
+        message.position[0] *= -1.0
+
+    report = validate(change_all(recorded, OUTPUT, flip), config)
+    assert report.verdict == Verdict.FAIL
+    assert any('sign is flipped' in finding for finding in report.findings)
+
+
+def test_another_direction_of_the_encoder_is_named(recorded, config):
+    report = validate(recorded, {**config, 'rotor_direction': -1})
+    assert any('sign is flipped' in finding for finding in report.findings)
+
+
+@pytest.mark.parametrize(
+    ('assumed', 'named'),
+    [
+        ({'ring_teeth': 81}, ('ring_teeth 80, satellite_teeth 76', '-19')),
+        ({'satellite_teeth': 77}, ('ring_teeth 80, satellite_teeth 76', '-19')),
+        ({'ring_teeth': 61, 'satellite_teeth': 58}, ('-19',)),
+    ],
+)
+def test_another_tooth_pair_is_named(recorded, config, assumed, named):
+    report = validate(recorded, {**config, **assumed})
+    assert report.verdict == Verdict.FAIL
+    (finding,) = (f for f in report.findings if 'recorded ratio' in f)
+    assert all(words in finding for words in named)
+
+
+def test_a_ratio_of_no_tooth_pair_is_named_as_it_is(recorded, config):
+    def scale(message) -> None:
+        message.position[0] *= math.pi
+
+    report = validate(change_all(recorded, OUTPUT, scale), config)
+    (finding,) = (f for f in report.findings if 'recorded ratio' in f)
+    assert float(finding.split()[4].rstrip(',')) == pytest.approx(-19.0 / math.pi, rel=1e-6)
+
+
+def test_a_constant_offset_is_named_and_accepted_on_request(recorded, config):
+    def offset(message) -> None:
+        message.position[0] += 0.125
+
+    changed = change_all(recorded, OUTPUT, offset)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.FAIL
+    assert any('constant 0.125 rad' in finding for finding in report.findings)
+    accepted = validate(changed, config, allow_offset=True)
+    assert accepted.verdict == Verdict.PASS
+    assert any('accepted' in f and 'constant 0.125 rad' in f for f in accepted.findings)
+    assert field_of(accepted, OUTPUT, 'position').max_error < 1e-12
+
+
+def test_the_offset_that_homing_leaves_is_accepted_with_its_poses(recorded, config):
+    """A node that was homed before the recording has another zero than the configuration."""
+    homed = {**config, 'rotor_zero': 0.75}
+    report = validate(recorded, homed)
+    assert any('constant' in f for f in report.findings)
+    assert not topic_of(report, POSES).passed
+    accepted = validate(recorded, homed, allow_offset=True)
+    assert accepted.verdict == Verdict.PASS
+
+
+def test_no_offset_is_made_up(recorded, config):
+    report = validate(recorded, config, allow_offset=True)
+    assert report.verdict == Verdict.PASS
+    assert report.findings == ()
+    changed, _ = change_one(recorded, OUTPUT, add('position', 0.1))
+    assert validate(changed, config, allow_offset=True).verdict == Verdict.FAIL
+
+
+def test_another_order_of_the_poses_is_named(recorded, config):
+    def swap(message) -> None:
+        message.poses[1], message.poses[2] = message.poses[2], message.poses[1]
+
+    report = validate(change_all(recorded, POSES, swap), config)
+    assert report.verdict == Verdict.FAIL
+    (finding,) = (f for f in report.findings if 'order' in f)
+    assert finding == (
+        'the poses are in another order: satellite_a, oldham_a, satellite_b, oldham_b'
+    )
+
+
+def test_a_single_message_in_another_order_is_not_said_of_all(recorded, config):
+    def swap(message) -> None:
+        message.poses[0], message.poses[1] = message.poses[1], message.poses[0]
+
+    changed, stamp = change_one(recorded, POSES, swap)
+    (finding,) = (f for f in validate(changed, config).findings if 'order' in f)
+    assert finding == (
+        'in 1 of 300 messages the poses are in another order: satellite_b, satellite_a, '
+        f'oldham_a, oldham_b; one is at stamp {stamp}'
+    )
+
+
+def test_another_frame_is_named(recorded, config):
+    def rename(message) -> None:
+        message.header.frame_id = 'base'
+
+    changed, stamp = change_one(recorded, POSES, rename)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.FAIL
+    (fault,) = topic_of(report, POSES).faults
+    assert "'base'" in fault
+    assert "'stator'" in fault
+    assert f'1 message, the first at stamp {stamp}' in fault
+
+
+def test_another_joint_name_is_named(recorded, config):
+    def rename(message) -> None:
+        message.name = ['shaft']
+
+    changed, stamp = change_one(recorded, OUTPUT, rename)
+    report = validate(changed, config)
+    assert report.verdict == Verdict.FAIL
+    assert topic_of(report, OUTPUT).faults == (
+        f"no joint 'output_shaft': 1 message, the first at stamp {stamp}",
+    )
+
+
+def test_a_prefix_belongs_to_the_configuration(recorded, config):
+    report = validate(recorded, {**config, 'frame_prefix': 'left_'})
+    assert report.verdict == Verdict.FAIL
+    assert all(topic.faults for topic in report.topics)
+
+
+def test_a_prefix_that_the_outputs_agree_on_is_taken_from_them(recorded, config):
+    def prefixed(message) -> None:
+        message.header.frame_id = 'left_stator'
+
+    def renamed(message) -> None:
+        message.name = ['left_output_shaft']
+
+    with_frames = change_all(recorded, POSES, prefixed)
+    with_both = change_all(with_frames, OUTPUT, renamed)
+    report = validate(with_both, config)
+    assert report.verdict == Verdict.PASS
+    assert report.findings == ("frame_prefix 'left_' is taken from the outputs",)
+    report = validate(with_frames, config)
+    assert report.verdict == Verdict.FAIL
+    assert "no joint 'left_output_shaft'" in topic_of(report, OUTPUT).faults[0]
+    assert validate(with_both, {**config, 'frame_prefix': 'right_'}).verdict == Verdict.FAIL
+
+
+def test_poses_that_lack_a_body_are_malformed(recorded, config):
+    changed, _ = change_one(recorded, POSES, lambda m: m.poses.pop())
+    found = topic_of(validate(changed, config), POSES)
+    assert (found.missing, found.compared) == (1, 299)
+    assert 'malformed' in found.faults[0]
+
+
+def test_bytes_that_are_no_message_are_malformed(recorded, config):
+    broken = list(recorded)
+    index = index_of(recorded, OUTPUT)
+    broken[index] = (OUTPUT, broken[index][1], b'\x00\x01garbage')
+    found = topic_of(validate(broken, config), OUTPUT)
+    assert found.missing == 1
+    assert 'malformed' in found.faults[0]
+
+
+def test_nothing_to_validate_is_unusable(recorded, config):
+    for messages, word in (
+        ([], 'rotor states'),
+        ([m for m in recorded if m[0] != ROTOR], 'rotor states'),
+        ([m for m in recorded if m[0] == ROTOR], 'outputs'),
+    ):
+        report = validate(messages, config)
+        assert report.verdict == Verdict.UNUSABLE
+        assert word in report.error
+
+
+def test_a_topic_without_messages_fails(recorded, config):
+    report = validate([m for m in recorded if m[0] != POSES], config)
+    assert report.verdict == Verdict.FAIL
+    assert topic_of(report, POSES).missing == 300
+
+
+def test_damage_keeps_what_came_before(recorded, config):
+    def cut_short():
+        yield from recorded[:600]
+        raise OSError('the disk is gone')
+
+    validator = Validator(config)
+    with pytest.raises(OSError, match='disk'):
+        validator.feed(cut_short())
+    report = validator.report('bag', error='the disk is gone')
+    assert report.messages == 600
+    assert report.verdict == Verdict.UNUSABLE
+    assert report.error == 'the disk is gone'
+    assert [t.compared for t in report.topics] == [200, 200]
+    assert all(field.max_error < 1e-12 for t in report.topics for field in t.fields)
+
+
+def test_outputs_recorded_before_their_inputs_match(recorded, config):
+    """Reception decides on the order in a bag, and the network on reception."""
+    early = sorted(recorded, key=lambda m: (m[1] // 20_000_000, m[0]))
+    assert [m[0] for m in early] != [m[0] for m in recorded]
+    assert validate(early, config).passed
+
+
+def repeated(messages: list[Message], times: int, seconds: int) -> list[Message]:
+    """A longer recording of the same, stamps going on."""
+    long = []
+    for k in range(times):
+        for topic, received, data in messages:
+            (second,) = struct.unpack_from('<i', data, 4)
+            shifted = data[:4] + struct.pack('<i', second + k * seconds) + data[8:]
+            long.append((topic, received + k * seconds * SECOND, shifted))
+    return long
+
+
+def test_batches_leave_no_seams(recorded, config):
+    messages = repeated(recorded, 40, 1)
+    report = validate(messages, config)
+    assert report.verdict == Verdict.PASS
+    assert [t.compared for t in report.topics] == [12_000, 12_000]
+    assert report.rotor.gaps == 39
+
+
+def test_a_bag_that_loops_starts_anew(config):
+    messages = read('servo_point_to_point')
+    looped = messages + messages
+    report = validate(looped, config)
+    assert report.verdict == Verdict.PASS
+    assert report.rotor.resets == 1
+    assert [t.compared for t in report.topics] == [6000, 6000]
+
+
+def test_a_message_later_than_the_window_is_missing_and_extra(recorded, config):
+    messages = repeated(recorded, WINDOW // 300 + 40, 1)
+    late = messages.pop(index_of(messages, OUTPUT))
+    found = topic_of(validate([*messages, late], config), OUTPUT)
+    assert (found.missing, found.extra) == (1, 1)
+
+
+def test_missing_messages_are_counted_exactly_in_long_recordings(recorded, config):
+    messages = repeated(recorded, 100, 1)
+    dropped = [k for k, m in enumerate(messages) if m[0] == OUTPUT][::97]
+    kept = [m for k, m in enumerate(messages) if k not in set(dropped)]
+    found = topic_of(validate(kept, config, strict=True), OUTPUT)
+    assert (found.missing, found.extra) == (len(dropped), 0)
+    assert all(f.max_error < 1e-11 for f in found.fields)
+
+
+def test_gaps_that_could_hide_a_turn_are_named(config):
+    single = {**config, 'rotor_encoder': 'single_turn', 'max_rotor_speed': 2000.0}
+    report = validate(read('driver_faults'), single)
+    assert report.rotor.jumps > 0
+    assert not report.rotor.referenced
+    assert any('hide a turn' in finding for finding in report.findings)
+
+
+def test_overspeed_is_named(recorded, config):
+    report = validate(recorded, {**config, 'max_rotor_speed': 10.0})
+    assert report.verdict == Verdict.PASS
+    assert report.rotor.overspeed > 0
+    assert any('max_rotor_speed' in finding for finding in report.findings)
+
+
+def test_inputs_without_stamps_are_named(recorded, config):
+    changed, _ = change_one(recorded, ROTOR, lambda m: set_stamp(m, 0))
+    report = validate(changed, config)
+    assert report.rotor.zero_stamps == 1
+    assert any('no stamp' in finding for finding in report.findings)
+
+
+def restamped(data: bytes, seconds: int = 1) -> bytes:
+    """Write the time of the stamp with so many seconds among its nanoseconds."""
+    sec, nanosec = struct.unpack_from('<iI', data, 4)
+    return data[:4] + struct.pack('<iI', sec - seconds, nanosec + seconds * SECOND) + data[12:]
+
+
+def test_unnormalised_stamps_match_their_outputs_and_are_named(recorded, config):
+    changed = [
+        (topic, received, restamped(data) if topic == ROTOR else data)
+        for topic, received, data in recorded
+    ]
+    report = validate(changed, config)
+    assert report.verdict == Verdict.PASS
+    assert report.rotor.unnormalised_stamps == report.rotor.valid == 300
+    assert [topic.compared for topic in report.topics] == [300, 300]
+    assert any('300 stamps of /rotor_state' in finding for finding in report.findings)
+
+
+@pytest.mark.parametrize(
+    ('bad', 'verdict'),
+    [(150, Verdict.PASS), (151, Verdict.FAIL), (299, Verdict.FAIL), (300, Verdict.UNUSABLE)],
+)
+def test_a_recording_of_which_most_is_rejected_does_not_pass(recorded, config, bad, verdict):
+    """Though all that is left is as it should be: a node answers no message that it rejects."""
+    wrong = set(np.random.default_rng(0).permutation(300)[:bad].tolist())
+    counts, changed = Counter(), []
+    for topic, received, data in recorded:
+        number, counts[topic] = counts[topic], counts[topic] + 1
+        if number not in wrong:
+            changed.append((topic, received, data))
+        elif topic == ROTOR:
+            changed.append((topic, received, data[:-1]))
+    report = validate(changed, config)
+    assert report.rotor.rejected == {'not a JointState': bad}
+    assert [topic.missing + topic.extra for topic in report.topics] == [0, 0]
+    assert report.verdict == verdict
+    named = [finding for finding in report.findings if 'were rejected' in finding]
+    assert len(named) == (bad > 150)
+    for finding in named:
+        assert f'{bad} of 300 messages of /rotor_state' in finding
+        assert f'not a JointState {bad}' in finding
+
+
+def test_topics_may_have_other_names(recorded, config):
+    renamed = [(f'/left{topic}', received, data) for topic, received, data in recorded]
+    topics = Topics(*(f'/left{topic}' for topic in (ROTOR, OUTPUT, POSES)))
+    report = validate(renamed, config, topics=topics)
+    assert report.verdict == Verdict.PASS
+    assert [t.topic for t in report.topics] == ['/left/output_state', '/left/body_poses']
+
+
+def test_big_endian_recordings_pass(recorded, config):
+    swapped = [
+        (
+            topic,
+            received,
+            bytes(
+                replaying.TYPESTORE.serialize_cdr(
+                    replaying.decode(data, TYPES[topic]), TYPES[topic], little_endian=False
+                )
+            ),
+        )
+        for topic, received, data in recorded
+    ]
+    assert swapped[0][2][:2] == b'\x00\x00'
+    assert validate(swapped, config).passed
+
+
+def test_layouts_may_change_in_mid_recording(recorded, config):
+    def more_joints(message) -> None:
+        message.name = ['brake', *message.name]
+        for field in ('position', 'velocity', 'effort'):
+            setattr(message, field, np.array([7.0, *getattr(message, field)]))
+
+    half = change_all(recorded[450:], ROTOR, more_joints)
+    assert validate(recorded[:450] + half, config).passed
+
+
+def test_the_series_shows_the_worst(recorded, config):
+    messages = repeated(recorded, 60, 1)
+    changed, stamp = change_one(messages, OUTPUT, add('position', 1e-3))
+    series = validate(changed, config).series
+    assert 1000 < len(series.time) <= 5000
+    assert {len(values) for values in (series.rotor_angle, series.position_error)} == {
+        len(series.time)
+    }
+    worst = int(np.argmax(np.abs(series.angle_error)))
+    assert series.angle_error[worst] == pytest.approx(1e-3)
+    first = replaying.stamp_of(replaying.decode(recorded[0][2], JOINT_STATE))
+    assert series.time[worst] == pytest.approx((stamp - first) / SECOND, abs=0.05)
+    assert series.time == sorted(series.time)
+
+
+def test_progress_is_told(recorded, config):
+    told = []
+    validator = Validator(config)
+    validator.feed(repeated(recorded, 20, 1), progress=told.append)
+    assert sum(told) == 18_000
+    assert len(told) > 1

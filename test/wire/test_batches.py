@@ -1,0 +1,160 @@
+"""Batches of messages say what the messages say one by one."""
+
+import math
+import struct
+
+import numpy as np
+import replaying
+from hypothesis import given
+from hypothesis import strategies as st
+from live import rotor_bytes
+from wire import micro_ros_bytes
+
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
+from gear_kinematics.wire.cdr import (
+    MalformedMessageError,
+    PoseArrayTemplate,
+    decode_joint_state,
+    decode_pose_array,
+)
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+SECOND = 1_000_000_000
+LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
+bounds = st.sampled_from([LARGEST, math.nextafter(LARGEST, math.inf), -1e300])
+numbers = st.lists(st.floats(width=64) | bounds, max_size=3)
+fields = (
+    st.integers(0, 50).map(lambda k: k * SECOND // 10),
+    st.lists(st.sampled_from(['rotor', 'brake', 'x']), max_size=3) | st.just(['', '']),
+    numbers,
+    numbers,
+    numbers,
+)
+
+
+def restamped(data: bytes, seconds: int, nanoseconds: int) -> bytes:
+    """Write a stamp over another, whether or not it is normalised."""
+    return data[:4] + struct.pack('<iI' if data[1] else '>iI', seconds, nanoseconds) + data[12:]
+
+
+joint_states = (
+    st.builds(rotor_bytes, *fields, little_endian=st.booleans())
+    | st.builds(micro_ros_bytes, *fields)
+    | st.builds(
+        restamped,
+        st.builds(rotor_bytes, *fields, little_endian=st.booleans()),
+        st.integers(-4, 5) | st.just(2**31 - 1),
+        st.sampled_from([0, SECOND - 1, SECOND, 2 * SECOND + 1, 2**32 - 1]),
+    )
+)
+messages = st.lists(
+    st.one_of(joint_states, joint_states, joint_states, st.binary(max_size=60)), max_size=30
+)
+
+
+def same(left: float, right: float) -> bool:
+    return left == right or (math.isnan(left) and math.isnan(right))
+
+
+@given(messages, st.sampled_from(['rotor', '', '1']))
+def test_joint_states_are_decoded_as_one_by_one(messages, joint):
+    batch = decode_joint_states(messages, joint)
+    for row, data in enumerate(messages):
+        try:
+            message = decode_joint_state(data)
+        except MalformedMessageError:
+            assert batch.malformed[row]
+            continue
+        assert not batch.malformed[row]
+        assert batch.stamp[row] == message.stamp
+        order = '<' if data[1] & 1 else '>'
+        (nanoseconds,) = struct.unpack_from(f'{order}I', data, 8)
+        assert batch.unnormalised[row] == (nanoseconds >= SECOND)
+        names = [name.decode(errors='replace') for name in message.names]
+        if not any(names):
+            names = [str(k) for k in range(len(names) or len(message.position))]
+        if joint:
+            found = joint in names
+            index = names.index(joint) if found else -1
+        else:
+            found, index = len(names) == 1, 0
+        assert batch.joint_found[row] == found
+        for field, values in enumerate(message[2:]):
+            there = found and index < len(values)
+            assert batch.present[row, field] == there
+            assert same(batch.values[row, field], values[index] if there else math.nan)
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(0, 2**60), st.sampled_from(['stator', 'base']), st.integers(0, 3)),
+        max_size=20,
+    ),
+    st.binary(max_size=40),
+)
+def test_pose_arrays_are_decoded_as_one_by_one(specifications, garbage):
+    messages = [
+        PoseArrayTemplate(frame, poses).encode(
+            stamp, *([[0.5 * k for k in range(7 * poses)]] if poses else [])
+        )
+        for stamp, frame, poses in specifications
+    ]
+    messages.append(garbage)
+    batch = decode_pose_arrays(messages, 2)
+    for row, data in enumerate(messages[:-1]):
+        message = decode_pose_array(data)
+        assert batch.malformed[row] == (len(message.numbers) != 14)
+        if not batch.malformed[row]:
+            assert batch.stamp[row] == message.stamp
+            assert batch.frame_ids[batch.frame[row]] == message.frame_id
+            assert tuple(batch.poses[row].ravel()) == message.numbers
+
+
+def test_padding_that_is_left_to_chance_makes_no_layout():
+    data = rotor_bytes(SECOND, ['abc'], [1.0], [2.0], [3.0])
+    plain = replaying.decode(data, 'sensor_msgs/msg/JointState')
+    assert plain.name == ['abc']
+    # Behind the frame id's single byte there are three bytes of padding.
+    assert data[17:20] == bytes(3)
+    other = data[:17] + b'xyz' + data[20:]
+    batch = decode_joint_states([data, other], 'abc')
+    assert not batch.malformed.any()
+    np.testing.assert_array_equal(batch.values, [[1.0, 2.0, 3.0]] * 2)
+
+
+@given(
+    st.lists(messages, max_size=4),
+    st.sampled_from(['rotor', '1']),
+    st.sampled_from(['multi_turn', 'single_turn']),
+    st.sampled_from([1, -1]),
+    st.floats(-10.0, 10.0) | st.floats(-1e15, 1e15),
+)
+def test_batches_of_input_are_accepted_as_one_by_one(batches, joint, encoder, direction, zero):
+    settings = InputSettings(joint, direction, zero, encoder, 650.0, 6500.0)
+    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
+    for batch in batches:
+        clock = [7 * SECOND + k for k in range(len(batch))]
+        expected, rows = [], []
+        for row, (data, now) in enumerate(zip(batch, clock, strict=True)):
+            try:
+                expected.append(one_by_one.accept(data, lambda now=now: now))
+            except RejectedInputError:
+                continue
+            rows.append(row)
+        samples = at_once.accept_batch(batch, clock)
+        assert samples.row.tolist() == rows
+        assert samples.stamp.tolist() == [sample.stamp for sample in expected]
+        for k, sample in enumerate(expected):
+            assert samples.turns[k] == float(sample.position.turns)
+            assert samples.angle[k] == sample.position.angle
+            assert same(
+                samples.velocity[k], math.nan if sample.velocity is None else sample.velocity
+            )
+            assert same(samples.effort[k], math.nan if sample.effort is None else sample.effort)
+        for account in (
+            'received', 'rejected', 'duplicates', 'zero_stamps', 'unnormalised_stamps', 'resets',
+            'last',
+        ):  # fmt: skip
+            assert getattr(at_once, account) == getattr(one_by_one, account)
+        assert at_once.referenced == one_by_one.referenced

@@ -1,0 +1,174 @@
+"""One joint of messages of any layout, against the decoder that knows no layout before."""
+
+import math
+import struct
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from live import SECOND, rotor_bytes
+from wire import micro_ros_bytes
+
+from gear_kinematics.wire.cdr import MalformedMessageError, decode_joint_state
+from gear_kinematics.wire.joint_reader import GREATEST, JointReader, RejectedInputError
+
+LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
+
+names = st.sampled_from(['rotor', 'wheel', 'm1', '', '0', '1'])
+bounds = [1e300, -1.0000000000000002e300, math.nan, LARGEST, -math.nextafter(LARGEST, math.inf)]
+doubles = st.lists(st.floats() | st.sampled_from(bounds), max_size=4)
+messages = st.builds(
+    dict,
+    stamp=st.integers(-(2**31) * 10**9, 2**31 * 10**9 - 1),
+    names=st.lists(names, max_size=4),
+    position=doubles,
+    velocity=doubles,
+    effort=doubles,
+    frame_id=st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=9),
+)
+FULL = rotor_bytes(
+    12_000_000_034, ['m1', 'rotor'], [1.0, 2.0], [3.0, 4.0], [5.0, 6.0], frame_id='base'
+)
+
+
+def read(reader, data):
+    """Give what is read, or why it is not."""
+    try:
+        return reader.read(data)
+    except RejectedInputError as rejection:
+        return str(rejection)
+
+
+def expected(data, joint):
+    """Apply the README's table of bad input to the decoded message."""
+    try:
+        message = decode_joint_state(data)
+    except MalformedMessageError:
+        return 'not a JointState'
+    stamp, order = message.stamp, '<' if data[1] & 1 else '>'
+    if stamp >= 2**31 * SECOND:
+        return 'stamp out of range'
+    joints = [name.decode(errors='replace') for name in message.names]
+    if not any(joints):
+        joints = [str(k) for k in range(len(joints) or len(message.position))]
+    found = [k for k, name in enumerate(joints) if (name == joint if joint else len(joints) == 1)]
+    if not found:
+        return 'joint missing'
+    if found[0] >= len(message.position):
+        return 'position missing'
+    position, *rates = (
+        values[found[0]] if found[0] < len(values) else None
+        for values in (message.position, message.velocity, message.effort)
+    )
+    if not math.isfinite(position):
+        return 'position not finite'
+    if abs(position) > LARGEST:
+        return 'position too large'
+    rates = [rate if rate is not None and abs(rate) <= GREATEST else None for rate in rates]
+    (nanoseconds,) = struct.unpack_from(f'{order}I', data, 8)
+    return stamp, nanoseconds >= SECOND, position, *rates
+
+
+@given(st.lists(st.tuples(messages, st.booleans()), max_size=8), names)
+def test_any_layout_is_read_after_any_other(sequence, joint):
+    reader = JointReader(joint)
+    for message, little_endian in sequence:
+        for stamp in (message['stamp'], 5):  # the second time with the layout of the first
+            data = rotor_bytes(**message | {'stamp': stamp}, little_endian=little_endian)
+            assert read(reader, data) == expected(data, joint)
+
+
+@given(messages, names, st.data())
+def test_every_message_is_held_against_the_layout(message, joint, data):
+    good = rotor_bytes(**message)
+    reader = JointReader(joint)
+    assert read(reader, good) == expected(good, joint)
+    changed = bytearray(good)
+    for _ in range(data.draw(st.integers(1, 3))):
+        changed[data.draw(st.integers(0, len(good) - 1))] ^= data.draw(st.integers(1, 255))
+    assert read(reader, bytes(changed)) == expected(bytes(changed), joint)
+    assert read(reader, good) == expected(good, joint)
+
+
+def test_reading_goes_on_after_bytes_that_are_no_message():
+    reader = JointReader('rotor')
+    for data in (b'', FULL[:50], b'\xff' * len(FULL)):
+        assert reader.read(FULL) == (12_000_000_034, False, 2.0, 4.0, 6.0)
+        with pytest.raises(RejectedInputError, match='not a JointState'):
+            reader.read(data)
+    assert reader.read(FULL) == (12_000_000_034, False, 2.0, 4.0, 6.0)
+
+
+def test_padding_is_passed_over():
+    # Between "frame" with its length and the number of names are two bytes of chance.
+    data = rotor_bytes(1, ['rotor'], [1.0], frame_id='frame')
+    start = data.index(b'frame\0') + len(b'frame\0')
+    reader = JointReader('rotor')
+    assert reader.read(data) == (1, False, 1.0, None, None)
+    assert reader.read(data[:start] + b'\x5a\xa5' + data[start + 2 :]) == (
+        1,
+        False,
+        1.0,
+        None,
+        None,
+    )
+
+
+def test_messages_may_have_any_size():
+    count = 20_000  # far more than a layout that is kept
+    data = rotor_bytes(7, [f'joint_{n}' for n in range(count)], range(count))
+    reader = JointReader(f'joint_{count - 1}')
+    for _ in range(2):
+        assert reader.read(data) == (7, False, count - 1.0, None, None)
+
+
+CHOSEN = [  # the joint, the names and number of positions of the message, the index taken
+    ('', [], 1, 0),
+    ('', [''], 1, 0),
+    ('', ['m1'], 1, 0),
+    ('', [], 2, None),
+    ('', ['', ''], 2, None),
+    ('0', [], 1, 0),
+    ('1', [], 3, 1),
+    ('2', ['', '', ''], 3, 2),
+    ('3', ['', '', ''], 3, None),
+    ('-1', ['', ''], 2, None),
+    ('01', ['', ''], 2, None),
+    ('1', ['m1', ''], 2, None),  # who names one joint names all
+    ('1', ['1', '0'], 2, 0),  # a name, where there are names
+    ('rotor', [], 1, None),
+]
+
+
+@pytest.mark.parametrize(('joint', 'names', 'count', 'index'), CHOSEN)
+@pytest.mark.parametrize('write', [rotor_bytes, micro_ros_bytes])
+def test_joint_without_a_name_goes_by_its_index(joint, names, count, index, write):
+    position = [10.0 + k for k in range(count)]
+    data = write(1, names, position, position)
+    if index is None:
+        with pytest.raises(RejectedInputError, match='joint missing'):
+            JointReader(joint).read(data)
+    else:
+        assert JointReader(joint).read(data) == (1, False, 10.0 + index, 10.0 + index, None)
+
+
+@pytest.mark.parametrize(
+    ('seconds', 'nanoseconds', 'stamp'),
+    [
+        (12, 10**9 - 1, 12_999_999_999),
+        (12, 10**9, 13 * SECOND),
+        (1732231175, 3_158_772_736, 1_732_231_178_158_772_736),
+        (2**31 - 2, 10**9 + 7, (2**31 - 1) * SECOND + 7),
+        (-1, 2**32 - 1, 3_294_967_295),
+    ],
+)
+def test_stamp_is_the_time_that_its_parts_mean(seconds, nanoseconds, stamp):
+    data = FULL[:4] + struct.pack('<iI', seconds, nanoseconds) + FULL[12:]
+    assert JointReader('rotor').read(data) == (stamp, nanoseconds >= 10**9, 2.0, 4.0, 6.0)
+
+
+@pytest.mark.parametrize('nanoseconds', [10**9, 2**32 - 1])
+def test_stamp_that_cannot_be_normalised_is_out_of_range(nanoseconds):
+    data = FULL[:4] + struct.pack('<iI', 2**31 - 1, nanoseconds) + FULL[12:]
+    with pytest.raises(RejectedInputError, match='stamp out of range'):
+        JointReader('rotor').read(data)
