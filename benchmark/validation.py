@@ -27,10 +27,10 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
 from gear_kinematics.bag import TOPIC_TYPES, BagMessage, read_bag, write_bag
+from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.validation.fleet import Task, validate_bag
-from gear_kinematics.validation.report import Verdict
 from gear_kinematics.validation.validator import Tolerances
 
 _SOURCE = 'servo_point_to_point'

@@ -38,6 +38,15 @@ def add_config(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) -> None:
+    """Take the files for the report; see `output.Reporter`."""
+    for form in ('json', *(['junit'] if junit else []), 'html'):
+        parser.add_argument(
+            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
+        )
+    parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+
+
 def add_topics(parser: argparse.ArgumentParser) -> None:
     """Take the names that the node's topics have in a bag."""
     for topic in ('rotor', 'output', 'poses'):

@@ -8,7 +8,7 @@ from gear_kinematics.bag.roles import find_topics
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, add_topics, load_config
 from gear_kinematics.commands.output import complain, message_progress
-from gear_kinematics.report.wording import printable
+from gear_kinematics.report.document import printable
 from gear_kinematics.state.compute import compute
 
 HELP = 'write the outputs for a bag with the rotor topic'

@@ -5,11 +5,12 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-from rich.table import Table
+import numpy as np
 
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import (
     add_mechanism,
+    add_report_forms,
     add_ring_turn,
     add_setting,
     add_stiffness,
@@ -18,15 +19,30 @@ from gear_kinematics.commands.arguments import (
     stiffness,
     within_a_turn,
 )
-from gear_kinematics.commands.output import Console, facts, numbers, write
+from gear_kinematics.commands.output import Reporter, write
 from gear_kinematics.kinematics import vernier
 from gear_kinematics.kinematics.preload import Preload, ring_phase
 from gear_kinematics.kinematics.vernier import Choice, PinSetting
-from gear_kinematics.report.json import dumps
+from gear_kinematics.report.document import (
+    Cell,
+    Document,
+    Figure,
+    Layout,
+    Line,
+    Panel,
+    Pen,
+    Section,
+    Table,
+    Tone,
+)
 from gear_kinematics.shape.angles import arc, arc_seconds
-from gear_kinematics.shape.pin_sheet import draw
+from gear_kinematics.shape.pin_sheet import MOST_TEETH, draw
 
 _MAX_NEIGHBOURS = 1000
+_SENSES = (
+    'Seen against the z axis, angles, teeth and chassis holes count anticlockwise, ring holes '
+    'clockwise, from 0 at the zero marks.'
+)
 HELP = 'pin holes for a turn of the ring gear, a preload or the phase of branch B'
 
 
@@ -75,7 +91,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--neighbours', type=int, default=3, metavar='N', help='on either side (default: 3)'
     )
-    parser.add_argument('--json', action='store_true', help='for programs')
+    add_report_forms(parser)
     parser.add_argument(
         '--drawing', metavar='FILE', help='of the holes, an SVG for a page of A4 (-: stdout)'
     )
@@ -86,20 +102,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Print the setting and its neighbours, and draw it."""
+    """Report the setting and its neighbours, and draw it."""
     if options.mirrored and not options.drawing:
         raise ValueError('--mirrored is of use with --drawing only')
-    if options.json and options.drawing == '-':
-        raise ValueError('only one of --json and --drawing can go to stdout')
+    reporter = Reporter(options, drawing=options.drawing)
     answer = _answer(options)
-    if options.drawing:
+    drawing = ''
+    if options.drawing or (options.html and answer.ring_teeth <= MOST_TEETH):
         setting = answer.nearest.choice.settings[0]
         notes = [' '.join(fact) for fact in _outcome(answer)]
-        write(options.drawing, draw(answer.ring_teeth, setting, notes, mirrored=options.mirrored))
-    if options.json:
-        print(dumps(_document(answer)), end='')
-    elif options.drawing != '-':
-        _print(answer, Console())
+        drawing = draw(answer.ring_teeth, setting, notes, mirrored=options.mirrored)
+    if options.drawing:
+        write(options.drawing, drawing)
+    reporter.write(Document('gearkin index', (_section(answer, drawing),), _data(answer)))
     return ExitCode.DONE
 
 
@@ -132,7 +147,7 @@ def _answer(options: argparse.Namespace) -> _Answer:
     return _Answer(ring_teeth, start, phase, wanted_turn, preload(wanted_turn), rows)
 
 
-def _document(answer: _Answer) -> dict[str, Any]:
+def _data(answer: _Answer) -> dict[str, Any]:
     return {
         'ring_teeth': answer.ring_teeth,
         'ring_holes': answer.ring_teeth + 1,
@@ -173,24 +188,33 @@ def _more(preload: float | None, wanted: float | None) -> float | None:
     return None if preload is None or wanted is None else preload - wanted
 
 
-def _print(answer: _Answer, console: Console) -> None:
+def _section(answer: _Answer, drawing: str) -> Section:
     zk = answer.ring_teeth
-    console.print(
-        f'{zk} teeth, {zk + 1} ring holes, {zk + 2} chassis holes: '
-        f'{vernier.distinct_positions(zk)} positions, one every {arc(vernier.step(zk))}',
-        style='dim',
-        soft_wrap=True,
+    count = vernier.distinct_positions(zk)
+    return Section(
+        '',
+        (
+            Table.of_values(
+                Layout.LINES,
+                ('holes', f'{zk} teeth, {zk + 1} ring holes, {zk + 2} chassis holes'),
+                ('positions', f'{count} positions, one every {arc(vernier.step(zk))}'),
+                *_pinning(answer),
+                *_outcome(answer),
+            ),
+            _position_table(answer),
+        ),
+        remarks=(_SENSES,),
+        figure=_figure(answer),
+        drawing=drawing,
     )
-    console.print(facts([*_pinning(answer), *_outcome(answer)]))
-    console.print()
-    console.print(_table(answer))
-    console.print()
-    console.print(
-        'Seen against the z axis, angles, teeth and chassis holes count anticlockwise, ring holes '
-        'clockwise, from 0 at the zero marks.',
-        style='dim',
-        soft_wrap=True,
-    )
+
+
+def _figure(answer: _Answer) -> Figure:
+    steps = np.array([choice.steps for choice, _ in answer.rows], np.float64)
+    error = np.array([arc_seconds(choice.error) for choice, _ in answer.rows])
+    line = Line('position', Pen.FIRST, steps, error, points=True)
+    label = 'position, steps from the nearest'
+    return Figure((Panel('', label, 'error of the turn [″]', (line,), levels=((0.0, 'wanted'),)),))
 
 
 def _pinning(answer: _Answer) -> Iterator[tuple[str, str]]:
@@ -213,11 +237,11 @@ def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield 'preload', f'{preload:.4g} N·m for a wanted {answer.preload:.4g} N·m ({error} N·m)'
 
 
-def _table(answer: _Answer) -> Table:
-    columns = ['steps', 'tooth', 'ring\nhole', 'chassis\nhole', 'turn', 'error\n″']
+def _position_table(answer: _Answer) -> Table:
+    columns = ['steps', 'tooth', 'ring hole', 'chassis hole', 'turn', 'error [″]']
     if answer.preload is not None:
-        columns += ['preload\nN·m', 'error\nN·m']
-    table = numbers(*columns)
+        columns += ['preload [N·m]', 'error [N·m]']
+    rows = []
     for choice, preload in answer.rows:
         cells = [
             f'{choice.steps:+}' if choice.steps else '0',
@@ -229,5 +253,6 @@ def _table(answer: _Answer) -> Table:
         ]
         if preload is not None and answer.preload is not None:
             cells += [f'{preload:.4f}', f'{preload - answer.preload:+.4f}']
-        table.add_row(*cells, style='' if choice.steps else 'bold')
-    return table
+        tone = Tone.PLAIN if choice.steps else Tone.CHOSEN
+        rows.append(tuple(Cell(text, tone) for text in cells))
+    return Table(tuple(columns), tuple(rows), words=())

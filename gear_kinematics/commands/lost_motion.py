@@ -4,27 +4,21 @@ import argparse
 import math
 from pathlib import Path
 
-from gear_kinematics import plotting
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, load_config, positive
-from gear_kinematics.commands.output import (
-    Console,
-    closed_pipe_ignored,
-    complain,
-    message_progress,
-    write,
-    write_file,
+from gear_kinematics.commands.arguments import (
+    add_config,
+    add_report_forms,
+    load_config,
+    positive,
 )
+from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.lost_motion import Columns, LostMotionReport, measure, read_bag, read_csv
 from gear_kinematics.lost_motion.csv_files import UNITS
-from gear_kinematics.lost_motion.curves import panels
-from gear_kinematics.lost_motion.document import to_json
+from gear_kinematics.lost_motion.document import document
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
-from gear_kinematics.lost_motion.page import to_html
 from gear_kinematics.lost_motion.ramps import RampError
-from gear_kinematics.lost_motion.text import render
 from gear_kinematics.lost_motion.transmission import MotionError
 
 HELP = 'lost motion, stiffness, play and transmission error from recordings'
@@ -91,11 +85,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='of the output after a reversal until the direction counts '
         '(default: transmission_error_travel)',
     )
-    for form in ('json', 'html'):
-        parser.add_argument(
-            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
-        )
-    parser.add_argument('--plot', metavar='FILE', help='of one recording: .png, .svg, .pdf ...')
+    add_report_forms(parser)
 
 
 def _counts(text: str) -> int:
@@ -106,10 +96,7 @@ def _counts(text: str) -> int:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Measure every recording; one that is unusable does not keep the others."""
-    if options.plot and len(options.recordings) > 1:
-        raise ValueError('--plot takes one recording')
-    if options.json == options.html == '-':
-        raise ValueError('only one report can go to stdout, not --json and --html')
+    reporter = Reporter(options, len(options.recordings))
     reports, code = [], ExitCode.DONE
     for path in options.recordings:
         try:
@@ -128,7 +115,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             complain(report.recording.error)
             code = ExitCode.UNUSABLE
     if reports:
-        _write(reports, options)
+        reporter.write(document(reports))
     return code
 
 
@@ -169,14 +156,3 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
             )
     corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
     return measure(recording, mechanism, options.rated_torque, corners)
-
-
-def _write(reports: list[LostMotionReport], options: argparse.Namespace) -> None:
-    if '-' not in {options.json, options.html}:
-        with closed_pipe_ignored():
-            render(reports, Console())
-    for target, make in ((options.json, to_json), (options.html, to_html)):
-        if target:
-            write(target, make(reports))
-    if options.plot:
-        write_file(options.plot, plotting.lost_motion(panels(reports[0]), Path(options.plot)))

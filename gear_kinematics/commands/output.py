@@ -1,14 +1,16 @@
 """Where commands write and in which form: the terminal or a pipe, files, bars of progress."""
 
+import argparse
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from rich import box, console
+from rich import console
 from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
@@ -16,13 +18,23 @@ from rich.progress import (
     TextColumn,
     TimeRemainingColumn,
 )
-from rich.table import Table
 from rich.text import Text
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.report.wording import printable
+from gear_kinematics.report.document import Document, printable
+from gear_kinematics.report.html import to_html
+from gear_kinematics.report.image import to_image
+from gear_kinematics.report.json import to_json
+from gear_kinematics.report.junit import to_junit
+from gear_kinematics.report.text import render
 from gear_kinematics.ros.shared_memory import check_shared_memory
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
+
+_FORMS: Mapping[str, Callable[[Document], str]] = {
+    'json': to_json,
+    'junit': to_junit,
+    'html': to_html,
+}
 
 
 def complain(error: object) -> None:
@@ -59,20 +71,51 @@ class Console(console.Console):
         raise BrokenPipeError
 
 
-def facts(pairs: Iterable[tuple[str, str]]) -> Table:
-    """Names and values beside each other."""
-    grid = Table.grid(padding=(0, 2))
-    for name, value in pairs:
-        grid.add_row(Text(name, 'dim'), Text(value))
-    return grid
+class Reporter:
+    """Writes a document in the forms that were asked for; see `arguments.add_report_forms`."""
 
+    def __init__(
+        self, options: argparse.Namespace, sections: int = 1, drawing: str | None = None
+    ) -> None:
+        """Look whether everything can be written, before any work is done.
 
-def numbers(*columns: str) -> Table:
-    """A table for numbers, which are never broken; headings may be, by a line feed."""
-    table = Table(box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0), header_style='dim')
-    for column in columns:
-        table.add_column(column, justify='right', no_wrap=True, vertical='bottom')
-    return table
+        Args:
+            options: as given.
+            sections: number of sections that the document will have.
+            drawing: where `--drawing` goes, if the command has it.
+
+        Raises:
+            ValueError: if the options contradict each other.
+            ModuleNotFoundError: if a form needs a package that is not installed.
+        """
+        self._targets = {
+            form: target for form in _FORMS if (target := getattr(options, form, None))
+        }
+        self._plot: str | None = options.plot
+        given = {**self._targets, 'drawing': drawing}
+        to_stdout = [f'--{form}' for form, target in given.items() if target == '-']
+        if len(to_stdout) > 1:
+            raise ValueError(f'only one report can go to stdout, not {" and ".join(to_stdout)}')
+        self._silent = bool(to_stdout)
+        if self._plot:
+            if sections > 1:
+                raise ValueError('--plot takes one recording')
+            import_module('matplotlib')
+        if 'html' in self._targets:
+            import_module('plotly')
+
+    def write(self, document: Document) -> None:
+        """Write the files, and print the document unless a form of it goes to stdout."""
+        if self._plot:
+            figure = document.sections[0].figure
+            if not figure:
+                raise ValueError(f'{self._plot}: there is nothing to plot')
+            write_file(self._plot, to_image(figure, Path(self._plot)))
+        for form, target in self._targets.items():
+            write(target, _FORMS[form](document))
+        if not self._silent:
+            with closed_pipe_ignored():
+                render(document, Console())
 
 
 def write(target: str, text: str) -> None:

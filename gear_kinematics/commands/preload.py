@@ -3,16 +3,15 @@
 import argparse
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from rich.table import Table
 
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import (
     add_mechanism,
+    add_report_forms,
     add_ring_turn,
     add_setting,
     add_stiffness,
@@ -21,11 +20,11 @@ from gear_kinematics.commands.arguments import (
     stiffness,
     within_a_turn,
 )
-from gear_kinematics.commands.output import Console, facts, numbers, write_file
+from gear_kinematics.commands.output import Reporter
 from gear_kinematics.kinematics import Mechanism, vernier
 from gear_kinematics.kinematics.preload import Preload, braced
 from gear_kinematics.kinematics.vernier import PinSetting
-from gear_kinematics.report.json import dumps
+from gear_kinematics.report.document import Cell, Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc, arc_seconds
 
 HELP = 'preload, torque limits and torque split, and the ring turn for them'
@@ -82,23 +81,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--max-load', type=float, metavar='N·m', help='how far table and plot go, either way'
     )
-    parser.add_argument('--json', action='store_true', help='for programs')
-    parser.add_argument('--plot', metavar='FILE', help='of the torque split: .png, .svg, .pdf ...')
+    add_report_forms(parser)
     add_stiffness(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Print preload, limits and torque split, and plot the latter."""
+    """Report preload, limits and torque split."""
+    reporter = Reporter(options)
     answer = _answer(options)
-    if options.plot:
-        image = plotting.torque_split(
-            answer.preload, answer.names, answer.max_load, Path(options.plot)
-        )
-        write_file(options.plot, image)
-    if options.json:
-        print(dumps(_document(answer)), end='')
-    else:
-        _print(answer, Console())
+    a, b = answer.names
+    senses = (
+        f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load '
+        f'counts positive in the sense in which ring gear {a} is turned against ring gear {b}.'
+    )
+    section = Section(
+        '',
+        (Table.of_values(Layout.LINES, *_facts(answer)), _split_table(answer)),
+        remarks=(senses,),
+        figure=plotting.torque_split(answer.preload, answer.names, answer.max_load),
+    )
+    reporter.write(Document('gearkin preload', (section,), _data(answer)))
     return ExitCode.DONE
 
 
@@ -149,7 +151,7 @@ def _max_load(given: float | None, preload: Preload) -> float:
     return _LOADS * next(n * decade for n in _NEAT if n * decade >= spacing)
 
 
-def _document(answer: _Answer) -> dict[str, Any]:
+def _data(answer: _Answer) -> dict[str, Any]:
     known, setting = answer.preload.stiffness, answer.setting
     split = answer.preload.split(answer.loads)
     return {
@@ -190,20 +192,6 @@ def _figures(turn: float, preload: Preload) -> dict[str, float]:
     }
 
 
-def _print(answer: _Answer, console: Console) -> None:
-    console.print(facts(_facts(answer)))
-    console.print()
-    console.print(_table(answer))
-    console.print()
-    a, b = answer.names
-    console.print(
-        f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load '
-        f'counts positive in the sense in which ring gear {a} is turned against ring gear {b}.',
-        style='dim',
-        soft_wrap=True,
-    )
-
-
 def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
     preload, (a, b) = answer.preload, answer.names
     known, pair = preload.stiffness, answer.mechanism
@@ -231,7 +219,7 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield 'pin', str(answer.setting)
     else:
         yield 'nearest', str(answer.setting)
-        yield '', f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
+        yield 'gives', f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
 
 
 def _leaving(threshold: float, other: str, left: float) -> str:
@@ -244,21 +232,23 @@ def _stiffness(value: float) -> str:
     return 'rigid' if math.isinf(value) else f'{value:.4g} N·m/rad'
 
 
-def _table(answer: _Answer) -> Table:
+def _split_table(answer: _Answer) -> Table:
     preload, (a, b) = answer.preload, answer.names
-    table = numbers('load\nN·m', f'branch {a}\nN·m', f'branch {b}\nN·m', 'output turns\n″')
-    table.add_column()
-    remarks = {}
+    leaving = {}
     if preload.torque:
-        remarks[preload.threshold_a] = f'branch {a} leaves mesh'
-        remarks[preload.threshold_b] = f'branch {b} leaves mesh'
+        leaving[preload.threshold_a] = f'branch {a} leaves mesh'
+        leaving[preload.threshold_b] = f'branch {b} leaves mesh'
     decimals = min(max(0, 3 - math.floor(math.log10(answer.max_load))), _DECIMALS)
     split = preload.split(answer.loads)
+    rows = []
     for load, *torques, turn in zip(answer.loads, *split, strict=True):
         cells = (round(torque, decimals) + 0.0 for torque in (load, *torques))
-        table.add_row(
-            *(f'{cell:.{decimals}f}' for cell in cells),
-            f'{arc_seconds(turn):.1f}',
-            remarks.get(load, ''),
+        rows.append(
+            (
+                *(Cell(f'{cell:.{decimals}f}') for cell in cells),
+                Cell(f'{arc_seconds(turn):.1f}'),
+                Cell(leaving.get(load, '')),
+            )
         )
-    return table
+    columns = ('load [N·m]', f'branch {a} [N·m]', f'branch {b} [N·m]', 'output turns [″]', 'mesh')
+    return Table(columns, tuple(rows), words=('mesh',))

@@ -5,26 +5,30 @@ from collections.abc import Callable, Iterator, Sequence
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, add_topics, config_path
+from gear_kinematics.commands.arguments import (
+    add_config,
+    add_report_forms,
+    add_topics,
+    config_path,
+)
 from gear_kinematics.commands.output import (
-    Console,
-    closed_pipe_ignored,
+    Reporter,
     complain,
     message_progress,
     progress,
     warn_of_shared_memory,
-    write,
 )
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.report import render, to_html, to_json, to_junit
+from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
+from gear_kinematics.validation.document import document
 from gear_kinematics.validation.fleet import (
     Task,
     validate_bag,
     validate_on_cluster,
     validate_on_this_machine,
 )
-from gear_kinematics.validation.report import BagReport, Verdict
+from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Tolerances
 
 HELP = 'recorded outputs against recomputed ones'
@@ -57,10 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     way.add_argument('--jobs', type=_positive, default=1, metavar='N', help='processes')
     way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
-    for form in ('json', 'junit', 'html'):
-        parser.add_argument(
-            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
-        )
+    add_report_forms(parser, junit=True)
 
 
 def _positive(text: str) -> int:
@@ -74,13 +75,10 @@ def run(options: argparse.Namespace) -> ExitCode:
     tolerances = Tolerances(options.tolerance_angle, options.tolerance_position)
     if not (tolerances.angle >= 0.0 and tolerances.position >= 0.0):
         raise ValueError('a tolerance must not be negative')
-    forms = {'json': to_json, 'junit': to_junit, 'html': to_html}
-    targets = {form: target for form in forms if (target := getattr(options, form))}
-    on_stdout = [f'--{form}' for form, target in targets.items() if target == '-']
-    if len(on_stdout) > 1:
-        raise ValueError(f'only one report can go to stdout, not {" and ".join(on_stdout)}')
+    bags = find_bags(options.bags)
+    reporter = Reporter(options, len(bags))
     tasks = []
-    for bag in find_bags(options.bags):
+    for bag in bags:
         config = config_path(options, bag)
         loaded = parameters.load(config, options.node)
         Mechanism.from_mapping(loaded)  # what is wrong with it is no fault of the bag
@@ -105,11 +103,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for report in reports:
         if report.error:
             complain(report.error)
-    if not on_stdout:
-        with closed_pipe_ignored():
-            render(reports, Console())
-    for form, target in targets.items():
-        write(target, forms[form](reports))
+    reporter.write(document(reports))
     return max(_EXIT_CODES[report.verdict] for report in reports)
 
 

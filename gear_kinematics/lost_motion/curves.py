@@ -2,53 +2,21 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
 from gear_kinematics.lost_motion.ramps import Branch, Ramps
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.transmission import Order
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, plus_minus, torque
-
-Array = NDArray[np.float64]
-Kind = Literal['forward', 'backward', 'model', 'unknown']
-"""What a line is: which way it goes, a model, or a direction that is not known."""
+from gear_kinematics.report.document import Array, Line, Panel, Pen
 
 _MOST = 2000  # points of a line
 _TOGETHER = 1.1
 """Orders of so small a ratio share a mark."""
 _DECADES = 4
 """That a spectrum shows below its greatest amplitude."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Line:
-    """One line, or its points alone."""
-
-    name: str
-    """Lines of one name belong together."""
-    kind: Kind
-    x: Array
-    y: Array
-    points: bool = False
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Panel:
-    """One plot."""
-
-    title: str
-    x_label: str
-    y_label: str
-    lines: tuple[Line, ...]
-    marks: tuple[tuple[float, str], ...] = ()
-    """Places on the x axis, and what they are."""
-    low: float | None = None
-    """Where the y axis begins, if both axes are logarithmic."""
 
 
 def panels(report: LostMotionReport) -> list[Panel]:
@@ -68,17 +36,17 @@ def _ramp_panel(found: HysteresisReport, index: int) -> Panel:
     centre = _centre(ramps)
     lines = []
     for loop in ramps.loops:
-        lines.append(_branch('torque rising', 'forward', loop.rise, centre, ramps))
-        lines.append(_branch('torque falling', 'backward', loop.fall, centre, ramps))
+        lines.append(_branch('torque rising', Pen.FIRST, loop.rise, centre, ramps))
+        lines.append(_branch('torque falling', Pen.SECOND, loop.fall, centre, ramps))
     if model := figures.play_model:
         load, angle = model.loop(ramps.amplitude)
-        lines.append(Line('play model', 'model', load, (angle - centre) * ARC_MINUTES))
+        lines.append(Line('play model', Pen.MODEL, load, (angle - centre) * ARC_MINUTES))
     at = LOST_MOTION_SHARE * found.settings.rated_torque
     width = plus_minus(figures.hysteresis, ARC_MINUTES)
     return Panel(
         f'ramps to {torque(ramps.amplitude)} N·m: hysteresis {width} arcmin',
-        f'torque at the output, N·m; dashed: 0 and ±{100.0 * LOST_MOTION_SHARE:g} % of rated',
-        'wind-up at the output, arcmin',
+        f'torque at the output [N·m]; dashed: 0 and ±{100.0 * LOST_MOTION_SHARE:g} % of rated',
+        'wind-up at the output [arcmin]',
         tuple(lines),
         marks=((-at, ''), (0.0, ''), (at, '')),
     )
@@ -88,38 +56,38 @@ def _centre(ramps: Ramps) -> float:
     return float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
 
 
-def _branch(name: str, kind: Kind, branch: Branch, centre: float, ramps: Ramps) -> Line:
+def _branch(name: str, pen: Pen, branch: Branch, centre: float, ramps: Ramps) -> Line:
     # A ramp may go on to a larger amplitude, which is another panel's.
     inside = np.abs(branch.torque) <= 1.02 * ramps.amplitude
     load, angle = (_thinned(values[inside]) for values in (branch.torque, branch.angle))
-    return Line(name, kind, load, (angle - centre) * ARC_MINUTES)
+    return Line(name, pen, load, (angle - centre) * ARC_MINUTES)
 
 
 def _transmission(report: LostMotionReport) -> Iterator[Panel]:
     found, motion = report.transmission, report.recording.motion
     if not (found and motion):
         return
-    ways: tuple[tuple[int, str, Kind], ...] = (
-        (0, 'turning back', 'unknown'),
-        (1, 'forward', 'forward'),
-        (-1, 'backward', 'backward'),
+    ways: tuple[tuple[int, str, Pen], ...] = (
+        (0, 'turning back', Pen.FAINT),
+        (1, 'forward', Pen.FIRST),
+        (-1, 'backward', Pen.SECOND),
     )
     lines = []
-    for way, name, kind in ways:
+    for way, name, pen in ways:
         rows = motion.direction == way
         if rows.any():
             error = (motion.error[rows] - found.offset) * ARC_MINUTES
             angle, error = _envelope(np.degrees(motion.angle[rows]), error)
-            lines.append(Line(name, kind, angle, error, points=way == 0))
+            lines.append(Line(name, pen, angle, error, points=way == 0))
     yield Panel(
         'transmission error less its mean',
-        'output angle, °',
-        'measured less ideal, arcmin',
+        'output angle [°]',
+        'measured less ideal [arcmin]',
         tuple(lines),
     )
     spectra = [
-        Line(name, kind, *_peaks(spectrum.orders[1:], spectrum.amplitude[1:] * ARC_MINUTES))
-        for spectrum, (_, name, kind) in zip(found.spectra, ways[1:], strict=True)
+        Line(name, pen, *_peaks(spectrum.orders[1:], spectrum.amplitude[1:] * ARC_MINUTES))
+        for spectrum, (_, name, pen) in zip(found.spectra, ways[1:], strict=True)
         if spectrum
     ]
     if spectra:
@@ -127,9 +95,10 @@ def _transmission(report: LostMotionReport) -> Iterator[Panel]:
         yield Panel(
             'spectrum',
             'order: cycles in a turn of the output',
-            'amplitude, arcmin',
+            'amplitude [arcmin]',
             tuple(spectra),
             marks=tuple(_marks(found.orders, highest)),
+            scale='log',
             low=max(float(np.max(line.y)) for line in spectra) / 10.0**_DECADES,
         )
 

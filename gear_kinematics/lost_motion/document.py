@@ -1,30 +1,64 @@
-"""Lost motion as JSON, described in docs/lost_motion.md: rad, N·m, N·m/rad."""
+"""Lost motion as a document. Its JSON, in rad, N·m and N·m/rad, is described in docs."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from gear_kinematics.lost_motion import wording
-from gear_kinematics.lost_motion.report import LostMotionReport
+from gear_kinematics.lost_motion.curves import panels
+from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
+from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
-from gear_kinematics.report.json import dumps
+from gear_kinematics.lost_motion.wording import (
+    ARC_MINUTES,
+    PERCENT,
+    plus_minus,
+    remarks,
+    rounded,
+    torque,
+)
+from gear_kinematics.report.document import (
+    Cell,
+    Document,
+    Figure,
+    Layout,
+    Section,
+    Table,
+    Tone,
+    number,
+    printable,
+)
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 1
+_FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from')
+_WORDS = ('', 'from')
 
 
-def to_json(reports: Sequence[LostMotionReport]) -> str:
-    """Write the reports."""
-    return dumps(
+def document(reports: Sequence[LostMotionReport]) -> Document:
+    """Return the document on recordings, with a section for each."""
+    return Document(
+        'gearkin lost-motion',
+        tuple(map(_section, reports)),
         {
             'schema': SCHEMA,
             'version': VERSION,
             'coverage': COVERAGE,
             'recordings': [_recording(report) for report in reports],
-        }
+        },
+        summary=_summary(reports),
+    )
+
+
+def _section(report: LostMotionReport) -> Section:
+    return Section(
+        printable(report.recording.name),
+        (_head(report), *_tables(report)),
+        remarks=tuple(remarks(report)),
+        figure=Figure(tuple(panels(report))),
     )
 
 
@@ -44,7 +78,7 @@ def _recording(report: LostMotionReport) -> Mapping[str, Any]:
             'output_step': motion.output_step,
             'unmatched': motion.unmatched,
         },
-        'remarks': wording.remarks(report),
+        'remarks': remarks(report),
     }
 
 
@@ -75,3 +109,193 @@ def _plain(value: Any) -> Any:
     if is_dataclass(value):
         return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
     return value
+
+
+# Tables
+
+
+def _head(report: LostMotionReport) -> Table:
+    found = report.hysteresis
+    rated = f'{torque(found.settings.rated_torque)} N·m ({found.rated_by})' if found else ''
+    return Table.of_values(
+        Layout.INLINE,
+        ('samples', str(report.recording.rows)),
+        ('columns', printable('; '.join(report.recording.columns))),
+        ('rated torque', rated),
+    )
+
+
+def _tables(report: LostMotionReport) -> Iterator[Table]:
+    """Give all tables that have something in them."""
+    if found := report.hysteresis:
+        yield _figure_table(found)
+        if len(found.figures) > 1:
+            yield _amplitude_table(found)
+        yield _stiffness_table(found)
+    if report.transmission:
+        yield _transmission_table(report)
+        yield _order_table(report)
+
+
+def _figure_table(found: HysteresisReport) -> Table:
+    """Give the figures: those of the play from the smallest ramps, the others from the largest."""
+    smallest, largest = found.smallest, found.largest
+    small, large = (f'{_loops(f)} to {torque(f.amplitude)} N·m' for f in (smallest, largest))
+    at = torque(LOST_MOTION_SHARE * found.settings.rated_torque)
+    rows = [
+        _angle('hysteresis at zero torque', smallest.hysteresis, small),
+        _angle('backlash (play model)', smallest.play, small),
+        _row('friction (play model)', 'N·m', smallest.friction, small),
+        _angle(f'lost motion at ±{at} N·m', largest.lost_motion, large),
+        *(
+            _row(f'stiffness {_range(s.low, s.high)}', 'N·m/rad', s.both, large)
+            for s in largest.stiffness
+        ),
+    ]
+    return Table(_FIGURES, tuple(row for row in rows if row), _WORDS)
+
+
+def _amplitude_table(found: HysteresisReport) -> Table:
+    """Compare the ramps of different amplitude."""
+    return Table(
+        (
+            'ramps',
+            'loops',
+            'hysteresis [arcmin]',
+            'lost motion [arcmin]',
+            'backlash [arcmin]',
+            'friction [N·m]',
+            'model residual [arcmin]',
+        ),
+        tuple(_amplitude_row(figures) for figures in found.figures),
+    )
+
+
+def _amplitude_row(figures: Figures) -> tuple[Cell, ...]:
+    model = figures.play_model
+    return (
+        Cell(f'to {torque(figures.amplitude)} N·m'),
+        Cell(str(figures.loops)),
+        Cell(plus_minus(figures.hysteresis, ARC_MINUTES)),
+        Cell(plus_minus(figures.lost_motion, ARC_MINUTES)),
+        Cell(plus_minus(figures.play, ARC_MINUTES)),
+        Cell(plus_minus(figures.friction)),
+        Cell(number(model.residual * ARC_MINUTES) if model else ''),
+    )
+
+
+def _stiffness_table(found: HysteresisReport) -> Table:
+    """Give the stiffness under torque of either sign."""
+    return Table(
+        ('stiffness [N·m/rad]', 'both', 'positive', 'negative'),
+        tuple(
+            (
+                Cell(f'{_range(s.low, s.high)}, ramps to {torque(figures.amplitude)} N·m'),
+                *(Cell(plus_minus(estimate)) for estimate in (s.both, s.positive, s.negative)),
+            )
+            for figures in found.figures
+            for s in figures.stiffness
+        ),
+    )
+
+
+def _transmission_table(report: LostMotionReport) -> Table:
+    """Give the figures of the transmission error."""
+    found = report.transmission
+    if not found:
+        return Table(('transmission',), ())
+    rows = (
+        _angle('transmission accuracy forward', found.forward),
+        _angle('transmission accuracy backward', found.backward),
+        _angle('lost motion on reversals', found.lost_motion),
+    )
+    travel = number(math.degrees(found.travel), 4)
+    offset = (
+        Cell('mean error', unit='arcmin'),
+        Cell(number(found.offset * ARC_MINUTES, 5)),
+        Cell(''),
+        Cell(number(math.degrees(found.offset), 5), unit='°'),
+        Cell(''),
+        Cell(f'{found.samples} samples over {travel}° of the output'),
+    )
+    return Table(_FIGURES, (*(row for row in rows if row), offset), _WORDS)
+
+
+def _order_table(report: LostMotionReport) -> Table:
+    """Give the amplitudes of the marked orders."""
+    orders = report.transmission.orders if report.transmission else ()
+    return Table(
+        ('order', 'cycles per output turn', 'forward [arcmin]', 'backward [arcmin]'),
+        tuple(
+            (
+                Cell(order.name),
+                Cell(str(order.cycles)),
+                Cell(plus_minus(order.forward, ARC_MINUTES)),
+                Cell(plus_minus(order.backward, ARC_MINUTES)),
+            )
+            for order in orders
+            if order.forward or order.backward
+        ),
+    )
+
+
+def _summary(reports: Sequence[LostMotionReport]) -> Table:
+    """Give a line for each recording."""
+    return Table(
+        (
+            'recording',
+            'hysteresis [arcmin]',
+            'backlash [arcmin]',
+            'lost motion [arcmin]',
+            'stiffness [N·m/rad]',
+            'transmission accuracy [arcmin]',
+        ),
+        tuple(map(_summary_row, reports)),
+    )
+
+
+def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
+    hysteresis = play = lost_motion = spring = accuracy = None
+    if error := report.transmission:
+        lost_motion, accuracy = error.lost_motion, error.forward
+    if found := report.hysteresis:
+        hysteresis, play = found.smallest.hysteresis, found.smallest.play
+        lost_motion = found.largest.lost_motion
+        spring = found.largest.stiffness[-1].both if found.largest.stiffness else None
+    return (
+        Cell(printable(report.recording.name)),
+        Cell(plus_minus(hysteresis, ARC_MINUTES)),
+        Cell(plus_minus(play, ARC_MINUTES)),
+        Cell(plus_minus(lost_motion, ARC_MINUTES)),
+        Cell(plus_minus(spring)),
+        Cell(plus_minus(accuracy, ARC_MINUTES)),
+    )
+
+
+def _angle(label: str, estimate: Estimate | None, source: str = '') -> tuple[Cell, ...] | None:
+    return _row(label, 'arcmin', estimate, source, ARC_MINUTES)
+
+
+def _row(
+    label: str, unit: str, estimate: Estimate | None, source: str, scale: float = 1.0
+) -> tuple[Cell, ...] | None:
+    if not estimate:
+        return None
+    value, spread = rounded(estimate, scale)
+    degrees = rounded(estimate, math.degrees(1.0))[0] if scale != 1.0 else ''
+    return (
+        Cell(label, unit=unit),
+        Cell(value, unit=unit),
+        Cell(spread, Tone.PLAIN if spread else Tone.NOTABLE, unit=unit),
+        Cell(degrees, unit='°'),
+        Cell(str(estimate.repeats)),
+        Cell(source),
+    )
+
+
+def _loops(figures: Figures) -> str:
+    return f'{figures.loops} loop{"s" if figures.loops > 1 else ""}'
+
+
+def _range(low: float, high: float) -> str:
+    return f'{torque(low)} to {torque(high)} N·m'

@@ -11,9 +11,9 @@ import numpy as np
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
-from gear_kinematics.plotting.figures import FAINT, INK, styled
 from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
+from gear_kinematics.report.image import FAINT, INK, styled
 from gear_kinematics.state.trajectory import Trajectory
 
 _WIDTH = 4.0  # inches, whatever the pixels, so that lines and letters grow with them

@@ -1,6 +1,7 @@
 """The mechanism itself: the bodies of a branch, and magnified how their centres are linked."""
 
 import math
+from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -9,8 +10,9 @@ import numpy as np
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
-from gear_kinematics.plotting.figures import FAINT, INK, closed, render, shape
-from gear_kinematics.shape.outlines import NAMES, Pose, bodies, poses
+from gear_kinematics.report.document import Figure, Line, Panel, Pen
+from gear_kinematics.report.image import FAINT, INK, render
+from gear_kinematics.shape.outlines import NAMES, Array, Pose, bodies, poses
 
 COLOURS = {
     'stator': ('#d0d7de', '#57606a'),
@@ -39,7 +41,7 @@ class Bodies:
         self.patches = {}
         for body, outlines in self._outlines.items():
             face, edge = COLOURS[body]
-            patch = shape(outlines, facecolor=face, edgecolor=edge, linewidth=_OUTLINE)
+            patch = _patch(outlines, facecolor=face, edgecolor=edge, linewidth=_OUTLINE)
             self.patches[body] = axes.add_patch(patch)
         border = _MARGIN * float(np.max(self._outlines['stator'][0]))
         _square(axes, border)
@@ -49,7 +51,7 @@ class Bodies:
         """Move them to where they are at a position of the rotor."""
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         for body, patch in self.patches.items():
-            patch.set_path(closed(placed[body].place(part) for part in self._outlines[body]))
+            patch.set_path(_path(placed[body].place(part) for part in self._outlines[body]))
 
 
 class Centres:
@@ -100,6 +102,24 @@ class Centres:
             self.points[body].set_data(*point[:, np.newaxis])
         around = 0.5 * (complex(*o3) + abs(complex(*o3)) * _CIRCLE)
         self.circle.set_data(around.real, around.imag)
+
+
+def outlines(mechanism: Mechanism, module: float) -> Figure:
+    """Return the outlines of the first branch at φ2 = 0, in mm.
+
+    Args:
+        mechanism: the mechanism.
+        module: of the teeth, m.
+    """
+    placed = poses(mechanism, 0.0)
+    pens = {'stator': Pen.FAINT, 'satellite': Pen.FIRST, 'rotor': Pen.SECOND}
+    lines = []
+    for body, parts in bodies(mechanism, module).items():
+        if body in pens:
+            for part in parts:
+                x, y = _MM * placed[body].place(np.vstack([part, part[:1]])).T
+                lines.append(Line(NAMES[body], pens[body], x, y))
+    return Figure((Panel('', 'x [mm]', 'y [mm]', tuple(lines), equal=True),))
 
 
 def scheme(
@@ -181,3 +201,19 @@ def _square(axes: Any, half: float) -> None:
     axes.set_axis_off()
     axes.set_xlim(-half, half)
     axes.set_ylim(-half, half)
+
+
+def _patch(outlines: Iterable[Array], **style: Any) -> Any:
+    """A patch of closed polygons (n, 2)."""
+    from matplotlib.patches import PathPatch  # noqa: PLC0415, an extra
+
+    return PathPatch(_path(outlines), **style)
+
+
+def _path(outlines: Iterable[Array]) -> Any:
+    """One path of closed polygons (n, 2)."""
+    from matplotlib.path import Path as Polygons  # noqa: PLC0415, an extra
+
+    return Polygons.make_compound_path(
+        *(Polygons(np.concatenate([points, points[:1]]), closed=True) for points in outlines)
+    )

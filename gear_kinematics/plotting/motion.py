@@ -9,7 +9,7 @@ import numpy as np
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.plotting.figures import FAINT, SERIES, render
+from gear_kinematics.report.image import FAINT, SERIES, render
 from gear_kinematics.shape import outlines
 from gear_kinematics.shape.outlines import Array
 from gear_kinematics.state.trajectory import Trajectory

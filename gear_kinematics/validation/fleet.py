@@ -18,7 +18,8 @@ from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import Topics, find_topics
 from gear_kinematics.kinematics import MechanismError
-from gear_kinematics.validation.report import BagReport, Verdict
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Message, Tolerances, Validator
 
 _TRIES = 3

@@ -5,17 +5,9 @@ Stamps are ns, times in s, angles in rad, lengths in m.
 
 import math
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 from gear_kinematics.kinematics import Mechanism
-
-
-class Verdict(StrEnum):
-    """The outcome for a bag, from best to worst."""
-
-    PASS = 'pass'  # noqa: S105, no password
-    FAIL = 'fail'
-    UNUSABLE = 'unusable'
+from gear_kinematics.report.document import Verdict
 
 
 @dataclass(frozen=True, slots=True)

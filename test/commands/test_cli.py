@@ -71,7 +71,7 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
 def test_describe_takes_another_tooth_pair(capsys):
     arguments = ['--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.002']
     assert main(['describe', *arguments]) == 0
-    lines = {line.strip().split('  ')[0]: line for line in capsys.readouterr().out.splitlines()}
+    lines = dict(line.split(': ', 1) for line in capsys.readouterr().out.splitlines())
     assert '-58/3' in lines['gear ratio']
     assert '61' in lines['oldham petals']
     assert '0.002' in lines['eccentricity']

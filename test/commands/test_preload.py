@@ -58,7 +58,7 @@ def test_index_says_which_holes_to_pin_in_words(capsys):
     assert 'ring hole 78 in chassis hole 42, tooth 42: the same position' in out
     assert '3′ 24.878″ for a wanted 3′ 26.265″ (-1.387″)' in out
     assert '1.118 N·m for a wanted 1.125 N·m (-0.0076 N·m)' in out
-    assert all(len(line) <= 80 for line in out.splitlines() if not line.startswith('Seen'))
+    assert all(len(line) <= 80 for line in out.splitlines() if not line.startswith('remark'))
 
 
 def test_index_for_a_preload_steps_by_the_preload_of_the_paper(capsys):
@@ -180,7 +180,9 @@ def test_preload_finds_the_ring_turn_for_a_wish(wish, figure, capsys):
     assert pinned[figure] == pytest.approx(nearest[figure], rel=1e-9)
 
 
-def test_preload_reads_well(capsys):
+def test_preload_reads_well(capsys, monkeypatch):
+    for name, value in {'FORCE_COLOR': '1', 'TERM': 'dumb', 'COLUMNS': '100'}.items():
+        monkeypatch.setenv(name, value)
     assert main(['preload', '--wanted-threshold', '2', *SOFT]) == 0
     out = capsys.readouterr().out
     assert 'branch a 3000 N·m/rad, branch b 2000 N·m/rad, shaft 1000 N·m/rad' in out
@@ -269,7 +271,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         (['index', '--angle', '1', '--backlash', '0.1'], '--branch-stiffness is missing'),
         (['index', '--angle', '1', '--config', 'none.yaml'], 'gearkin: none.yaml: No such file'),
         (['index', '--angle', '1', '--mirrored'], 'of use with --drawing only'),
-        (['index', '--angle', '1', '--json', '--drawing', '-'], 'only one of --json and'),
+        (['index', '--angle', '1', '--json', '--drawing', '-'], 'not --json and --drawing'),
         (['index', '--angle', '1', '--drawing', 'none/a.svg'], 'none/a.svg: No such file'),
         (['index', '--angle', '1', '--drawing', '.'], 'gearkin: .: Is a directory'),
         (['index', '--angle', '1', '--ring-teeth', '2000', '--drawing', 'a.svg'], '1000 teeth'),

@@ -129,10 +129,10 @@ ROOMS = {
     'shape': ('kinematics',),
     'bag': ('wire',),
     'state': ('bag', 'kinematics', 'shape', 'wire'),
-    'validation': ('bag', 'kinematics', 'state', 'wire'),
-    'report': ('kinematics', 'shape', 'validation'),
+    'report': (),
+    'validation': ('bag', 'kinematics', 'report', 'shape', 'state', 'wire'),
     'lost_motion': ('bag', 'kinematics', 'report', 'state', 'wire'),
-    'plotting': ('kinematics', 'lost_motion', 'shape', 'state'),
+    'plotting': ('kinematics', 'report', 'shape', 'state'),
     'ros': ('bag', 'kinematics', 'shape', 'state', 'validation', 'wire'),
     'commands': (
         'bag',
@@ -150,7 +150,7 @@ ROOMS = {
 TENANTS = {
     'rclpy': ['ros'],
     'rosbags': ['bag'],
-    'matplotlib': ['plotting'],
+    'matplotlib': ['plotting', 'report'],
     'plotly': ['report'],
 }
 """Libraries, and the only rooms that import them."""

@@ -10,8 +10,9 @@ import pytest
 import report_samples as samples
 
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.report import to_html
+from gear_kinematics.report.html import to_html
 from gear_kinematics.shape.outlines import bodies
+from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import Series
 
 sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
@@ -48,7 +49,7 @@ def tab(browser, tmp_path_factory):
         for mechanism, module in MECHANISMS
     ]
     path = tmp_path_factory.mktemp('page') / 'report.html'
-    path.write_text(to_html(reports), 'utf-8')
+    path.write_text(to_html(document(reports)), 'utf-8')
     tab = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
     tab.seen = []
     tab.on('console', lambda message: tab.seen.append(message.text))
@@ -63,7 +64,7 @@ def tab(browser, tmp_path_factory):
 @pytest.fixture(params=[0, 1], ids=['80-76', '11-8'])
 def report(tab, request):
     """Give a mechanism with its module, and the section of the page that is about its bag."""
-    yield MECHANISMS[request.param], tab.locator(f'#bag-{request.param}')
+    yield MECHANISMS[request.param], tab.locator(f'#section-{request.param}')
     assert tab.seen == []
 
 

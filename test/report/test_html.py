@@ -16,9 +16,19 @@ from lxml import html
 from plotly.offline import get_plotlyjs
 
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.report import to_html
-from gear_kinematics.report.html import SymmetricLog, figure
+from gear_kinematics.report import html as page
+from gear_kinematics.report.interactive import SymmetricLog, interactive
+from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import Series
+
+
+def to_html(reports):
+    return page.to_html(document(reports))
+
+
+def figure(bag):
+    [section] = document([bag]).sections
+    return interactive(section.figure, section.mechanism)
 
 
 @pytest.fixture(scope='module')
@@ -211,9 +221,13 @@ def test_other_forms_of_the_report_need_no_plotly():
     program = (
         'import sys; sys.modules["plotly"] = None\n'
         'import report_samples as samples\n'
-        'from gear_kinematics.report import to_html, to_json, to_junit\n'
-        'to_json(samples.ALL), to_junit(samples.ALL), to_html([samples.UNUSABLE])\n'
-        'try: to_html([samples.PASSING])\n'
+        'from gear_kinematics.report.html import to_html\n'
+        'from gear_kinematics.report.json import to_json\n'
+        'from gear_kinematics.report.junit import to_junit\n'
+        'from gear_kinematics.validation.document import document\n'
+        'fleet = document(samples.ALL)\n'
+        'to_json(fleet), to_junit(fleet), to_html(document([samples.UNUSABLE]))\n'
+        'try: to_html(document([samples.PASSING]))\n'
         'except ModuleNotFoundError as error: print(error.name)\n'
     )
     done = subprocess.run(

@@ -11,10 +11,15 @@ import jsonschema
 import pytest
 import report_samples as samples
 
-from gear_kinematics.report import to_json
+from gear_kinematics.report import json as strict_json
+from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport
 
 DOCS = Path(__file__).resolve().parents[2] / 'docs'
+
+
+def to_json(reports):
+    return strict_json.to_json(document(reports))
 
 
 @pytest.fixture(scope='module')

@@ -8,8 +8,9 @@ import pytest
 import report_samples as samples
 from lxml import etree
 
-from gear_kinematics.report import to_junit
-from gear_kinematics.validation.report import Verdict
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.report.junit import to_junit
+from gear_kinematics.validation.document import document
 
 WHEN = datetime(2026, 11, 21, 6, 57, 33, tzinfo=UTC)
 
@@ -20,7 +21,7 @@ def schema():
 
 
 def parse(*reports):
-    return etree.fromstring(to_junit(reports, WHEN).encode())
+    return etree.fromstring(to_junit(document(reports), WHEN).encode())
 
 
 def outcomes(suite):
@@ -131,6 +132,6 @@ def test_dots_do_not_split_the_class():
 
 def test_the_time_is_now_by_default():
     before = datetime.now(UTC).replace(microsecond=0, tzinfo=None)
-    root = etree.fromstring(to_junit([samples.PASSING]).encode())
+    root = etree.fromstring(to_junit(document([samples.PASSING])).encode())
     stamp = datetime.fromisoformat(root[0].get('timestamp'))
     assert before <= stamp <= datetime.now(UTC).replace(tzinfo=None)

@@ -8,8 +8,10 @@ import pytest
 import report_samples as samples
 from rich.console import Console
 
-from gear_kinematics.report import render, wording
-from gear_kinematics.validation.report import Verdict
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.report.text import render
+from gear_kinematics.validation import wording
+from gear_kinematics.validation.document import document
 
 ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
 
@@ -17,14 +19,17 @@ ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
 def piped(*reports, encoding='utf-8', **options):
     raw = io.BytesIO()
     with io.TextIOWrapper(raw, encoding) as file:
-        render(reports, Console(file=file, **options))
+        render(document(reports), Console(file=file, **options))
         file.flush()
         return raw.getvalue().decode(encoding)
 
 
 def shown(*reports, width=100):
     file = io.StringIO()
-    render(reports, Console(file=file, force_terminal=True, width=width, color_system='standard'))
+    render(
+        document(reports),
+        Console(file=file, force_terminal=True, width=width, color_system='standard'),
+    )
     return file.getvalue()
 
 
@@ -92,7 +97,7 @@ def test_pipe_tells_the_health_of_the_input():
 
 
 def test_every_fault_is_a_sentence_that_names_and_locates_it():
-    assert wording.remarks(samples.FAILING) == [
+    assert [finding.text for finding in wording.findings(samples.FAILING)] == [
         '/output_state: 11 messages missing, the first at stamp 1700000001123456789',
         '/output_state: 8 messages too many, the first at stamp 1700000001123456790',
         '/output_state: 1 message out of order',
@@ -234,7 +239,7 @@ def test_zero_tolerance_is_used_up_by_any_error():
 def test_not_a_number_is_the_worst_of_all():
     position, effort = samples.POSITION, samples.NOT_FINITE.topics[0].fields[2]
     topic = replace(samples.OUTPUT, fields=(position, effort))
-    (row,) = wording.summary_table([replace(samples.NOT_FINITE, topics=(topic,))]).rows
+    (row,) = document([replace(samples.NOT_FINITE, topics=(topic,))]).summary.rows
     assert [cell.text for cell in row][:4] == ['logs/nan', 'failed', '4000', 'nan']
     assert wording.field_faults(effort, samples.NOT_FINITE)
 
@@ -250,10 +255,10 @@ def test_nothing_to_compare_uses_no_budget():
 
 def test_worst_verdict_counts():
     passing, failing, unusable = samples.PASSING, samples.FAILING, samples.UNUSABLE
-    assert wording.worst_verdict([passing, passing]) == Verdict.PASS
-    assert wording.worst_verdict([failing, passing]) == Verdict.FAIL
-    assert wording.worst_verdict([failing, unusable, passing]) == Verdict.UNUSABLE
-    assert wording.worst_verdict([]) == Verdict.UNUSABLE
+    assert document([passing, passing]).verdict == Verdict.PASS
+    assert document([failing, passing]).verdict == Verdict.FAIL
+    assert document([failing, unusable, passing]).verdict == Verdict.UNUSABLE
+    assert document([]).verdict == Verdict.UNUSABLE
 
 
 def test_bag_without_a_name_or_anything_else():

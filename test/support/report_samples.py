@@ -4,6 +4,7 @@ import math
 from dataclasses import replace
 
 from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.report import (
     BagReport,
     FieldReport,
@@ -11,7 +12,6 @@ from gear_kinematics.validation.report import (
     InputReport,
     Series,
     TopicReport,
-    Verdict,
 )
 
 START = 1_700_000_000_123_456_789

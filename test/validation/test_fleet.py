@@ -26,13 +26,13 @@ from blocked_bags import (
 from gear_kinematics.bag import Bag, BagError, BagWriter
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.roles import Topics, find_topics
+from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.validation.fleet import (
     Task,
     validate_bag,
     validate_on_this_machine,
 )
-from gear_kinematics.validation.report import Verdict
 from gear_kinematics.validation.validator import Tolerances
 
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'

@@ -11,11 +11,12 @@ import replaying
 from rosbag2_recorder import Message, record
 from rosbags.rosbag2 import Reader
 
-from gear_kinematics.report import wording
+from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
+from gear_kinematics.validation import wording
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.recorder import BEFORE, NO_INPUT
-from gear_kinematics.validation.report import BagReport, Verdict
+from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Tolerances, Validator
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -195,7 +196,7 @@ def test_a_fault_is_found_wherever_it_is(traffic, config, seed, fault, place):
     change, said = FAULTS[fault]
     report = validate(change(recording(traffic, seed), place), config)
     assert report.verdict == Verdict.FAIL
-    assert any(said in remark for remark in wording.remarks(report))
+    assert any(said in finding.text for finding in wording.findings(report))
 
 
 @pytest.mark.parametrize('seed', range(5))

@@ -12,9 +12,10 @@ import replaying
 from rosbags.rosbag2 import Reader
 
 from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.validation.matching import WINDOW
-from gear_kinematics.validation.report import BagReport, TopicReport, Verdict
+from gear_kinematics.validation.report import BagReport, TopicReport
 from gear_kinematics.validation.validator import Message, Tolerances, Topics, Validator
 
 BAGS = Path(__file__).resolve().parents[2] / 'bags'

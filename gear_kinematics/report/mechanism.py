@@ -4,12 +4,8 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism, solve, split_turns
-from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.shape.outlines import NAMES, Outlines, bodies
-from gear_kinematics.validation.report import Series
+from gear_kinematics.report.document import Array, MovingMechanism
 
 _RADIUS = 500.0
 """Of the drawing, in units of which no screen shows a tenth."""
@@ -25,41 +21,8 @@ _SPEEDS = {
     10.0: '10 × real time',
     100.0: '100 × real time',
 }
-"""What the recorded time can be multiplied by."""
-_FOLLOWED = TURN  # rad/s of the rotor, which the eye can follow
-
-Array = NDArray[np.float64]
-
-
-def turned(mechanism: Mechanism, rotor_angle: Sequence[float]) -> dict[str, list[float | None]]:
-    """Give how far rotor and output shaft have turned, for motion.js.
-
-    Args:
-        mechanism: the mechanism.
-        rotor_angle: φ2, rad.
-
-    Returns:
-        Degrees of `rotor` and `output`, less the whole turns of the first sample.
-    """
-    angles = np.asarray(rotor_angle, np.float64)
-    turns, angle = split_turns(angles)
-    state = solve(mechanism, angles)
-    output_turns = np.round((state.output_angle - state.output_turn_angle) / TURN)
-    return {
-        'rotor': _degrees(turns, angle),
-        'output': _degrees(output_turns, state.output_turn_angle),
-    }
-
-
-def _finite(values: Sequence[float]) -> Array:
-    """Make the values an array, in which infinite ones are no numbers either."""
-    array = np.asarray(values, np.float64)
-    return np.where(np.isfinite(array), array, np.nan)
-
-
-def _degrees(turns: Array, angle: Array) -> list[float | None]:
-    degrees = 360.0 * (turns - turns[0]) + np.degrees(angle)
-    return [round(value, 3) if math.isfinite(value) else None for value in degrees.tolist()]
+"""Factors of the playing speed."""
+_FOLLOWED = 360.0  # degrees of the rotor in a second, which the eye can follow
 
 
 class Drawings:
@@ -69,37 +32,34 @@ class Drawings:
         """Start with none."""
         self._names: dict[str, str] = {}  # of the shapes, by their paths
 
-    def moving(
-        self, mechanism: Mechanism, module: float, figure: str, series: Series
-    ) -> Iterator[str]:
+    def moving(self, mechanism: MovingMechanism, figure: str) -> Iterator[str]:
         """Write a mechanism branch by branch, with a slider for the time and a play button.
 
         Args:
             mechanism: to be drawn.
-            module: of its teeth, m.
-            figure: name of the plots that it goes with; their data has what `turned` gives.
-            series: what the plots are of.
+            figure: name of the figure along which it moves.
         """
-        shapes = [bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
+        shapes = [branch.shapes for branch in mechanism.branches]
         reach = max(float(np.max(np.abs(outline))) for outline in shapes[0]['stator'])
         scale = _RADIUS / reach
         yield (
             f'<div class="motion" data-figure="{figure}" '
             f'style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
-            f'{_controls(series)}<div class="branches">\n'
+            f'{_controls(mechanism)}<div class="branches">\n'
         )
-        for branch, outlines in zip(mechanism.branches, shapes, strict=True):
+        for branch in mechanism.branches:
             yield (
                 f'<figure style="--cam: {math.degrees(branch.cam_phase):.6g}deg">'
                 f'<svg viewBox="{-_VIEW:g} {-_VIEW:g} {2 * _VIEW:g} {2 * _VIEW:g}" role="img" '
                 f'aria-label="branch {branch.name}"><g class="upright">\n'
             )
-            for body, shape in outlines.items():
+            for body, shape in branch.shapes.items():
                 yield f'<use class="{body}" href="#{self._name(shape, scale)}"/>\n'
             for body in ('output_shaft', 'satellite', 'oldham'):
                 yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
-        legend = ''.join(f'<li class="{body}">{NAMES[body]}</li>' for body in shapes[0])
+        names = mechanism.body_names
+        legend = ''.join(f'<li class="{body}">{names[body]}</li>' for body in shapes[0])
         yield f'</div>\n<ul class="legend">{legend}</ul>\n</div>\n'
 
     def shapes(self) -> str:
@@ -107,7 +67,7 @@ class Drawings:
         paths = ''.join(f'<path id="{name}" d="{path}"/>\n' for path, name in self._names.items())
         return f'<svg class="shapes" aria-hidden="true">\n{paths}</svg>\n' if paths else ''
 
-    def _name(self, outlines: Outlines, scale: float) -> str:
+    def _name(self, outlines: Sequence[Array], scale: float) -> str:
         path = ''.join(_closed(scale * outline) for outline in outlines)
         return self._names.setdefault(path, f'shape-{len(self._names)}')
 
@@ -116,8 +76,8 @@ def _closed(points: Array) -> str:
     return f'M{" ".join(f"{x:.1f},{y:.1f}" for x, y in points.tolist())}Z'
 
 
-def _controls(series: Series) -> str:
-    speed = _easy_speed(series)
+def _controls(mechanism: MovingMechanism) -> str:
+    speed = _easy_speed(mechanism)
     speeds = ''.join(
         f'<option value="{value:g}"{" selected" if value == speed else ""}>{name}</option>'
         for value, name in _SPEEDS.items()
@@ -125,14 +85,14 @@ def _controls(series: Series) -> str:
     return (
         '<div class="controls"><button type="button" disabled>Play</button>'
         f'<select aria-label="speed">{speeds}</select><output></output>'
-        f'<input type="range" min="0" max="{len(series.time) - 1}" step="1" value="0" disabled '
-        'aria-label="time"></div>\n'
+        f'<input type="range" min="0" max="{len(mechanism.time) - 1}" step="1" value="0" '
+        'disabled aria-label="time"></div>\n'
     )
 
 
-def _easy_speed(series: Series) -> float:
+def _easy_speed(mechanism: MovingMechanism) -> float:
     """Choose the greatest speed at which the eye follows the rotor."""
-    elapsed, moved = np.diff(series.time), np.abs(np.diff(_finite(series.rotor_angle)))
+    elapsed, moved = np.diff(mechanism.time), np.abs(np.diff(mechanism.rotor))
     forward = elapsed > 0.0
     fastest = float(np.fmax.reduce(moved[forward] / elapsed[forward], initial=0.0))
     return max((speed for speed in _SPEEDS if speed * fastest <= _FOLLOWED), default=min(_SPEEDS))

@@ -1,0 +1,274 @@
+"""What a report consists of, whatever renders it: the same content for a terminal and for a page.
+
+Texts are safe to print on a terminal, yet not escaped for markup, HTML or XML.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from enum import StrEnum
+from typing import Any, Literal, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Verdict(StrEnum):
+    """The outcome of a check, from best to worst."""
+
+    PASS = 'pass'  # noqa: S105, no password
+    FAIL = 'fail'
+    UNUSABLE = 'unusable'
+
+
+OUTCOME = {Verdict.PASS: 'passed', Verdict.FAIL: 'failed', Verdict.UNUSABLE: 'unusable'}
+
+
+class Tone(StrEnum):
+    """How a value is set off from the others."""
+
+    PLAIN = ''
+    CHOSEN = 'chosen'
+    NOTABLE = 'notable'
+    BAD = 'bad'
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A value of a table, as text."""
+
+    text: str
+    tone: Tone = Tone.PLAIN
+    unit: str = ''
+    """Of the value; of all values of a row where it stands with the first cell."""
+
+    def with_unit(self) -> str:
+        """Return the value with its unit."""
+        return f'{self.text} {self.unit}' if self.text and self.unit else self.text
+
+    def as_subject(self) -> str:
+        """Return the first cell of a row with the unit of all its values."""
+        return f'{self.text} [{self.unit}]' if self.unit else self.text
+
+    def in_row_of(self, subject: 'Cell') -> str:
+        """Return the value, with its unit unless the first cell of the row has the same one."""
+        return self.text if self.unit == subject.unit else self.with_unit()
+
+
+class Layout(StrEnum):
+    """How a table is set where there is room."""
+
+    ROWS = 'rows'
+    """Rows below headings."""
+    INLINE = 'inline'
+    """A single row as labelled values beside each other."""
+    LINES = 'lines'
+    """A single row as labelled values below each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Rows of values; the first value of a row says what the row is about."""
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    words: tuple[str, ...] = ('',)
+    """Columns that hold words, where '' is the first; all others hold numbers."""
+    layout: Layout = Layout.ROWS
+
+    @classmethod
+    def of_items(
+        cls,
+        columns: Mapping[str, Callable[[Any], Cell]],
+        items: Iterable[Any],
+        words: tuple[str, ...] = ('',),
+    ) -> Self:
+        """Return a table with a row for each item, from functions that give a column's cell."""
+        rows = tuple(tuple(cell(item) for cell in columns.values()) for item in items)
+        return cls(tuple(columns), rows, words)
+
+    @classmethod
+    def of_values(
+        cls, layout: Layout, *values: tuple[str, str | Cell], about: tuple[str, str] = ('', '')
+    ) -> Self:
+        """Return a table of one row.
+
+        Args:
+            layout: `INLINE` or `LINES`.
+            values: each behind its label.
+            about: heading and text of the first cell.
+        """
+        heading, subject = about
+        cells = (value if isinstance(value, Cell) else Cell(value) for _, value in values)
+        labels = (label for label, _ in values)
+        return cls((heading, *labels), ((Cell(subject), *cells),), layout=layout)
+
+    def is_words(self, index: int) -> bool:
+        """Return whether a column holds words."""
+        return ('' if index == 0 else self.columns[index]) in self.words
+
+    def facts(self) -> Iterator[tuple[str, str, Cell]]:
+        """Yield the subject of the row, the column and the cell of every value."""
+        for subject, *cells in self.rows:
+            about = subject.text if self.is_words(0) else f'{self.columns[0]} {subject.text}'
+            for column, cell in zip(self.columns[1:], cells, strict=True):
+                if cell.text:
+                    yield about, column, cell
+
+    def without_empty_columns(self) -> Self:
+        """Return the table without the columns in which no row has a value."""
+        kept = [k for k in range(len(self.columns)) if any(row[k].text for row in self.rows)]
+        rows = tuple(tuple(row[k] for k in kept) for row in self.rows)
+        columns = tuple(self.columns[k] for k in kept)
+        return replace(self, columns=columns, rows=rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A sentence that bears on the verdict."""
+
+    kind: Literal['error', 'finding']
+    text: str
+
+
+class Pen(StrEnum):
+    """What a line is drawn with; the names of the colours in page.css."""
+
+    FIRST = 'first'
+    SECOND = 'second'
+    MODEL = 'text'
+    """Dashed."""
+    FAINT = 'faint'
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Line:
+    """One line of a panel."""
+
+    name: str
+    """Lines of one name share an entry of the legend."""
+    pen: Pen
+    x: Array
+    y: Array
+    """NaN leaves a gap."""
+    points: bool = False
+    """Whether the points alone are drawn."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Panel:
+    """One plot."""
+
+    title: str
+    x_label: str
+    y_label: str
+    """With units, as text."""
+    lines: tuple[Line, ...]
+    marks: tuple[tuple[float, str], ...] = ()
+    """Places on the x axis, each with a text."""
+    levels: tuple[tuple[float, str], ...] = ()
+    """Places on the y axis, each with a text."""
+    scale: Literal['linear', 'log', 'symlog'] = 'linear'
+    """Of the y axis, and of the x axis where it is `log`."""
+    low: float | None = None
+    """Lower end of a logarithmic y axis."""
+    equal: bool = False
+    """Whether both axes have the same scale, as a drawing does."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Figure:
+    """Panels side by side, or stacked over the same x axis."""
+
+    panels: tuple[Panel, ...]
+    stacked: bool = False
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class DrawnBranch:
+    """One branch of a mechanism, from back to front."""
+
+    name: str
+    cam_phase: float
+    """rad."""
+    shapes: Mapping[str, tuple[Array, ...]]
+    """Closed polygons (n, 2) in m, in the frame of their body, by the classes of page.css."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MovingMechanism:
+    """A mechanism that moves along the x axis of the figure, which is time in s."""
+
+    branches: tuple[DrawnBranch, ...]
+    body_names: Mapping[str, str]
+    """For the legend, by the classes of page.css."""
+    eccentricity: float
+    """m."""
+    time: Array
+    """(n,), s."""
+    rotor: Array
+    """(n,), degrees that the rotor has turned."""
+    output: Array
+    """(n,), degrees that the output shaft has turned."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A test case of JUnit: failed if there are faults."""
+
+    name: str
+    faults: tuple[str, ...] = ()
+    kind: Literal['failure', 'error'] = 'failure'
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Section:
+    """The report on one recording, or on one mechanism."""
+
+    name: str
+    """Empty where a document has one section only that needs none."""
+    tables: tuple[Table, ...]
+    """The first says what the report is about."""
+    verdict: Verdict | None = None
+    findings: tuple[Finding, ...] = ()
+    remarks: tuple[str, ...] = ()
+    """How the values are to be read."""
+    figure: Figure | None = None
+    mechanism: MovingMechanism | None = None
+    drawing: str = ''
+    """SVG."""
+    cases: tuple[Case, ...] = ()
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Document:
+    """A whole report."""
+
+    title: str
+    """Such as `gearkin validate`."""
+    sections: tuple[Section, ...]
+    data: Mapping[str, Any] = field(default_factory=dict)
+    """For JSON: the results' own numbers."""
+    verdict: Verdict | None = None
+    summary: Table | None = None
+    """A row for each section; shown where there are several."""
+    totals: str = ''
+    """The sections in a sentence."""
+
+
+def printable(text: str) -> str:
+    """Escape what no terminal, log or XML file should get: control characters and the like.
+
+    Names come from bags and file systems: they may hold line ends, escape sequences, marks that
+    turn the direction of writing, and bytes that are no text.
+    """
+    return ''.join(
+        char if char.isprintable() else char.encode('unicode_escape').decode() for char in text
+    )
+
+
+def number(value: float, digits: int = 3) -> str:
+    """Write a measured value to significant digits, with the shortest exponent."""
+    mantissa, e, exponent = f'{value:.{digits}g}'.partition('e')
+    return f'{mantissa}{e}{int(exponent)}' if e else mantissa

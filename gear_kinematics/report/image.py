@@ -1,0 +1,147 @@
+"""Figures as image files, by matplotlib."""
+
+from collections.abc import Callable
+from contextlib import chdir
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+from gear_kinematics.report.document import Figure, Panel, Pen
+from gear_kinematics.report.interactive import FEW, SymmetricLog
+
+INK, FAINT = '#24292f', '#8c959f'
+SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df')
+"""Colours of lines that are plotted together; more take them in turn."""
+_PENS = {Pen.FIRST: SERIES[0], Pen.SECOND: SERIES[1], Pen.MODEL: INK, Pen.FAINT: FAINT}
+_STYLE = {
+    'font.size': 9.0,
+    'axes.edgecolor': INK,
+    'axes.linewidth': 0.6,
+    'grid.color': FAINT,
+    'grid.linewidth': 0.3,
+    'legend.frameon': False,
+    'lines.linewidth': 1.2,
+    'svg.hashsalt': 'gear_kinematics',  # the same figure gives the same bytes
+    'pdf.fonttype': 42,  # TrueType, which publishers ask for
+}
+_UNDATED = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
+_DPI = 150
+_PANEL = (6.0, 5.2)  # inches, side by side
+_STACKED = (7.5, 3.0)  # inches
+
+
+def to_image(figure: Figure, path: Path) -> bytes:
+    """Draw a figure for a file; the suffix of its path is the format.
+
+    Raises:
+        ValueError: if the suffix of the path is that of no format.
+        ModuleNotFoundError: without matplotlib.
+    """
+    count = len(figure.panels)
+    width, height = _STACKED if figure.stacked else _PANEL
+    size = (width, count * height) if figure.stacked else (count * width, height)
+    return render(path, size, partial(_draw_panels, figure))
+
+
+def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -> bytes:
+    """Draw on a matplotlib figure of a size in inches and return the bytes of its file.
+
+    Raises:
+        ValueError: if the suffix of the path is that of no format.
+        ModuleNotFoundError: without matplotlib.
+    """
+    kind = path.suffix[1:].lower()
+
+    def make(figure: Any) -> bytes:
+        formats = figure.canvas.get_supported_filetypes()
+        if kind not in formats:
+            known = ', '.join(sorted(formats))
+            raise ValueError(f'{path}: the suffix of a plot is one of {known}')
+        draw(figure)
+        buffer = BytesIO()
+        figure.savefig(buffer, format=kind, dpi=_DPI, metadata=_UNDATED.get(kind))
+        return buffer.getvalue()
+
+    return styled(size, make)
+
+
+def styled(size: tuple[float, float], use: Callable[[Any], bytes]) -> bytes:
+    """Return what `use` makes of a new matplotlib figure of a size in inches, in our style.
+
+    Raises:
+        ModuleNotFoundError: without matplotlib.
+    """
+    # matplotlib obeys a matplotlibrc in the current folder, which may come with a recording.
+    with chdir(Path(__file__).parent):
+        from matplotlib import rc_context  # noqa: PLC0415, an extra
+        from matplotlib.figure import Figure  # noqa: PLC0415, an extra
+    with rc_context(_STYLE):
+        return use(Figure(figsize=size, layout='constrained'))
+
+
+def _draw_panels(figure: Figure, canvas: Any) -> None:
+    count = len(figure.panels)
+    if figure.stacked:
+        rows = canvas.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
+    else:
+        rows = canvas.subplots(1, count, squeeze=False)[0]
+    for k, (axes, panel) in enumerate(zip(rows, figure.panels, strict=True), 1):
+        if k == count or not figure.stacked:
+            axes.set_xlabel(panel.x_label)
+        _draw(axes, panel)
+
+
+def _draw(axes: Any, panel: Panel) -> None:
+    axes.set_title(panel.title, fontsize=10)
+    axes.set_ylabel(panel.y_label)
+    axes.grid(visible=True, color=FAINT, linewidth=0.3)
+    if panel.scale == 'log':
+        axes.set_xscale('log')
+        axes.set_yscale('log')
+        axes.set_ylim(bottom=panel.low)
+    scale = SymmetricLog.of(panel) if panel.scale == 'symlog' else None
+    if scale:
+        axis = scale.axis(panel)
+        axes.set_yticks(axis['tickvals'], axis['ticktext'])
+        axes.set_ylim(axis['range'])
+    if panel.equal:
+        axes.set_aspect('equal')
+    named = set()
+    for line in panel.lines:
+        axes.plot(
+            line.x,
+            [scale(y) for y in line.y] if scale else line.y,
+            linestyle='none' if line.points else '--' if line.pen == Pen.MODEL else '-',
+            marker='.' if line.points else 'none',
+            markersize=2.0 if len(line.x) > FEW else 6.0,
+            linewidth=1.0,
+            color=_PENS[line.pen],
+            label='' if line.name in named else line.name,
+        )
+        named.add(line.name)
+    for place, text in panel.marks:
+        axes.axvline(place, color=FAINT, linestyle='--', linewidth=0.8)
+        _annotate(axes, text, (place, 0.99), ('data', 'axes fraction'), rotation=90, ha='right')
+    for level, text in panel.levels:
+        place = scale(level) if scale else level
+        axes.axhline(place, color=FAINT, linestyle='--', linewidth=0.8)
+        _annotate(axes, text, (0.01, place), ('axes fraction', 'data'))
+    if len(named) > 1:
+        axes.legend(loc='best', fontsize=9)
+
+
+def _annotate(
+    axes: Any, text: str, place: tuple[float, float], coordinates: tuple[str, str], **style: Any
+) -> None:
+    axes.annotate(
+        text,
+        place,
+        xycoords=coordinates,
+        xytext=(-2, 0) if style else (0, -2),
+        textcoords='offset points',
+        va='top',
+        fontsize=8,
+        color=FAINT,
+        **style,
+    )

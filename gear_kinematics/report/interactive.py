@@ -1,0 +1,264 @@
+"""A figure as plotly takes it, without colours, which page.js adds from the style sheet."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.report.document import (
+    Array,
+    Figure,
+    Line,
+    MovingMechanism,
+    Panel,
+    Pen,
+    number,
+)
+
+_GAP = 0.12
+"""Between panels side by side, of the figure's width."""
+_STACK_GAP = 0.05
+"""Between stacked panels, of the figure's height."""
+_TICKS = 4
+"""At most, to each side of zero."""
+FEW = 100
+"""Points, up to which they are drawn large."""
+_SMALLEST = 1e-300
+"""Below are numbers that nothing can be divided by."""
+_CURSOR = {
+    'type': 'line',
+    'meta': 'text',
+    'line': {'dash': 'solid'},
+    'x0': 0,
+    'x1': 0,
+    'yref': 'paper',
+    'y0': 0,
+    'y1': 1,
+}
+"""The last of the shapes, which motion.js moves."""
+
+
+def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dict[str, Any]:
+    """Return the data and the layout of a figure.
+
+    Args:
+        figure: if it is stacked, its lines have the same x.
+        mechanism: that moves along the x axis of the figure.
+
+    Returns:
+        `data` and `layout` of plotly; `time`, the x of all lines, where the panels are stacked;
+        `turned`, the angles of rotor and output in degrees, where a mechanism moves.
+    """
+    panels = figure.panels
+    several = any(len({line.name for line in panel.lines}) > 1 for panel in panels)
+    legend = {'showlegend': several, 'legend': {'orientation': 'h', 'y': -0.18}}
+    layout: dict[str, Any] = {'shapes': [], 'annotations': [], **legend}
+    plots: dict[str, Any] = {'data': [], 'layout': layout}
+    if figure.stacked:
+        plots['time'] = _rounded(panels[0].lines[0].x)
+    else:
+        layout['hovermode'] = 'closest'
+    named: set[str] = set()
+    for k, panel in enumerate(panels, 1):
+        x = 'x' if figure.stacked else f'x{k}'
+        scale = SymmetricLog.of(panel) if panel.scale == 'symlog' else None
+        layout |= _axes(figure, panel, k, scale)
+        for line in panel.lines:
+            trace = _stacked(line, panel, scale) if figure.stacked else _aside(line, x)
+            trace['yaxis'] = f'y{k}'
+            trace |= {'legendgroup': line.name, 'showlegend': line.name not in named}
+            plots['data'].append(_styled(trace, line))
+            named.add(line.name)
+        layout['shapes'] += [_mark(place, x, k) for place, _ in panel.marks]
+        layout['shapes'] += [_level(scale(y) if scale else y, text, k) for y, text in panel.levels]
+        layout['annotations'] += [
+            _note(math.log10(place) if panel.scale == 'log' else place, text, x, k)
+            for place, text in panel.marks
+            if text
+        ]
+        if panel.title:
+            layout['annotations'].append(_title(panel.title, x, k))
+    if mechanism:
+        turned = {'rotor': mechanism.rotor, 'output': mechanism.output}
+        plots['turned'] = {name: _thousandths(angle) for name, angle in turned.items()}
+        layout['shapes'].append(_CURSOR)
+    return plots
+
+
+def _axes(
+    figure: Figure, panel: Panel, k: int, scale: 'SymmetricLog | None'
+) -> dict[str, dict[str, Any]]:
+    """Return the axes of the k-th panel by their names."""
+    count = len(figure.panels)
+    kind = 'log' if panel.scale == 'log' else 'linear'
+    x: dict[str, Any] = {'title': {'text': escape(panel.x_label)}, 'type': kind}
+    # In a narrow margin the unit stands below the name.
+    y: dict[str, Any] = {'title': {'text': escape(panel.y_label).replace(' [', '<br>[')}}
+    if scale:
+        y |= scale.axis(panel)
+    else:
+        y['type'] = kind
+    if panel.low is not None:
+        top = max(float(np.nanmax(line.y)) for line in panel.lines)
+        y['range'] = [math.log10(panel.low), math.log10(2.0 * top)]
+    if panel.equal:
+        y['scaleanchor'] = 'x' if k == 1 else f'x{k}'
+    if figure.stacked:
+        height = (1.0 + _STACK_GAP) / count
+        top = 1.0 - (k - 1) * height
+        return {
+            'xaxis': x | {'anchor': f'y{count}'},
+            f'yaxis{k}': y | {'domain': [max(0.0, top - height + _STACK_GAP), top]},
+        }
+    width = (1.0 + _GAP) / count
+    left = (k - 1) * width
+    return {
+        f'xaxis{k}': x | {'domain': [left, min(left + width - _GAP, 1.0)], 'anchor': f'y{k}'},
+        f'yaxis{k}': y | {'anchor': f'x{k}'},
+    }
+
+
+def _stacked(line: Line, panel: Panel, scale: 'SymmetricLog | None') -> dict[str, Any]:
+    unit = panel.y_label.partition('[')[2].rstrip(']')
+    if not scale:
+        return {'y': _rounded(line.y), 'hovertemplate': f'%{{y:.8~g}} {unit}'}
+    return {
+        'y': _rounded([scale(value) for value in line.y.tolist()], 5),
+        'customdata': _rounded(line.y, 4),
+        'hovertemplate': f'%{{customdata:.3g}} {unit}',
+    }
+
+
+def _aside(line: Line, x: str) -> dict[str, Any]:
+    return {'x': _rounded(line.x, 6), 'y': _rounded(line.y, 6), 'xaxis': x}
+
+
+def _styled(trace: dict[str, Any], line: Line) -> dict[str, Any]:
+    trace |= {'name': line.name, 'meta': line.pen}
+    if line.points:
+        trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > FEW else 8}}
+    if line.pen == Pen.MODEL:
+        trace['line'] = {'dash': 'dash'}
+    return trace
+
+
+@dataclass(frozen=True, slots=True)
+class SymmetricLog:
+    """A scale that is logarithmic to both sides of zero, and linear next to it."""
+
+    smallest: float
+    """The power of ten from which on it is logarithmic."""
+    greatest: float
+
+    @classmethod
+    def of(cls, panel: Panel) -> 'SymmetricLog':
+        """Choose the scale for all values and levels of a panel."""
+        values = [value for line in panel.lines for value in line.y.tolist()]
+        finite = [value for value in values if math.isfinite(value)]
+        return cls.fit([*finite, *(level for level, _ in panel.levels)])
+
+    @classmethod
+    def fit(cls, values: Sequence[float]) -> 'SymmetricLog':
+        """Choose the scale on which all values can be told apart, within twelve decades."""
+        magnitudes = [abs(value) for value in values if value]
+        greatest = max(max(magnitudes, default=1.0), _SMALLEST)
+        least = max(min(magnitudes, default=1.0), 1e-12 * greatest, _SMALLEST)
+        # With a decade to show where only one magnitude is there.
+        return cls(10.0 ** (_decade(least) - (_decade(least) == _decade(greatest))), greatest)
+
+    def __call__(self, value: float) -> float:
+        """Return the height of a value."""
+        return math.copysign(math.log10(1.0 + abs(value) / self.smallest), value)
+
+    def ticks(self) -> list[float]:
+        """Return powers of ten up to the greatest value, at even distances."""
+        lowest, highest = _decade(self.smallest), _decade(self.greatest)
+        step = max(1, math.ceil((highest - lowest) / _TICKS))
+        return [10.0**decade for decade in range(highest, lowest, -step)]
+
+    def axis(self, panel: Panel) -> dict[str, Any]:
+        """Return the range and the ticks of the axis of a panel."""
+        negative = any(np.nanmin(line.y, initial=0.0) < 0.0 for line in panel.lines)
+        signs = (-1, 1) if negative else (1,)
+        ticks = sorted({0.0, *(sign * tick for sign in signs for tick in self.ticks())})
+        reach = 1.1 * self(self.greatest)
+        return {
+            'tickvals': [self(tick) for tick in ticks],
+            'ticktext': [number(tick) for tick in ticks],
+            'range': [-reach if negative else -0.1 * reach, reach],
+        }
+
+
+def _decade(value: float) -> int:
+    # As written, for 1e-9 may have a logarithm of slightly less than -9.
+    return int(f'{value:e}'.partition('e')[2])
+
+
+def _mark(place: float, x: str, k: int) -> dict[str, Any]:
+    return {
+        'type': 'line',
+        'meta': 'faint',
+        'xref': x,
+        'x0': place,
+        'x1': place,
+        'yref': f'y{k} domain',
+        'y0': 0,
+        'y1': 1,
+    }
+
+
+def _level(height: float, text: str, k: int) -> dict[str, Any]:
+    return {
+        'type': 'line',
+        'xref': 'paper',
+        'x0': 0,
+        'x1': 1,
+        'yref': f'y{k}',
+        'y0': height,
+        'y1': height,
+        # Inside, where the plot always has room.
+        'label': {'text': escape(text), 'textposition': 'start', 'yanchor': 'top'},
+    }
+
+
+def _note(place: float, text: str, x: str, k: int) -> dict[str, Any]:
+    """Return the text at a mark, along its line."""
+    return {
+        'text': escape(text),
+        'textangle': -90,
+        'xref': x,
+        'x': place,
+        'yref': f'y{k} domain',
+        'y': 0.99,
+        'xanchor': 'right',
+        'yanchor': 'top',
+        'showarrow': False,
+    }
+
+
+def _title(text: str, x: str, k: int) -> dict[str, Any]:
+    return {
+        'text': escape(text),
+        'xref': f'{x} domain',
+        'yref': f'y{k} domain',
+        'x': 0.0,
+        'y': 1.0,
+        'xanchor': 'left',
+        'yanchor': 'bottom',
+        'showarrow': False,
+    }
+
+
+def _rounded(values: Array | Sequence[float], digits: int = 8) -> list[float | None]:
+    """Drop the digits that no plot shows; NaN and infinities become gaps."""
+    return [
+        float(f'{value:.{digits}g}') if math.isfinite(value) else None
+        for value in np.asarray(values).tolist()
+    ]
+
+
+def _thousandths(values: Array) -> list[float | None]:
+    return [round(value, 3) if math.isfinite(value) else None for value in values.tolist()]
