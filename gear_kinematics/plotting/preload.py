@@ -21,6 +21,7 @@ def torque_split(preload: Preload, names: tuple[str, str], max_load: float) -> F
     load = np.sort([*np.linspace(-max_load, max_load, 1001), *corners.values()])
     split = preload.split(load)
     marks = tuple((corner, f'branch {name} leaves mesh') for name, corner in corners.items())
+    unnamed = tuple((corner, '') for corner in corners.values())
     torques = (
         Line(f'branch {a}', Pen.FIRST, load, split.branch_a),
         Line(f'branch {b}', Pen.SECOND, load, split.branch_b),
@@ -31,7 +32,7 @@ def torque_split(preload: Preload, names: tuple[str, str], max_load: float) -> F
     return Figure(
         (
             Panel(title, x_label, 'torque [N·m]', torques, marks),
-            Panel('', x_label, 'turn of the output [″]', (turn,), marks),
+            Panel('', x_label, 'turn of the output [″]', (turn,), unnamed),
         ),
         stacked=True,
     )
