@@ -162,9 +162,9 @@ def _data(answer: _Answer) -> dict[str, Any]:
             'branch_a': known.branch_a,
             'branch_b': known.branch_b,
             'shaft': known.shaft,
-            'inside': known.inside,
-            'without_a': known.without_a,
-            'without_b': known.without_b,
+            'inside': known.both_in_mesh,
+            'without_a': known.branch_b_alone,
+            'without_b': known.branch_a_alone,
         },
         'backlash': answer.backlash,
         **_figures(answer.ring_turn, answer.preload),
@@ -207,13 +207,14 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield 'backlash', f'{arc(answer.backlash)} at the output before the turn'
     if preload.torque:
         yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load'
-        yield 'both mesh', f'while |load| < {preload.limit:.4g} N·m: {_stiffness(known.inside)}'
-        yield f'branch {a}', _leaving(preload.threshold_a, b, known.without_a)
-        yield f'branch {b}', _leaving(preload.threshold_b, a, known.without_b)
+        stiffness = _stiffness(known.both_in_mesh)
+        yield 'both mesh', f'while |load| < {preload.limit:.4g} N·m: {stiffness}'
+        yield f'branch {a}', _leaving(preload.threshold_a, b, known.branch_b_alone)
+        yield f'branch {b}', _leaving(preload.threshold_b, a, known.branch_a_alone)
     else:
         yield 'preload', f'none; a play of {arc(preload.play)} is left'
-        yield f'branch {a}', f'carries negative loads alone: {_stiffness(known.without_b)}'
-        yield f'branch {b}', f'carries positive loads alone: {_stiffness(known.without_a)}'
+        yield f'branch {a}', f'carries negative loads alone: {_stiffness(known.branch_a_alone)}'
+        yield f'branch {b}', f'carries positive loads alone: {_stiffness(known.branch_b_alone)}'
     pinned = answer.pinned
     if answer.pinned_turn == answer.ring_turn:
         yield 'pin', str(answer.setting)

@@ -18,12 +18,12 @@ Array = NDArray[np.float64]
 
 
 def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -> Array:
-    """How far the loops of a state are from closing, per branch, (..., B), m.
+    """Closure error of the vector loops of a state, per branch, (..., B), m.
 
-    The distance between the centre of the Oldham coupling reached through rotor and satellite,
-    eq. (11), and through the output shaft, eq. (14), at the state's slides; or between either
-    and the state's own centre, whichever is greatest. It grows with the float64 spacing of
-    `rotor_angle`: give an angle of few turns.
+    The greatest of three distances: between the centre of the Oldham coupling by eq. (11) and by
+    eq. (14), at the slides of the state; between the former and `state.oldham_centre`; between
+    the centre of the satellite and `state.satellite_centre`. It grows with the float64 spacing of
+    `rotor_angle`, so pass an angle of few turns.
     """
     chain = frames(mechanism, rotor_angle, state.satellite_slide, state.arm_slide)
     by_satellite = chain.oldham_to_stator[..., :3, 3]
@@ -42,9 +42,9 @@ def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -
 def mobility_by_counting(mechanism: Mechanism) -> int:
     """Degrees of freedom by eq. (2), 3(n - 1) - 2(r + p) - o, for the whole mechanism.
 
-    n bodies with the stator, r rotary and p sliding joints, o general ones (gear meshes). One
-    branch counts 3(5 - 1) - 2(3 + 2) - 1 = 1; two count 0, yet they move: see
-    `mobility_by_rank`.
+    n bodies including the stator, r rotary joints, p sliding joints, o general pairs (gear
+    meshes). One branch gives 3(5 - 1) - 2(3 + 2) - 1 = 1. Two branches give 0 although they move:
+    see `mobility_by_rank`.
     """
     branches = len(mechanism.branches)
     bodies = 3 + 2 * branches
@@ -53,10 +53,10 @@ def mobility_by_counting(mechanism: Mechanism) -> int:
 
 
 def constraint_jacobian(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
-    """Derivative of the constraints by the coordinates, (..., 4 + 7 B, 3 (2 + 2 B)).
+    """Derivative of the constraints with respect to the coordinates, (..., 4 + 7 B, 3 (2 + 2 B)).
 
-    Columns: (x, y, angle) of the rotor, then of satellite and coupling branch by branch, then of
-    the output shaft. Lengths are in units of the eccentricity, so that the rank has no unit.
+    Columns: (x, y, angle) of the rotor, then of satellite and coupling of each branch, then of the
+    output shaft. Lengths are in units of the eccentricity, so that the rank depends on no unit.
     """
     state = solve(mechanism, rotor_angle)
     e = mechanism.eccentricity
@@ -72,13 +72,13 @@ def constraint_jacobian(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
         row, satellite, coupling = 4 + 7 * k, 3 + 6 * k, 6 + 6 * k
         centre, middle = state.satellite_centre[..., k, :] / e, state.oldham_centre[..., k, :] / e
         _rotary_joint(jacobian[..., row : row + 2, :], rotor, satellite, centre)
-        # In the satellite the coupling slides along x, so it is held along y; in the arm the
-        # other way round.
+        # The satellite lets the coupling slide along x and holds it along y; the arm the other
+        # way round.
         _sliding_joint(
             jacobian[..., row + 2 : row + 4, :], satellite, coupling, along_y, middle - centre
         )
         _sliding_joint(jacobian[..., row + 4 : row + 6, :], output, coupling, along_x, middle)
-        # The satellite rolls: where it touches the ring, its material does not move along it.
+        # Rolling: at the pitch point the satellite has no velocity along the ring.
         tangent = np.stack([-centre[..., 1], centre[..., 0]], axis=-1)
         jacobian[..., row + 6, satellite : satellite + 2] = tangent
         jacobian[..., row + 6, satellite + 2] = mechanism.satellite_rolling_radius / e
@@ -86,19 +86,19 @@ def constraint_jacobian(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
 
 
 def mobility_by_rank(mechanism: Mechanism, rotor_angle: float = 0.0) -> int:
-    """Degrees of freedom as columns less rank of the constraint Jacobian at a rotor angle, rad."""
+    """Degrees of freedom: columns minus rank of the constraint Jacobian at a rotor angle, rad."""
     jacobian = constraint_jacobian(mechanism, rotor_angle)
     return int(jacobian.shape[-1] - np.linalg.matrix_rank(jacobian))
 
 
 def redundant_constraints(mechanism: Mechanism, rotor_angle: float = 0.0) -> int:
-    """Constraints that others imply already: rows less rank. Here the preload lives."""
+    """Redundant constraints: rows minus rank. They are what makes a preload possible."""
     jacobian = constraint_jacobian(mechanism, rotor_angle)
     return int(jacobian.shape[-2] - np.linalg.matrix_rank(jacobian))
 
 
 def _rotary_joint(rows: Array, rotor: int, satellite: int, centre: Array) -> None:
-    """The satellite's centre is a point of the rotor, at `centre` from the rotor's axis."""
+    """Fix the satellite's centre to the rotor, at `centre` from the rotor's axis."""
     for axis in (0, 1):
         rows[..., axis, satellite + axis] = 1.0
         rows[..., axis, rotor + axis] = -1.0
@@ -107,9 +107,9 @@ def _rotary_joint(rows: Array, rotor: int, satellite: int, centre: Array) -> Non
 
 
 def _sliding_joint(rows: Array, guide: int, slider: int, normal: Array, arm: Array) -> None:
-    """The slider turns with the guide and keeps its distance along `normal`, which turns too.
+    """Fix the slider's angle, and its position along `normal`, to the guide.
 
-    `arm` is the way from the guide's centre to the slider's.
+    `normal` turns with the guide; `arm` points from the guide's centre to the slider's.
     """
     rows[..., 0, slider + 2], rows[..., 0, guide + 2] = 1.0, -1.0
     rows[..., 1, slider : slider + 2] = normal

@@ -1,9 +1,9 @@
-"""The motion by the matrix method, eqs. (4), (7), (8), (11)-(18): nothing but 4×4 transforms.
+"""The motion by the matrix method, eqs. (4), (7), (8), (11)-(18): 4×4 transforms alone.
 
 The slides of the Oldham couplings come from solving the loop closure
 T_21 T_3k,2 T_4k,3k O = T_51 T_4k,5 O as the linear system of eq. (17); velocities and
 accelerations from differentiating the transforms and that system. No formula of the closed form
-(`motion`) is used, so that each proves the other.
+(`motion`) is used, so the two check each other.
 """
 
 from typing import NamedTuple
@@ -52,11 +52,11 @@ class _Jet(NamedTuple):
         return _Jet(*(matrix[..., index, np.newaxis, :] for matrix in self))
 
     def vectors(self) -> Array:
-        """The columns (..., 2, 1) as one array (3, ..., 2): the first axis is the order."""
+        """The columns as one array (3, ..., 2): the value and its two derivatives."""
         return np.stack(self)[..., 0]
 
 
-@np.errstate(invalid='ignore')  # what is not finite gives NaN
+@np.errstate(invalid='ignore')  # values that are not finite give NaN
 def solve(
     mechanism: Mechanism,
     rotor_angle: ArrayLike,
@@ -65,12 +65,12 @@ def solve(
     *,
     rotor_turns: ArrayLike = 0,
 ) -> MotionState:
-    """Solve the motion of all bodies; arguments and result as of `motion.solve`.
+    """Solve the motion of all bodies; arguments and result are those of `motion.solve`.
 
-    The turns are added to the angle as they are, so that many of them cost its last digits.
+    The turns are added to the angle in float64, so many turns cost precision.
 
     Raises:
-        ValueError: if `rotor_turns` are no such integers.
+        ValueError: if `rotor_turns` are not integers up to ±`MOST_TURNS`.
     """
     angle = np.asarray(rotor_angle, dtype=np.float64) + TURN * whole_turns(rotor_turns)
     inputs = (angle, rotor_velocity, rotor_acceleration)
@@ -98,7 +98,7 @@ def solve(
 
 
 def _rotation(angle: Array, rate: Array, acceleration: Array) -> _Jet:
-    """Rz of an angle that changes, (..., 1, 4, 4): with an axis for the branches."""
+    """Rz of an angle that changes with time, (..., 1, 4, 4), to broadcast over branches."""
     value = rotation_z(angle[..., np.newaxis])
     rate, acceleration = (v[..., np.newaxis, np.newaxis, np.newaxis] for v in (rate, acceleration))
     turned = _SPIN @ value
@@ -106,9 +106,9 @@ def _rotation(angle: Array, rate: Array, acceleration: Array) -> _Jet:
 
 
 def _slides(satellite_x: _Jet, arm_y: _Jet, satellite: _Jet) -> _Jet:
-    """Solve the linear system of eq. (17), and it differentiated, for (x, y): (..., 2, 1).
+    """Solve the linear system of eq. (17) and its derivatives for (x, y), (..., 2, 1).
 
-    Its matrix is symmetric and orthogonal, so that it is its own inverse, eq. (18).
+    Its matrix is symmetric and orthogonal, hence its own inverse, eq. (18).
     """
     pairs = (np.broadcast_arrays(x, -y) for x, y in zip(satellite_x, arm_y, strict=True))
     matrix = _Jet(*(np.concatenate(pair, axis=-1) for pair in pairs))

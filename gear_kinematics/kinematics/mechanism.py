@@ -1,4 +1,4 @@
-"""The mechanism: tooth numbers, eccentricity and branches, and what follows from them alone."""
+"""The mechanism: tooth numbers, eccentricity, branches, and quantities derived from them."""
 
 import math
 import operator
@@ -16,19 +16,19 @@ _BRANCH_NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
 
 @dataclass(frozen=True, slots=True)
 class Branch:
-    """One path of transmission: a satellite on its cam and the Oldham coupling behind it."""
+    """A branch of the transmission: a satellite on its cam, and its Oldham coupling."""
 
     name: str
-    """A letter, then letters, digits or underscores: it becomes part of frame names."""
+    """A letter, then letters, digits or underscores, as it becomes part of frame names."""
     cam_phase: float = 0.0
     """α_k, rad: the angle of the eccentric cam on the rotor; 0 points along the rotor's y axis."""
     axial_position: float = 0.0
-    """m, along the motor axis; carried along unchanged by the planar motion."""
+    """m, along the motor axis; the planar motion leaves it unchanged."""
 
 
 @dataclass(frozen=True)
 class Mechanism:
-    """An anti-backlash planetary gear with any number of branches. Validated when made.
+    """An anti-backlash planetary gear with any number of branches, validated on construction.
 
     Raises:
         MechanismError: listing every fault at once.
@@ -43,7 +43,7 @@ class Mechanism:
     branches: tuple[Branch, ...]
 
     def __post_init__(self) -> None:
-        """Bring the fields to their plain types, or list what is wrong with them."""
+        """Convert the fields to plain Python types, or list their faults."""
         faults: list[str] = []
         ring = _teeth('ring_teeth', self.ring_teeth, faults)
         satellite = _teeth('satellite_teeth', self.satellite_teeth, faults)
@@ -65,15 +65,15 @@ class Mechanism:
 
     @classmethod
     def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
-        """Make the mechanism that the parameters of the node and of its YAML file describe.
+        """Create the mechanism described by the parameters of the node and of its YAML file.
 
         Args:
             parameters: `ring_teeth`, `satellite_teeth`, `eccentricity`, `branches` (names) and,
-                for each branch, `<branch>.cam_phase` and `<branch>.axial_position`, which fall
-                back to the defaults of `Branch`. Other keys are passed over.
+                for each branch, `<branch>.cam_phase` and `<branch>.axial_position`, which default
+                to those of `Branch`. Other keys are ignored.
 
         Raises:
-            MechanismError: also for what is missing.
+            MechanismError: also if a key is missing.
         """
         required = ('ring_teeth', 'satellite_teeth', 'eccentricity', 'branches')
         if missing := [name for name in required if name not in parameters]:
@@ -104,7 +104,7 @@ class Mechanism:
 
     @property
     def cycle_turns(self) -> int:
-        """Turns of the rotor until every body is where it was: the numerator of the ratio."""
+        """Rotor turns after which every position repeats: the numerator of the ratio."""
         return abs(self.gear_ratio.numerator)
 
     def rotor_angle(self, output_angle: float) -> float:
@@ -113,12 +113,12 @@ class Mechanism:
 
     @property
     def ring_rolling_radius(self) -> float:
-        """Radius of the circle on the ring gear on which the satellite rolls, m."""
+        """Radius of the ring gear's rolling circle, m."""
         return self.eccentricity * self.ring_teeth / (self.ring_teeth - self.satellite_teeth)
 
     @property
     def satellite_rolling_radius(self) -> float:
-        """Radius of the circle on the satellite that rolls on the ring gear's, m."""
+        """Radius of the satellite's rolling circle, m."""
         return self.eccentricity * self.satellite_teeth / (self.ring_teeth - self.satellite_teeth)
 
     @property
@@ -136,7 +136,7 @@ def _teeth(name: str, value: object, faults: list[str]) -> int | None:
     try:
         if isinstance(value, bool):
             raise TypeError
-        teeth = operator.index(value)  # type: ignore[arg-type]  # what is no integer raises
+        teeth = operator.index(value)  # type: ignore[arg-type]  # raises TypeError
     except TypeError:
         faults.append(f'{name} must be an integer, not {value!r}')
         return None

@@ -1,7 +1,7 @@
 """The closed form of the motion: eqs. (5)-(22) of the paper and their time derivatives.
 
-Every formula stands here once, in functions that take numpy arrays and plain floats alike:
-`solve` applies them to arrays of any shape, the node to one sample of plain floats.
+Each formula is written once, in functions that take numpy arrays and plain floats alike: `solve`
+applies them to arrays of any shape, the node to one sample of plain floats.
 
 Symbols: φ2 rotor angle, φ5 output angle, α_k cam phase, θ_k = φ2 + α_k, e eccentricity,
 u(q) = (-sin q, cos q), i gear ratio, p/q = (zk - zs)/zs = -1/i in lowest terms.
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MotionState:
-    """The motion of all bodies. `...` is the broadcast shape of the inputs, B the branches.
+    """The motion of all bodies. `...` is the inputs' broadcast shape, B the number of branches.
 
     All arrays are float64 and read-only; lengths in m, angles in rad, in the stator frame.
     """
@@ -37,7 +37,7 @@ class MotionState:
     output_acceleration: Array
     """(...), rad/s²."""
     output_turn_angle: Array
-    """(...): `output_angle` less its whole turns, in [-π, π]; exact however many there are."""
+    """(...): `output_angle` minus whole turns, in [-π, π]; as precise at any number of them."""
     satellite_centre: Array
     """O3, (..., B, 2), eqs. (9), (10)."""
     satellite_velocity: Array
@@ -51,16 +51,16 @@ class MotionState:
     oldham_acceleration: Array
     """(..., B, 2), m/s²."""
     satellite_slide: Array
-    """x_k, (..., B): the coupling along x of the satellite frame, eq. (19)."""
+    """x_k, (..., B): slide of the coupling along x of the satellite's frame, eq. (19)."""
     satellite_slide_velocity: Array
     """(..., B), m/s."""
     arm_slide: Array
-    """y_k, (..., B): the coupling along y of the output shaft's frame, eq. (20)."""
+    """y_k, (..., B): slide of the coupling along y of the output shaft's frame, eq. (20)."""
     arm_slide_velocity: Array
     """(..., B), m/s."""
 
     def __post_init__(self) -> None:
-        """Take what is array-like as read-only arrays."""
+        """Convert the fields to read-only arrays."""
         for field in fields(self):
             array = np.asarray(getattr(self, field.name)).view()
             array.flags.writeable = False
@@ -77,9 +77,9 @@ class MotionState:
         satellite_slide: Array,
         arm_slide: Array,
     ) -> Self:
-        """Gather a state from arrays whose first axis is the order of the derivative.
+        """Create a state from arrays whose first axis is the order of the derivative.
 
-        Derivatives that an array leaves out are zero, and take no memory.
+        Missing derivatives are zero and take no memory.
         """
         zero = np.broadcast_to(0.0, satellite.shape[1:])
         outputs = (*output, zero[..., 0, 0], zero[..., 0, 0])
@@ -105,7 +105,7 @@ class MotionState:
 
 
 class BranchPosition(NamedTuple):
-    """Where the bodies of one branch are, m: floats or arrays; points are pairs x, y."""
+    """Positions of the bodies of one branch, m, as floats or arrays; points are pairs (x, y)."""
 
     satellite: tuple[Any, Any]
     """O3."""
@@ -131,14 +131,14 @@ class BranchRates(NamedTuple):
 class ClosedForm:
     """The formulas with the constants of one mechanism; `xp` is `math` for floats, else numpy.
 
-    Floats and arrays give the same bits. Hence no complex numbers here, whose products numpy
-    rounds once where the processor can, and Python twice.
+    Floats and arrays give the same results to the bit. Complex numbers would not: some processors
+    let numpy round their products once, where Python rounds twice.
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        """Take what the formulas need from the mechanism."""
+        """Compute the constants from the mechanism."""
         ratio = -1 / mechanism.gear_ratio
-        # p is a float so that its product with many turns is rounded as in arrays.
+        # p is a float so that its product with many turns is rounded as in an array.
         self._p, self._q = float(ratio.numerator), ratio.denominator
         self._eccentricity = mechanism.eccentricity
         self._cams = tuple(  # u(α)
@@ -148,9 +148,9 @@ class ClosedForm:
         self._kappa = -2.0 * float(ratio) - 1.0
 
     def output_angle(self, turns: Any, angle: Any, xp: ModuleType) -> tuple[Any, Any]:
-        """φ5 = φ2/i (eq. 5) in whole turns and the rest in [-π, π], for φ2 = 2π turns + angle.
+        """φ5 = φ2/i (eq. 5) as whole turns and a rest in [-π, π], for φ2 = 2π turns + angle.
 
-        Of the whole turns only their remainder by q counts within the turn, so nothing cancels.
+        The rest depends on the whole turns modulo q only, so nothing cancels.
         """
         p, q = self._p, self._q
         cycles = xp.trunc(turns / q)
@@ -165,7 +165,7 @@ class ClosedForm:
         return -self._p * rotor_rate / self._q
 
     def branches(self, angle: Any, output_angle: Any, xp: ModuleType) -> list[BranchPosition]:
-        """Positions of the bodies, branch by branch; both angles within their turn."""
+        """Positions of the bodies of each branch; both angles in [-π, π]."""
         e, cosine, sine = self._eccentricity, xp.cos(angle), xp.sin(angle)
         arm_x, arm_y = -xp.sin(output_angle), xp.cos(output_angle)  # u(φ5)
         positions = []
@@ -175,14 +175,14 @@ class ClosedForm:
             satellite_slide = e * (y * arm_x - x * arm_y)  # eq. (19): e sin β, β = θ - φ5
             arm_slide = e * (x * arm_x + y * arm_y)  # eq. (20): e cos β
             oldham = arm_slide * arm_x, arm_slide * arm_y  # eqs. (21), (22): y u(φ5)
-            # The satellite by eqs. (9), (10).
+            # The satellite's centre: eqs. (9), (10).
             positions.append(BranchPosition((e * x, e * y), oldham, satellite_slide, arm_slide))
         return positions
 
     def rates(self, positions: Iterable[BranchPosition], w: Any, a: Any) -> Iterator[BranchRates]:
         """Yield the rates of each branch for the rotor velocity w and acceleration a.
 
-        O4 is the sum of two vectors, which turn with θ and with 2 φ5 - θ: at w and at κ w.
+        O4 is the sum of two vectors, at the angles θ and 2 φ5 - θ, which turn at w and κ w.
         """
         kappa, square, minus_w, minus_a = self._kappa, w * w, -w, -a
         for position in positions:
@@ -210,14 +210,14 @@ class ClosedForm:
 
 @lru_cache
 def closed_form(mechanism: Mechanism) -> ClosedForm:
-    """The formulas of a mechanism, made once."""
+    """The formulas of a mechanism, created once."""
     return ClosedForm(mechanism)
 
 
-_CHUNK = 8192  # samples: what a chunk needs stays in the processor's cache
+_CHUNK = 8192  # samples, so that the arrays of a chunk fit into the processor's cache
 
 
-@np.errstate(invalid='ignore')  # what is not finite gives NaN
+@np.errstate(invalid='ignore')  # values that are not finite give NaN
 def solve(
     mechanism: Mechanism,
     rotor_angle: ArrayLike,
@@ -230,15 +230,15 @@ def solve(
 
     Args:
         mechanism: the mechanism.
-        rotor_angle: φ2, rad. Inputs broadcast to any shape `(...)`. What is not finite, or beyond
-            ±`LARGEST_ANGLE`, gives NaN.
+        rotor_angle: φ2, rad. Inputs broadcast to any shape `(...)`. Angles that are not
+            finite, or beyond ±`LARGEST_ANGLE`, give NaN.
         rotor_velocity: rad/s.
         rotor_acceleration: rad/s².
-        rotor_turns: whole turns to be added to `rotor_angle`, integers up to ±`MOST_TURNS`: the
-            way to large angles without loss.
+        rotor_turns: whole turns added to `rotor_angle` without loss of precision, integers up to
+            ±`MOST_TURNS`.
 
     Raises:
-        ValueError: if `rotor_turns` are no such integers.
+        ValueError: if `rotor_turns` are not integers up to ±`MOST_TURNS`.
     """
     form = closed_form(mechanism)
     moving = bool(np.any(rotor_velocity) or np.any(rotor_acceleration))

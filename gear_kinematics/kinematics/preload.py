@@ -1,20 +1,20 @@
-"""The preload of two branches braced against each other: statics, lossless.
+"""The preload of two branches braced against each other: lossless statics.
 
-The ring gear of one branch is turned against that of the other until the backlash is closed, and
-on by dψ_net; the shaft between the two arms winds up:
+Turning the ring gear of one branch against the other's closes the backlash; a further turn dψ_net
+twists the shaft between the two arms:
 
-    T0 = (zk/zs) dψ_net / (1/kA + 1/kB + 1/ks)        N·m in both branches without a load
+    T0 = (zk/zs) dψ_net / (1/kA + 1/kB + 1/ks)        N·m in both branches without load
 
 kA, kB are the torsional stiffnesses of the branches as seen at their arms, ks that of the shaft
-between the arms, N·m/rad. An external torque M acts at arm B, which is the output. It counts
-positive in the sense in which branch A pushes the output, which is the sense in which ring A is
-turned against ring B. With kAe = kA ks/(kA + ks),
+between the arms, N·m/rad. An external torque M acts at arm B, which is the output. It is
+positive in the direction in which branch A pushes the output and in which ring A is turned against
+ring B. With kAe = kA ks/(kA + ks),
 
     T_A = T0 - kAe M/(kAe + kB)         T_B = T0 + kB M/(kAe + kB)        T_B - T_A = M
 
-until a branch leaves mesh, A at M = T0 (1 + kB/kAe), B at M = -T0 (1 + kAe/kB). From there on it
-carries nothing and the other carries M alone, up to where its other flanks touch. A stiffness may
-be infinite, which is why the formulas below are written with compliances,
+until a branch leaves mesh, A at M = T0 (1 + kB/kAe), B at M = -T0 (1 + kAe/kB). Beyond this
+threshold it carries nothing and the other carries M alone, until its opposite flanks touch. As a
+stiffness may be infinite, the formulas below are written with compliances,
 
     cA = 1/kAe = 1/kA + 1/ks        cB = 1/kB        kAe/(kAe + kB) = cB/(cA + cB)
 """
@@ -37,7 +37,7 @@ STEEL_SHEAR_MODULUS = 79.3e9
 def shaft_stiffness(
     diameter: float, length: float, shear_modulus: float = STEEL_SHEAR_MODULUS
 ) -> float:
-    """ks = G J/L with J = π d⁴/32: the torsional stiffness of a full round shaft, N·m/rad.
+    """ks = G J/L with J = π d⁴/32: the torsional stiffness of a solid round shaft, N·m/rad.
 
     Args:
         diameter: d, m.
@@ -45,7 +45,7 @@ def shaft_stiffness(
         shear_modulus: G, Pa.
 
     Raises:
-        MechanismError: if one of them is not finite or not greater than 0.
+        MechanismError: if an argument is not finite or not greater than 0.
     """
     given = {'diameter': diameter, 'length': length, 'shear modulus': shear_modulus}
     if faults := [
@@ -61,23 +61,23 @@ def braced(mechanism: Mechanism) -> tuple[Branch, Branch]:
     """Branches A and B.
 
     Raises:
-        MechanismError: unless there are just these two.
+        MechanismError: unless the mechanism has exactly two branches.
     """
     if len(mechanism.branches) != 2:  # noqa: PLR2004, A and B
         count = len(mechanism.branches)
-        raise MechanismError([f'two branches are braced against each other, not {count}'])
+        raise MechanismError([f'exactly two branches are needed, not {count}'])
     branch_a, branch_b = mechanism.branches
     return branch_a, branch_b
 
 
 def ring_phase(mechanism: Mechanism) -> float:
-    """ψ_B - ψ_A = [(zk - zs)(α_B - α_A) mod 2π] / zk: the turn of ring B that its cam calls for.
+    """ψ_B - ψ_A = [(zk - zs)(α_B - α_A) mod 2π] / zk: the turn of ring B for its cam phase.
 
-    Meshing on branch k asks for zk (φ2 + α_k - ψ_k) - zs (φ2 + α_k - φ5 - s_k) ≡ 0 (mod 2π), with
-    ψ_k the turn of its ring gear, and s_k that of the teeth of its satellite, the same on both.
+    Branch k meshes if zk (φ2 + α_k - ψ_k) - zs (φ2 + α_k - φ5 - s_k) ≡ 0 (mod 2π), with ψ_k the
+    turn of its ring gear, and s_k that of its satellite's teeth, which is equal in both branches.
 
     Returns:
-        rad, within half a tooth pitch π/zk either way: every tooth pitch more does as well.
+        rad, in ±π/zk, half a tooth pitch; any number of tooth pitches may be added.
 
     Raises:
         MechanismError: unless there are two branches.
@@ -86,7 +86,7 @@ def ring_phase(mechanism: Mechanism) -> float:
 
 
 def ring_turn_between(mechanism: Mechanism, cam_phase_a: float, cam_phase_b: float) -> float:
-    """The same as `ring_phase` for any two cam phases α (rad), one of which may be 0."""
+    """The same as `ring_phase`, for two given cam phases α, rad."""
     cam_a, cam_b = turns(cam_phase_a), turns(cam_phase_b)
     teeth = mechanism.ring_teeth - mechanism.satellite_teeth
     return angle_between(teeth * cam_a, teeth * cam_b) / mechanism.ring_teeth
@@ -101,14 +101,14 @@ class Stiffness:
     """
 
     branch_a: float
-    """kA, from the stator and a locked rotor to arm A."""
+    """kA, of branch A: from the stator to arm A while the rotor is locked."""
     branch_b: float
-    """kB, likewise to arm B, which is the output."""
+    """kB, of branch B: likewise to arm B, which is the output."""
     shaft: float
-    """ks, between the arms."""
+    """ks, of the shaft between the arms."""
 
     def __post_init__(self) -> None:
-        """List what is wrong."""
+        """List all faults."""
         given = {'branch a': self.branch_a, 'branch b': self.branch_b, 'shaft': self.shaft}
         faults = [
             f'the stiffness of {name} must be greater than 0, not {value!r}'
@@ -116,7 +116,7 @@ class Stiffness:
             if not value > 0.0
         ]
         if not faults and not 0.0 < self.compliance < math.inf:
-            faults = ['branches and shaft can neither all be rigid nor give way without end']
+            faults = ['branches and shaft must neither all be rigid nor have infinite compliance']
         if faults:
             raise MechanismError(faults)
 
@@ -132,34 +132,34 @@ class Stiffness:
 
     @property
     def compliance(self) -> float:
-        """1/kA + 1/kB + 1/ks: of the whole loop that the preload winds up, rad/(N·m)."""
+        """1/kA + 1/kB + 1/ks: of the whole loop that the preload twists, rad/(N·m)."""
         return self.compliance_a + self.compliance_b
 
     @property
-    def inside(self) -> float:
+    def both_in_mesh(self) -> float:
         """kAe + kB: at the output while both branches are in mesh, N·m/rad."""
-        return self.without_a + self.without_b
+        return self.branch_b_alone + self.branch_a_alone
 
     @property
-    def without_a(self) -> float:
+    def branch_b_alone(self) -> float:
         """kB: at the output when branch A is out of mesh, N·m/rad."""
         return self.branch_b
 
     @property
-    def without_b(self) -> float:
+    def branch_a_alone(self) -> float:
         """kAe: at the output when branch B is out of mesh, N·m/rad."""
         return 1.0 / self.compliance_a if self.compliance_a else math.inf
 
 
 class TorqueSplit(NamedTuple):
-    """What an external torque does; arrays of its shape."""
+    """Response to an external torque; arrays of its shape."""
 
     branch_a: NDArray[np.float64]
     """T_A, N·m, at least 0; 0 when the branch is out of mesh."""
     branch_b: NDArray[np.float64]
     """T_B, N·m, at least 0."""
     output_turn: NDArray[np.float64]
-    """Turn of arm B from where it is without load, or from the middle of its play, rad."""
+    """Turn of arm B from its unloaded position, or from the middle of its play, rad."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,10 +172,10 @@ class Preload:
 
     stiffness: Stiffness
     interference: float
-    """(zk/zs) dψ_net, rad: what the arms are wound up by; if negative, the play that is left."""
+    """(zk/zs) dψ_net, rad: the twist of the loop at the arms; if negative, the remaining play."""
 
     def __post_init__(self) -> None:
-        """Refuse what is no angle."""
+        """Refuse an interference that is not finite."""
         if not math.isfinite(self.interference):
             raise MechanismError([f'an interference must be finite, not {self.interference!r}'])
 
@@ -183,14 +183,14 @@ class Preload:
     def from_ring_turn(
         cls, mechanism: Mechanism, stiffness: Stiffness, ring_turn: float, backlash: float = 0.0
     ) -> Self:
-        """What turning the rings against each other gives.
+        """The preload that results from turning the rings against each other.
 
         dψ_net = abs(dψ) - (zs/zk) backlash.
 
         Args:
             mechanism: for zk/zs.
             stiffness: of branches and shaft.
-            ring_turn: dψ, rad, of one ring gear against the other; either way.
+            ring_turn: dψ, rad, of one ring gear against the other, in either direction.
             backlash: play of the output at a ring turn of 0, rad.
         """
         ratio = mechanism.ring_teeth / mechanism.satellite_teeth
@@ -198,12 +198,12 @@ class Preload:
 
     @classmethod
     def from_torque(cls, stiffness: Stiffness, torque: float) -> Self:
-        """The preload of a wanted T0, N·m, not negative."""
+        """The preload with the torque T0, N·m, ≥ 0."""
         return cls(stiffness, _not_negative('preload', torque) * stiffness.compliance)
 
     @classmethod
     def from_limit(cls, stiffness: Stiffness, limit: float) -> Self:
-        """The least preload with both branches in mesh while abs(M) < `limit`, N·m, ≥ 0."""
+        """The least preload that keeps both branches in mesh while abs(M) < `limit`, N·m, ≥ 0."""
         softer = max(stiffness.compliance_a, stiffness.compliance_b)
         return cls(stiffness, _not_negative('threshold', limit) * softer)
 
@@ -214,12 +214,12 @@ class Preload:
 
     @property
     def torque(self) -> float:
-        """T0, N·m: in both branches without a load; 0 if there is play."""
-        return self._wound_up / self.stiffness.compliance
+        """T0, N·m, in both branches without load; 0 if there is play."""
+        return self._twist / self.stiffness.compliance
 
     @property
     def play(self) -> float:
-        """By how much the output turns freely, rad; 0 if there is preload."""
+        """Angle by which the output turns freely, rad; 0 if there is preload."""
         return max(-self.interference, 0.0)
 
     @property
@@ -241,7 +241,7 @@ class Preload:
         """Split an external torque between the branches.
 
         T_A is the greatest of T0 - kAe M/(kAe + kB), -M and 0, which are its values with both in
-        mesh, without B and without A; likewise T_B of T0 + kB M/(kAe + kB), M and 0.
+        mesh, with A alone and with B alone; likewise T_B of T0 + kB M/(kAe + kB), M and 0.
 
         Args:
             load: M at arm B, N·m; any shape.
@@ -261,14 +261,14 @@ class Preload:
         return TorqueSplit(branch_a + 0.0, branch_b + 0.0, elastic + free + 0.0)  # no -0.0
 
     @property
-    def _wound_up(self) -> float:
+    def _twist(self) -> float:
         return max(self.interference, 0.0)
 
     def _load_at(self, compliance: float) -> float:
-        """The load that winds a path up by the interference."""
-        if self._wound_up == 0.0:
+        """The load that twists a part of this compliance by the interference."""
+        if self._twist == 0.0:
             return 0.0
-        return self._wound_up / compliance if compliance else math.inf
+        return self._twist / compliance if compliance else math.inf
 
 
 def _not_negative(name: str, value: float) -> float:

@@ -1,8 +1,8 @@
 """The rotor's position as whole turns and an angle within the turn, which never loses precision.
 
 A float64 angle of 10^10 turns has a spacing of 7.6e-6 rad. An integer turn count beside an angle
-within [-π, π] keeps its last bits however long the motor runs, and it is all the kinematics needs:
-the positions of the bodies repeat with the turns of the rotor.
+within [-π, π] keeps full precision however long the motor runs, and suffices for the kinematics:
+the positions of the bodies are periodic in the turns of the rotor.
 """
 
 import math
@@ -14,16 +14,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 TURN = 2.0 * math.pi
-TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: what the float64 leaves out
+TURN_TAIL = 2.4492935982947064e-16  # 2π - TURN: the rounding error of TURN
 LARGEST_ANGLE = 2**51 * TURN
-"""rad. Up to here `split_turns` finds the turn: the two roundings of its quotient, of up to 2^51
-turns, are at most 3/8 of a turn together, less than the half that rounding to the nearest allows.
-And up to here a float64 tells where in the turn an angle is: its spacing is 2 rad, and from
-2^54 rad = 1.8e16 rad on 4 rad, more than half a turn."""
+"""rad. Up to this angle, 2^51 turns, `split_turns` finds the right turn: the two roundings of its
+quotient add up to at most 3/8 of a turn, less than the half that rounding to the nearest allows.
+The spacing of float64 is at most 2 rad here; from 2^54 rad = 1.8e16 rad on it is 4 rad, more than
+half a turn, so that an angle within the turn has no meaning."""
 MOST_TURNS = 2**52
-"""With the turns of an angle up to `LARGEST_ANGLE` they make a whole number below 2^53, which a
-float64 holds exactly."""
-_MANY = 2**25  # turns: up to so many, their products with either part of TURN fit into 53 bits
+"""Added to the turns of an angle up to `LARGEST_ANGLE`, these stay below 2^53, up to which a
+float64 holds every integer exactly."""
+_MANY = 2**25  # turns; the products of fewer with _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
 
@@ -43,32 +43,32 @@ def split_turns(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArra
 def split_turns(angle: Any) -> Any:
     """Split an angle into the nearest whole turns and the rest in [-π, π], both exact.
 
-    Exact means: of 2π itself, not of its float64; the rest is rounded once. Near half a turn it
-    can exceed π by what the float64 of so many turns leaves out.
+    Exact with respect to 2π itself, not to its float64; the rest is rounded once. Near half a turn
+    it can exceed π by the rounding error of TURN times the number of turns.
 
     Args:
         angle: rad, up to ±`LARGEST_ANGLE`; a float, or an array of any shape.
 
     Returns:
         Turns (an int; for arrays whole numbers as float64) and the rest in rad. In arrays both
-        are NaN for any other angle.
+        are NaN where an angle is not finite or too large.
 
     Raises:
-        ValueError: if a float is any other angle.
+        ValueError: if a float angle is not finite or too large.
     """
     xp: ModuleType
     if isinstance(angle, np.ndarray):
         xp = np
-        inside = np.abs(angle) <= LARGEST_ANGLE  # NaN compares false
-        if not inside.all():
-            angle = np.where(inside, angle, np.nan)
+        in_range = np.abs(angle) <= LARGEST_ANGLE  # NaN compares false
+        if not in_range.all():
+            angle = np.where(in_range, angle, np.nan)
     else:
         xp = math
         if not abs(angle) <= LARGEST_ANGLE:
             raise ValueError(f'an angle is at most {LARGEST_ANGLE:g} rad, not {angle:g}')
-    # All is exact here. fmod alone would do, but is slow where it takes something off.
+    # Every step is exact. fmod by TURN alone would do, but is slow for angles beyond a turn.
     rest = xp.fmod(angle, _MANY * TURN)
-    whole = xp.floor(rest / TURN + 0.5)  # rounded: one turn more may have to be taken off
+    whole = xp.floor(rest / TURN + 0.5)  # off by one at most, by rounding
     rest = rest - whole * _TURN_HIGH - whole * _TURN_LOW
     rest = rest - TURN * xp.floor(rest / TURN + 0.5)
     turns = xp.floor((angle - rest) / TURN + 0.5)
@@ -76,29 +76,29 @@ def split_turns(angle: Any) -> Any:
 
 
 def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
-    """Take numbers of turns as float64.
+    """Convert numbers of turns to float64.
 
     Raises:
-        ValueError: if one is no integer up to ±`MOST_TURNS`.
+        ValueError: if one is not an integer up to ±`MOST_TURNS`.
     """
     array = np.asarray(turns, np.float64)
-    # What is not finite leaves NaN, which counts as true.
+    # Values that are not finite give NaN, which is true.
     if np.fmod(array, 1.0).any() or np.abs(array).max(initial=0.0) > MOST_TURNS:
         given = np.array2string(array, threshold=4)
         raise ValueError(f'rotor_turns must be integers up to ±2^52, not {given}')
     return array
 
 
-_split_zero = lru_cache(maxsize=1)(split_turns)  # the same for many samples
+_split_zero = lru_cache(maxsize=1)(split_turns)  # the zero rarely changes
 
 
 class RotorTurns:
     """Follows the rotor's encoder and counts its whole turns.
 
-    A multi-turn encoder is taken at its word. The position of a single-turn encoder wraps once a
-    turn and is unwrapped here; `referenced` then tells whether the number of turns is known: it
-    is not at the start, nor after a gap in which the rotor could have turned half a turn or more
-    either way from where it is expected, and it is known again after `home`. Meanwhile counting
+    The position of a multi-turn encoder is used as it is. That of a single-turn encoder wraps once
+    a turn and is unwrapped here; `referenced` then tells whether the number of turns is known. It
+    is unknown at the start, and after a gap in which the rotor could have turned half a turn or
+    more either way from its expected angle; `home` makes it known. While it is unknown, counting
     goes on from the nearest turn.
     """
 
@@ -107,8 +107,8 @@ class RotorTurns:
 
         Args:
             single_turn: whether the encoder's position wraps once a turn.
-            max_speed: rad/s, the fastest that the rotor can turn.
-            max_acceleration: rad/s², the fastest that its speed can change.
+            max_speed: rad/s, the greatest speed of the rotor.
+            max_acceleration: rad/s², the greatest acceleration of the rotor.
         """
         self.single_turn = single_turn
         self.max_speed = max_speed
@@ -117,7 +117,7 @@ class RotorTurns:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the position and the turns: the next update is the first again."""
+        """Forget the position and the turns; the next update counts as the first."""
         self.position: RotorPosition | None = None
         self.referenced = not self.single_turn
         self._reading = 0.0
@@ -125,12 +125,12 @@ class RotorTurns:
         self._velocity: float | None = None
 
     def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
-        """Take the encoder's next sample.
+        """Process the encoder's next sample.
 
         Args:
             position: rad, up to ±`LARGEST_ANGLE`; of a single-turn encoder in any range.
             stamp: ns, not earlier than the last.
-            velocity: rad/s, or None where it is not known.
+            velocity: rad/s, or None if unknown.
         """
         split = split_turns(position)
         if self.single_turn and self.position is not None:
@@ -144,10 +144,10 @@ class RotorTurns:
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
     def _expected_turn(self, elapsed: float, velocity: float | None) -> tuple[float, bool]:
-        """Where within the gap's reachable angles the rotor is expected, and whether one fits.
+        """Expected turn of the rotor in a gap, rad, and whether only one turn count is possible.
 
-        Within `elapsed` the rotor reaches at most ±max_speed·elapsed. Where that leaves a doubt,
-        the speeds v0 and v1 at both ends narrow it: with accelerations of at most A, the angle is
+        Within `elapsed` the rotor reaches at most ±max_speed·elapsed. Where that is ambiguous,
+        the speeds v0 and v1 at both ends narrow it: with accelerations of at most A, the turn is
         (v0 + v1)/2·elapsed ± (A·elapsed²/4 - (v1 - v0)²/(4 A)).
         """
         reach = self.max_speed * elapsed
@@ -155,7 +155,7 @@ class RotorTurns:
         if reach >= math.pi and velocity is not None and self._velocity is not None:
             change = velocity - self._velocity
             middle = 0.5 * (velocity + self._velocity) * elapsed
-            # Products, since a power that overflows raises.
+            # Products, because ** raises on overflow.
             spread = self.max_acceleration * elapsed * elapsed / 4.0
             spread -= change * change / (4.0 * self.max_acceleration)
             if spread >= 0.0 and abs(middle) <= reach:  # else the limits or the speeds are wrong
@@ -163,7 +163,7 @@ class RotorTurns:
         return 0.5 * (low + high), high - low < TURN
 
     def relative_to(self, zero: float, direction: int) -> RotorPosition:
-        """Give the rotor angle φ2 = direction·(position - zero), with no loss to cancellation.
+        """Return the rotor angle φ2 = direction·(position - zero), without cancellation.
 
         Raises:
             RuntimeError: before the first update.
@@ -173,16 +173,16 @@ class RotorTurns:
         return RotorPosition(direction * (turns - zero_turns), direction * (angle - zero_angle))
 
     def home(self, rotor_angle: float, direction: int) -> float:
-        """Declare that the rotor angle φ2 is `rotor_angle` now: the turns are known from here.
+        """Declare that the rotor angle φ2 is `rotor_angle` now; the turns are known from now on.
 
         Returns:
-            The zero that `relative_to` gives `rotor_angle` with, at the present position.
+            The zero with which `relative_to` gives `rotor_angle` at the present position.
 
         Raises:
             RuntimeError: before the first update.
         """
         self._known_position()
-        # The turns that a single-turn encoder has made so far do not matter any more.
+        # Drop the turns counted so far for a single-turn encoder.
         self.position = split_turns(self._reading)
         self.referenced = True
         return self._reading - direction * rotor_angle

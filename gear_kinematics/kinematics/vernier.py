@@ -1,14 +1,14 @@
 """The vernier of pin holes that fixes a ring gear in the chassis and sets the preload.
 
 A ring gear has zk teeth and zk + 1 pin holes, the chassis zk + 2 holes; one pin goes through a
-ring hole and a chassis hole. Seen against the z axis, teeth and chassis holes count anticlockwise
-from the zero marks of ring gear and chassis, ring holes clockwise. A setting puts its tooth, in
-turns anticlockwise from the chassis's zero mark, at
+ring hole and a chassis hole. Seen against the z axis, teeth and chassis holes are numbered
+anticlockwise from the zero marks of ring gear and chassis, ring holes clockwise. A setting puts
+its tooth, in turns anticlockwise from the chassis's zero mark, at
 
     tooth/zk + ring_hole/(zk + 1) + chassis_hole/(zk + 2)      (mod 1)
 
-which is the turn of the tooth profile: teeth are alike, and what meshes is where they stand.
-Turns are exact fractions of a whole turn here; angles in rad are rounded once.
+which is the turn of the tooth profile, as all teeth are alike. Turns are exact fractions of a
+whole turn here; angles in rad are rounded once.
 """
 
 import math
@@ -21,7 +21,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN, TURN_TAIL
 
 @dataclass(frozen=True, slots=True)
 class PinSetting:
-    """Which tooth and holes are brought together, and the turn of the tooth profile it gives."""
+    """A tooth, the two holes that share the pin, and the resulting turn of the tooth profile."""
 
     tooth: int
     """0 ... zk - 1."""
@@ -30,9 +30,9 @@ class PinSetting:
     chassis_hole: int
     """0 ... zk + 1."""
     body_turn: Fraction
-    """The turn of the ring gear's body, whole turns in [0, 1): what the two holes give."""
+    """The turn of the ring gear's body, in whole turns, [0, 1): that of the two holes."""
     turn: Fraction
-    """The turn of its tooth profile, whole turns in [0, 1): the tooth's place in the body more."""
+    """The turn of its tooth profile, in whole turns, [0, 1): `body_turn` + tooth/zk."""
 
     def __str__(self) -> str:
         holes = f'ring hole {self.ring_hole} in chassis hole {self.chassis_hole}'
@@ -45,19 +45,19 @@ class PinSetting:
 
 
 class Choice(NamedTuple):
-    """A position that the vernier can hold, beside a wanted one."""
+    """A position of the vernier, compared with a wanted one."""
 
     steps: int
-    """Positions on from the nearest."""
+    """Signed number of positions from the nearest one."""
     settings: tuple[PinSetting, ...]
-    """Those that give it: for even zk two, with bodies half a turn apart, else one.
+    """The settings of this position: for even zk two, with bodies half a turn apart, else one.
 
-    The one that takes less turning of the ring's body comes first.
+    The one that turns the ring's body less comes first.
     """
     ring_turn: float
-    """What it turns the tooth profile by, rad."""
+    """Turn of the tooth profile, rad."""
     error: float
-    """By how much that is more than wanted, rad."""
+    """`ring_turn` minus the wanted turn, rad."""
 
 
 def combinations(ring_teeth: int) -> int:
@@ -66,12 +66,12 @@ def combinations(ring_teeth: int) -> int:
 
 
 def distinct_positions(ring_teeth: int) -> int:
-    """lcm(zk, zk + 1, zk + 2): positions that differ; n/2 for even zk, n for odd."""
+    """lcm(zk, zk + 1, zk + 2): distinct tooth positions; n/2 for even zk, n for odd."""
     return math.lcm(ring_teeth, ring_teeth + 1, ring_teeth + 2)
 
 
 def ring_body_positions(ring_teeth: int) -> int:
-    """(zk + 1)(zk + 2): positions of the ring's body, each tooth apart; they all differ."""
+    """(zk + 1)(zk + 2): positions of the ring gear's body, all distinct."""
     return (ring_teeth + 1) * (ring_teeth + 2)
 
 
@@ -81,7 +81,7 @@ def step(ring_teeth: int) -> float:
 
 
 def turns(angle: float) -> Fraction:
-    """An angle in rad as whole turns, of 2π itself and not of its float64.
+    """Convert an angle, rad, to turns of 2π itself, not of its float64.
 
     Raises:
         ValueError: if `angle` is not finite.
@@ -92,7 +92,7 @@ def turns(angle: float) -> Fraction:
 
 
 def angle_between(start: Fraction, end: Fraction) -> float:
-    """The angle from one turn to another the short way round, rad in [-π, π)."""
+    """The shorter angle from one turn to another, rad in [-π, π)."""
     apart = (end - start + Fraction(1, 2)) % 1 - Fraction(1, 2)
     return TURN * float(apart)
 
@@ -127,9 +127,9 @@ def choices(
 
     Args:
         ring_teeth: zk, at least 1.
-        ring_turn: what the tooth profile should turn by, rad.
-        start: where it turns from; without it, where tooth and holes 0 are together.
-        neighbours: how many positions to give on either side.
+        ring_turn: wanted turn of the tooth profile, rad.
+        start: setting before the turn; by default that of tooth 0 and the holes 0.
+        neighbours: number of positions to return on either side.
 
     Raises:
         ValueError: if `ring_turn` is not finite or `ring_teeth` less than 1.
@@ -162,9 +162,9 @@ def nearest_setting(ring_teeth: int, angle: float) -> PinSetting:
 def _settings_at(ring_teeth: int, position: int) -> tuple[PinSetting, ...]:
     """Solve tooth/zk + ring_hole/(zk+1) + chassis_hole/(zk+2) ≡ position/lcm (mod 1).
 
-    Modulo zk + 1 only the ring hole remains. What is left over is a multiple of zk + 1 and splits
-    between tooth and chassis hole: zk/2 and zk/2 + 1 differ by 1, zk and zk + 2 by 2. For even zk
-    both can go half a turn on, which is a whole turn together.
+    Modulo zk + 1 only the ring hole remains. The rest is a multiple of zk + 1 and splits between
+    tooth and chassis hole: zk/2 and zk/2 + 1 differ by 1, zk and zk + 2 by 2. For even zk, tooth
+    and chassis hole can both move on by half a turn, together a whole turn.
     """
     holes_ring, holes_chassis = ring_teeth + 1, ring_teeth + 2
     lcm = distinct_positions(ring_teeth)

@@ -330,9 +330,7 @@ def test_branches_that_cannot_be_braced_are_refused(count, tmp_path, capsys):
     config.write_text(f'/**:\n  ros__parameters:\n    branches: [{names}]\n')
     for command in (['index', '--phase-b'], ['preload', '--angle', '0.001', *SOFT]):
         assert main([*command, '--config', str(config)]) == 2
-        assert (
-            f'two branches are braced against each other, not {count}' in capsys.readouterr().err
-        )
+        assert f'exactly two branches are needed, not {count}' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize('command', ['index', 'preload'])

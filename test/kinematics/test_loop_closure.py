@@ -1,4 +1,4 @@
-"""Loop closure: the residual sees what is wrong, the Jacobian is right, the mobility is one."""
+"""Loop closure: the residual detects faults, the Jacobian is right, the mobility is one."""
 
 import math
 from dataclasses import replace
@@ -40,7 +40,7 @@ def coordinates(mechanism, angle) -> np.ndarray:
 
 
 def constraints(mechanism, bodies, start) -> np.ndarray:
-    """How far bodies at any place are from satisfying each joint, in the order of the rows.
+    """Residuals of the joints for bodies at arbitrary places, in the order of the rows.
 
     Written from what the joints demand, without derivatives. The satellites roll from `start`.
     """
@@ -84,7 +84,7 @@ def test_loops_of_both_methods_close(mechanism, values):
 )
 @pytest.mark.parametrize('branch', [0, 1])
 def test_residual_is_the_size_of_the_fault(actuator, field, shape, branch):
-    """A fault of 1 µm in any position of one branch shows there and only there."""
+    """A fault of 1 µm in any position of one branch shows in that branch alone."""
     state = motion.solve(actuator, ANGLES)
     fault = np.zeros((ANGLES.size, 2, *shape))
     fault[:, branch] = 1e-6 / math.sqrt(math.prod(shape) * len(shape) or 1)
@@ -93,13 +93,13 @@ def test_residual_is_the_size_of_the_fault(actuator, field, shape, branch):
     assert largest(gaps[:, 1 - branch]) < 1e-17
 
 
-def test_residual_sees_a_wrong_rotor_angle(actuator):
+def test_residual_detects_a_wrong_rotor_angle(actuator):
     """The satellite's centre is off by e times the angle, to first order."""
     gaps = residual(actuator, ANGLES + 1e-6, motion.solve(actuator, ANGLES))
     assert np.all(gaps >= 0.999e-6 * actuator.eccentricity)
 
 
-def test_residual_of_what_is_not_finite_is_not_small(actuator):
+def test_residual_of_a_state_that_is_not_finite_is_not_small(actuator):
     assert np.all(np.isnan(residual(actuator, 0.5, motion.solve(actuator, math.nan))))
 
 
@@ -115,7 +115,7 @@ def test_rank_is_one_less_than_the_columns_at_every_rotor_angle(count, rows, col
     mechanism = with_branches(count)
     jacobian = constraint_jacobian(mechanism, ANGLES)
     assert jacobian.shape == (ANGLES.size, rows, columns)
-    # By the gap in the singular values, not by the tolerance of a library.
+    # Rank by the gap in the singular values, not by the tolerance of a library.
     values = np.linalg.svd(jacobian, compute_uv=False)
     assert np.min(values[:, rank - 1]) > 1e-3
     assert np.max(values[:, rank:], initial=0.0) < 1e-13

@@ -65,7 +65,7 @@ def test_turn_angle_is_within_half_a_turn(mechanism, angles):
 
 
 @given(mechanisms(), motions())
-def test_batches_are_what_samples_are_one_by_one(mechanism, values):
+def test_batches_equal_single_samples(mechanism, values):
     state = matrix_method.solve(mechanism, *values)
     fastest = 1.0 + speed_up(mechanism) * 100.0
     for index in np.ndindex(values[0].shape):

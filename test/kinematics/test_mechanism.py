@@ -105,18 +105,18 @@ def test_every_fault_is_listed_at_once(arguments, faults):
 
 
 @pytest.mark.parametrize('name', ['', '_a', '1', 'a b', 'a-b', 'a.b', 'ä', 'a/b', 'a\n', 3, None])
-def test_branch_names_that_make_no_frame_names_are_refused(name):
+def test_names_unfit_for_frames_are_refused(name):
     with pytest.raises(MechanismError) as caught:
         Mechanism(80, 76, 1e-3, (Branch(name),))
     assert list(caught.value.faults) == [NAMES + repr(name)]
 
 
 @pytest.mark.parametrize('name', ['a', 'B', 'left_2', 'a_', 'b1'])
-def test_branch_names_that_make_frame_names_are_accepted(name):
+def test_names_fit_for_frames_are_accepted(name):
     assert Mechanism(80, 76, 1e-3, (Branch(name),)).branches[0].name == name
 
 
-def test_numpy_numbers_and_lists_become_plain():
+def test_numpy_numbers_and_lists_become_plain_types():
     plain = Mechanism(80, 76, 0.5, (Branch('a', 1.0, 2.0),))
     mechanism = Mechanism(
         np.int64(80), np.uint8(76), np.float32(0.5), [Branch('a', np.float64(1.0), 2)]
@@ -168,7 +168,7 @@ def test_mapping_refuses_branches_that_are_no_list(names):
     assert caught.value.faults == (f'branches must be a list of names, not {names!r}',)
 
 
-def test_mapping_passes_every_fault_on():
+def test_mapping_reports_every_fault():
     with pytest.raises(MechanismError) as caught:
         Mechanism.from_mapping(
             {
@@ -221,7 +221,7 @@ def test_rotor_angle_turns_the_shaft_to_the_output_angle(mechanism, output_angle
     assert_close(solve(mechanism, rotor_angle).output_angle, output_angle, 1e-12)
 
 
-def test_petals_are_the_tips_that_the_coupling_reaches():
+def test_petals_are_the_tips_of_the_path_of_the_coupling():
     """Count the places at distance e on the whole path, for every pair of small tooth numbers."""
     for ring_teeth in range(2, 19):
         for satellite_teeth in range(1, ring_teeth):
@@ -235,8 +235,8 @@ def test_petals_are_the_tips_that_the_coupling_reaches():
             assert mechanism.oldham_petals == len(places)
 
 
-def test_a_cycle_is_the_fewest_turns_after_which_all_is_as_it_was():
-    """Of the rotor; counted for every pair of small tooth numbers, the output by its teeth."""
+def test_a_cycle_is_the_fewest_turns_after_which_positions_repeat():
+    """Counted in rotor turns, for every pair of small tooth numbers."""
     for ring_teeth in range(2, 30):
         for satellite_teeth in range(1, ring_teeth):
             teeth = ring_teeth - satellite_teeth
@@ -246,7 +246,7 @@ def test_a_cycle_is_the_fewest_turns_after_which_all_is_as_it_was():
 
 @given(mechanisms(max_branches=1), st.floats(-10.0, 10.0), st.floats(-100.0, 100.0))
 def test_satellite_rolls_on_the_ring_gear_without_slip(mechanism, angle, velocity):
-    """Where the rolling circles touch, the satellite's material stands still."""
+    """Where the rolling circles touch, the satellite has no velocity."""
     state = solve(mechanism, angle, velocity)
     e = mechanism.eccentricity
     centre = state.satellite_centre[0]

@@ -41,7 +41,7 @@ LARGEST_ANGLE = 2.0 * math.pi * MOST_TURNS
 
 
 def test_hand_computed_motion():
-    """Teeth 4 and 3, rotor at 90°: θ = 90°, φ5 = -30°, β = 120°; speeds by eqs. of the page."""
+    """Teeth 4 and 3, rotor at 90°: θ = 90°, φ5 = -30°, β = 120°; speeds by the derivatives."""
     half, root = 0.5, math.sqrt(0.75)
     state = solve(Mechanism(4, 3, 2.0, (Branch('a'),)), math.pi / 2.0, 3.0, 6.0)
     tolerance = 1e-14
@@ -68,7 +68,7 @@ def test_positions_agree_with_the_oracle(mechanism, angles):
 @given(mechanisms(), samples(1.0))
 @example(Mechanism(80, 76, 1e-3, (Branch('a'),)), np.array([1.0, -1.0]))
 def test_positions_lose_nothing_at_any_float_angle(mechanism, shares):
-    """Up to 2^51 turns of whatever turns fastest."""
+    """Up to 2^51 turns of the fastest body."""
     angles = shares * 2.0 * math.pi * MOST_TURNS / speed_up(mechanism)
     state = solve(mechanism, angles)
     exact = [oracle.rotor_angle_of(angle) for angle in angles.flat]
@@ -138,7 +138,7 @@ def test_rates_agree_with_the_oracle(mechanism, angle, velocity, acceleration):
 
 @given(mechanisms(), motions())
 @example(Mechanism(161, 160, 1.0, (Branch('a', 1.0),)), (np.array(1.0),) * 3)
-def test_rates_are_the_derivatives_of_what_they_claim(mechanism, motion):
+def test_rates_are_the_derivatives_of_the_positions(mechanism, motion):
     """Central differences along a uniformly accelerated motion, at steps of 1e-4 rad at most."""
     angle, velocity, acceleration = motion
     ratio = speed_up(mechanism)
@@ -183,7 +183,7 @@ def test_satellites_circle_at_the_eccentricity(mechanism, angles):
 
 
 @given(mechanisms(), samples(1e6))
-def test_couplings_see_the_eccentricity_under_a_right_angle(mechanism, angles):
+def test_couplings_are_on_the_circle_over_the_eccentricity(mechanism, angles):
     """O4 is on the circle whose diameter is O1-O3: O4·(O4 - O3) = 0."""
     state = solve(mechanism, angles)
     to_stator = state.oldham_centre
@@ -239,8 +239,8 @@ def test_motion_repeats_after_as_many_turns_as_satellite_teeth(mechanism, motion
 
 
 @given(mechanisms())
-def test_motion_does_not_repeat_before(mechanism):
-    """A turn of the rotor leaves the shaft at a place of its own, q of them in all."""
+def test_motion_does_not_repeat_earlier(mechanism):
+    """Each turn of the rotor leaves the shaft at a different place, at q places in all."""
     q = mechanism.satellite_teeth // math.gcd(mechanism.ring_teeth, mechanism.satellite_teeth)
     angles = solve(mechanism, 0.0, rotor_turns=np.arange(q)).output_turn_angle
     places = np.sort(np.mod(np.rint(angles * q / (2.0 * math.pi)), q))
@@ -257,7 +257,7 @@ def test_turn_angle_is_the_angle_less_whole_turns(mechanism, angles):
 
 
 @given(mechanisms(), motions(angle=1e6))
-def test_batches_are_what_samples_are_one_by_one(mechanism, motion):
+def test_batches_equal_single_samples(mechanism, motion):
     state = solve(mechanism, *motion)
     for index in np.ndindex(motion[0].shape):
         single = solve(mechanism, *(values[index] for values in motion))
@@ -265,7 +265,7 @@ def test_batches_are_what_samples_are_one_by_one(mechanism, motion):
         assert_same(single, at_index)
 
 
-def test_batches_longer_than_a_chunk_are_what_their_parts_are(actuator):
+def test_batches_longer_than_a_chunk_equal_their_parts(actuator):
     generator = np.random.default_rng(2)
     motion = generator.uniform(-1e3, 1e3, (3, 20_001))
     state = solve(actuator, *motion)
@@ -428,7 +428,7 @@ def test_turns_of_batches_and_floats_agree_to_the_last_bit(angles):
 
 @given(mechanisms(), st.floats(-1.0, 1.0))
 def test_bodies_are_in_their_places_up_to_the_largest_angle(mechanism, share):
-    """Of the rotor, however much faster the output turns; its total is a float64 of more turns."""
+    """The largest angle is one of the rotor, even if the output turns faster."""
     angle = share * LARGEST_ANGLE
     state = solve(mechanism, angle)
     errors = position_errors(state, mechanism, [oracle.rotor_angle_of(angle)])
@@ -464,7 +464,7 @@ def test_angles_beyond_the_largest_give_nan(actuator, beyond, sign):
     ],
 )
 @SOLVERS
-def test_turns_that_are_no_integers_are_refused(actuator, solver, turns, given_turns):
+def test_turns_that_are_not_integers_are_refused(actuator, solver, turns, given_turns):
     wanted = f'rotor_turns must be integers up to ±2^52, not {given_turns}'
     with pytest.raises(ValueError, match=f'^{re.escape(wanted)}$'):
         solver(actuator, np.zeros(np.shape(turns)), rotor_turns=turns)
@@ -485,7 +485,7 @@ def test_closed_form_is_made_once_for_a_mechanism(actuator):
 
 
 def test_comparisons_refuse_nan(actuator):
-    """The helpers of these tests: what is NaN is neither close nor within a tolerance."""
+    """For the helpers of these tests, NaN is neither close nor within a tolerance."""
     with pytest.raises(AssertionError):
         assert_close([math.nan, 0.0], [0.0, 0.0], 1.0)
     with pytest.raises(AssertionError):

@@ -27,7 +27,7 @@ stiffness_triples = st.builds(Stiffness, stiffnesses, stiffnesses, stiffnesses)
 
 
 def either_way(least: float, most: float):
-    """Draw 0 or a magnitude far above where products lose their bits, of either sign."""
+    """Draw 0, or a number of either sign whose products do not underflow."""
     return st.just(0.0) | st.floats(least, most) | st.floats(-most, -least)
 
 
@@ -42,7 +42,7 @@ def equilibrium(stiffness: Stiffness, interference: float, load: float) -> tuple
     closed, M = Fraction(interference), Fraction(load)
     solutions = set()
     for in_a, in_b in product((1, 0), (1, 0)):
-        # [kA + ks, -ks; -ks, ks + kB] [a; b] = [kA interference; M], without what does not touch
+        # [kA + ks, -ks; -ks, ks + kB] [a; b] = [kA interference; M], kA or kB 0 out of mesh
         k11, k22 = in_a * kA + ks, in_b * kB + ks
         if not (determinant := k11 * k22 - ks * ks):
             continue
@@ -55,7 +55,7 @@ def equilibrium(stiffness: Stiffness, interference: float, load: float) -> tuple
 
 
 def unloaded(stiffness: Stiffness, interference: float) -> Fraction:
-    """Where arm B is without a load: in its play, in the middle."""
+    """Position of arm B without load; with play, its middle."""
     if interference <= 0.0:
         return Fraction(interference) / 2
     return equilibrium(stiffness, interference, 0.0)[2]
@@ -67,7 +67,7 @@ def unloaded(stiffness: Stiffness, interference: float) -> Fraction:
     relative=st.lists(either_way(1e-9, 3.0), min_size=1, max_size=6),
 )
 def test_split_is_the_equilibrium_of_unilateral_contacts(stiffness, interference, relative):
-    """Loads inside the thresholds and far beyond, both ways, with preload and with play."""
+    """Loads of both signs, within the thresholds and far beyond, with preload and with play."""
     preload = Preload(stiffness, interference)
     scale = max(preload.threshold_a, -preload.threshold_b) or 1.0
     loads = np.array([scale * part for part in relative])
@@ -100,13 +100,13 @@ def test_a_branch_leaves_mesh_at_its_threshold(stiffness, interference):
 
 
 @given(stiffness=stiffness_triples, interference=st.floats(1e-6, 0.1))
-def test_stiffness_is_the_slope_inside_and_beyond(stiffness, interference):
+def test_stiffness_is_the_slope_within_and_beyond_the_thresholds(stiffness, interference):
     preload = Preload(stiffness, interference)
     a, b = preload.threshold_a, preload.threshold_b
     for start, end, expected in (
-        (b / 2, a / 2, stiffness.inside),
-        (2 * a, 3 * a, stiffness.without_a),
-        (3 * b, 2 * b, stiffness.without_b),
+        (b / 2, a / 2, stiffness.both_in_mesh),
+        (2 * a, 3 * a, stiffness.branch_b_alone),
+        (3 * b, 2 * b, stiffness.branch_a_alone),
     ):
         turns = [equilibrium(stiffness, interference, load)[2] for load in (start, end)]
         slope = (Fraction(end) - Fraction(start)) / (turns[1] - turns[0])
@@ -115,7 +115,7 @@ def test_stiffness_is_the_slope_inside_and_beyond(stiffness, interference):
 
 @given(stiffness=stiffness_triples, interference=st.floats(1e-6, 0.1))
 def test_formulas_are_those_of_the_specification(stiffness, interference):
-    """At 30 digits, with the stiffnesses and not their inverses."""
+    """At 30 digits, from stiffnesses instead of compliances."""
     preload = Preload(stiffness, interference)
     with mpmath.workdps(30):
         kA, kB, ks = map(mpmath.mpf, (stiffness.branch_a, stiffness.branch_b, stiffness.shaft))
@@ -161,12 +161,12 @@ def test_rigid_parts_are_the_limit_of_stiff_ones():
 
 
 def test_a_rigid_branch_at_the_output_takes_every_load_itself():
-    """So that the other one never leaves mesh."""
+    """The other one then never leaves mesh."""
     stiffness = Stiffness(math.inf, math.inf, 1000.0)
     preload = Preload(stiffness, 0.001)
     assert preload.threshold_a == math.inf
     assert preload.limit == -preload.threshold_b == 1.0
-    assert (stiffness.inside, stiffness.without_a, stiffness.without_b) == (
+    assert (stiffness.both_in_mesh, stiffness.branch_b_alone, stiffness.branch_a_alone) == (
         math.inf,
         math.inf,
         1000.0,
@@ -177,7 +177,7 @@ def test_a_rigid_branch_at_the_output_takes_every_load_itself():
         [0.0, 0.0],
     ]
     both_of_a = Stiffness(math.inf, 1000.0, math.inf)
-    assert both_of_a.without_b == math.inf
+    assert both_of_a.branch_a_alone == math.inf
     assert Preload(both_of_a, 0.001).threshold_b == -math.inf
 
 
@@ -187,7 +187,7 @@ def test_a_rigid_branch_at_the_output_takes_every_load_itself():
     stiffness=stiffness_triples,
 )
 def test_preload_begins_where_the_backlash_is_closed(actuator, ring_turn, backlash, stiffness):
-    """Either way; before that, the turn has used up its part of the play."""
+    """In either direction; before, the turn reduces the play."""
     preload = Preload.from_ring_turn(actuator, stiffness, ring_turn, backlash)
     net = abs(Fraction(ring_turn)) - Fraction(76, 80) * Fraction(backlash)
     at_output = float(Fraction(80, 76) * net)
@@ -272,7 +272,7 @@ def test_loads_keep_their_shape(shape):
         ((0.0, -1.0, 5.0), ['branch a must be greater than 0', 'branch b must be greater than 0']),
         ((1.0, 1.0, math.nan), ['shaft must be greater than 0, not nan']),
         ((math.inf, math.inf, math.inf), ['can neither all be rigid']),
-        ((1.0, 1e-320, 1.0), ['nor give way without end']),
+        ((1.0, 1e-320, 1.0), ['nor have infinite compliance']),
     ],
 )
 def test_impossible_stiffnesses_are_refused(values, causes):
@@ -294,7 +294,7 @@ def test_impossible_shafts_are_refused(value, place):
 
 
 @pytest.mark.parametrize('value', [-1e-9, math.inf, math.nan])
-def test_impossible_wishes_are_refused(value, actuator):
+def test_impossible_requests_are_refused(value, actuator):
     stiffness = Stiffness(1.0, 1.0, 1.0)
     for name, wish in (
         ('preload', lambda: Preload.from_torque(stiffness, value)),

@@ -1,4 +1,4 @@
-"""Turns of the rotor: exact splitting, unwrapping, what is known after gaps, and homing."""
+"""Turns of the rotor: exact splitting, unwrapping, gaps, and homing."""
 
 import math
 
@@ -25,7 +25,7 @@ def encoder(*, single_turn=True, max_speed=650.0, max_acceleration=1e5) -> Rotor
 
 
 def reading(angle, low: float = 0.0) -> float:
-    """What a single-turn encoder with the range [low, low + 2π) shows at an exact angle."""
+    """Reading of a single-turn encoder with the range [low, low + 2π) at an exact angle."""
     difference = oracle.mp.mpf(angle) - low
     return float(low + difference - TAU * oracle.mp.floor(difference / TAU))
 
@@ -103,7 +103,7 @@ def test_split_leaves_angles_within_the_turn_alone(angle):
 @pytest.mark.parametrize('turns', [0, 1, 2, 10**5, MANY, 2**45])
 @SIDES
 def test_split_gives_the_nearest_turn(turns, side):
-    """Beside half a turn, nearest by the float64 of 2π, which is short of it by 2.45e-16."""
+    """At half a turn, nearest by the float64 of 2π, which is 2.45e-16 less than 2π."""
     for n in range(turns, turns + 20):
         angle = float(side * TAU * (n + 0.5))
         for _ in range(3):
@@ -115,7 +115,7 @@ def test_split_gives_the_nearest_turn(turns, side):
             angle = math.nextafter(angle, side * math.inf)
 
 
-def test_split_of_what_is_not_finite_is_nan_in_arrays():
+def test_split_of_values_that_are_not_finite_is_nan_in_arrays():
     with np.errstate(invalid='ignore'):
         turns, rest = split_turns(np.array([math.nan, math.inf, -math.inf]))
     assert np.all(np.isnan(turns))
@@ -129,7 +129,7 @@ def test_split_of_what_is_not_finite_is_nan_in_arrays():
     st.sampled_from(RANGES), st.floats(-10.0, 10.0), st.lists(st.floats(-3.1, 3.1), max_size=30)
 )
 def test_unwrapping_follows_every_motion(low, start, steps):
-    """Whatever the range of the encoder, with steps of just less than half a turn either way."""
+    """For any range of the encoder, with steps of just under half a turn in either direction."""
     tracker = homed(start, low, max_speed=3.14)
     truth = oracle.mp.mpf(start)
     origin = exact(tracker.position) - truth
@@ -144,7 +144,7 @@ def test_unwrapping_follows_every_motion(low, start, steps):
 @pytest.mark.parametrize('low', RANGES)
 @SIDES
 def test_unwrapping_through_whole_turns(low, side):
-    """Seven turns at 2.5 rad a step, which is where an unwrapping by half turns gives way."""
+    """Seven turns at 2.5 rad a step, where an unwrapping by half turns fails."""
     tracker = homed(0.1, low)
     start = exact(tracker.position)
     for n in range(1, 18):
@@ -187,8 +187,8 @@ def test_position_is_exact_after_ten_thousand_million_turns(actuator, side):
 @SIDES
 @given(st.floats(0.0, 2.0 * math.pi * MANY))
 @example(2.0 * math.pi * MANY)
-def test_multi_turn_encoder_is_taken_at_its_word(actuator, side, position):
-    """What is lost is what the encoder's own float64 has lost, whatever happened before."""
+def test_multi_turn_position_is_used_as_it_is(actuator, side, position):
+    """To the rounding of the encoder's own float64, whatever happened before."""
     tracker = encoder(single_turn=False)
     for stamp, value in enumerate((0.0, -1e5, side * position)):
         tracker.update(value, stamp)
@@ -217,7 +217,7 @@ def test_multi_turn_encoder_is_taken_at_its_word(actuator, side, position):
 )
 @pytest.mark.parametrize('velocities', [(None, None), (None, 1.0), (1.0, None)], ids=str)
 def test_gaps_of_half_a_turn_leave_the_turns_unknown(max_speed, elapsed, known, velocities):
-    """Without a velocity at both ends nothing narrows what the rotor could have turned."""
+    """Only velocities at both ends could narrow the possible turn."""
     tracker = encoder(max_speed=max_speed, max_acceleration=1e-3)
     tracker.update(0.1, 10**12, velocities[0])
     tracker.home(0.0, 1)
@@ -263,7 +263,7 @@ def test_multi_turn_encoders_know_their_turns_after_any_gap():
 
 
 def reachable(v0: float, v1: float, acceleration: float, elapsed: float, side: int) -> float:
-    """Simulate the farthest way from speed v0 to v1: full acceleration while a return is left."""
+    """Simulate the farthest turn from speed v0 to v1: full acceleration while v1 is in reach."""
     steps = 2000
     dt, speed, way = elapsed / steps, v0, 0.0
     for n in range(steps):
@@ -339,7 +339,7 @@ def test_turns_are_right_as_long_as_they_are_called_known(seed):
     [((150.0, 150.0), 0.1), ((-150.0, -150.0), 0.1), ((0.0, 100.0), 0.1), ((90.0, -90.0), 0.1)],
 )
 def test_velocities_beyond_the_limits_narrow_nothing(speeds, elapsed):
-    """A rotor that is faster, or changes faster, than it can: no way of it is known."""
+    """Nothing is known of a rotor beyond its limits of speed or acceleration."""
     tracker = encoder(max_speed=100.0, max_acceleration=500.0)
     tracker.update(0.0, 0, speeds[0])
     tracker.home(0.0, 1)
@@ -366,8 +366,8 @@ def test_zero_and_direction_lose_nothing(position, zero, direction):
 @pytest.mark.parametrize('single_turn', [True, False], ids=['single', 'multi'])
 @pytest.mark.parametrize('turns', [0, 3, -3, MANY, -MANY])
 @pytest.mark.parametrize('rotor_angle', [0.0, 0.7, -19.0, 1000.0])
-def test_home_makes_the_rotor_angle_what_it_is_told(direction, single_turn, turns, rotor_angle):
-    """And motion goes on from there; a multi-turn encoder keeps its own float64's last bit."""
+def test_home_sets_the_rotor_angle(direction, single_turn, turns, rotor_angle):
+    """Motion goes on from there; a multi-turn encoder keeps the rounding of its own float64."""
     tracker = encoder(single_turn=single_turn)
     start = 2.0 if single_turn else float(2.0 + TAU * turns)
     tracker.update(start, 0)

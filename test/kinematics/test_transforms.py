@@ -1,4 +1,4 @@
-"""The 4×4 transforms: of the group of rigid motions, and the frames of the mechanism."""
+"""The 4×4 transforms: rotations form a group, and the frames of the mechanism."""
 
 import math
 
@@ -95,7 +95,7 @@ def test_frames_agree_with_the_oracle(mechanism, angles):
     chain = frames(mechanism, angles, state.satellite_slide, state.arm_slide)
     numbers, e = numbers_of(mechanism), mechanism.eccentricity
     rounding = 40.0 * EPS * (1.0 + speed_up(mechanism))
-    # Lengths are small beside the axial position, which is not to hide their errors.
+    # The axial position is much greater than the other lengths and must not hide their errors.
     scale = np.ones((4, 4)) * rounding
     scale[:2, 3] *= e
     for index in np.ndindex(angles.shape):

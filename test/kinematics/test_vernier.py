@@ -1,4 +1,4 @@
-"""The vernier of pin holes: counts by brute force, and the nearest setting truly nearest."""
+"""The vernier of pin holes: counts and nearest settings by brute force."""
 
 import math
 import sys
@@ -27,7 +27,7 @@ SMALL = range(1, 13)
 
 
 def turn_of(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> Fraction:
-    """What a setting turns the ring gear's profile by, in whole turns, from first principles."""
+    """Turn of the ring gear's profile by a setting, in whole turns, from first principles."""
     return (
         Fraction(tooth, ring_teeth)
         + Fraction(ring_hole, ring_teeth + 1)
@@ -48,14 +48,14 @@ def fraction(value: Fraction) -> mpmath.mpf:
 
 
 def cost_of_choices(ring_teeth: int) -> tuple[int, int]:
-    """Count the calls of finding a setting and seven neighbours, and the bytes at their peak."""
+    """Count the calls for a setting and its seven neighbours, and the peak of their memory."""
     calls = 0
 
     def count(_frame, event, _argument) -> None:
         nonlocal calls
         calls += event in {'call', 'c_call'}
 
-    choices(ring_teeth, 1.0)  # what is made once only
+    choices(ring_teeth, 1.0)  # warms the caches
     tracemalloc.start()
     previous = sys.getprofile()
     sys.setprofile(count)
@@ -69,7 +69,7 @@ def cost_of_choices(ring_teeth: int) -> tuple[int, int]:
 
 
 def apart(angle: float, turn: Fraction) -> mpmath.mpf:
-    """How far a setting is from an angle, rad, at 30 digits and the short way round."""
+    """Shorter angle between a setting and an angle, rad, at 30 digits."""
     with mpmath.workdps(30):
         whole = mpmath.mpf(angle) / (2 * mpmath.pi) - mpmath.mpf(turn.numerator) / turn.denominator
         return 2 * mpmath.pi * abs(whole - mpmath.nint(whole))
@@ -95,7 +95,7 @@ def test_numbers_of_the_specification():
 
 
 @pytest.mark.parametrize('ring_teeth', SMALL)
-def test_counts_are_what_counting_gives(ring_teeth):
+def test_counts_agree_with_enumeration(ring_teeth):
     turns = every_turn(ring_teeth)
     positions = sorted(set(turns))
     assert combinations(ring_teeth) == len(turns)
@@ -108,7 +108,7 @@ def test_counts_are_what_counting_gives(ring_teeth):
 
 @pytest.mark.parametrize('ring_teeth', SMALL)
 def test_every_position_is_reached_from_its_own_angle(ring_teeth):
-    """Also from angles by whole turns away, either way."""
+    """Also with whole turns added or subtracted."""
     for turn in set(every_turn(ring_teeth)):
         for whole in (-2, -1, 0, 1, 3):
             setting = nearest_setting(ring_teeth, 2.0 * math.pi * (float(turn) + whole))
@@ -118,7 +118,7 @@ def test_every_position_is_reached_from_its_own_angle(ring_teeth):
 
 @pytest.mark.parametrize('ring_teeth', SMALL)
 def test_nearest_is_nearest_of_all(ring_teeth):
-    """On both sides of every middle between two positions, the wrap-around included."""
+    """On both sides of each midpoint between positions, including the wrap-around."""
     positions = sorted(set(every_turn(ring_teeth)))
     gap = step(ring_teeth)
     for n, turn in enumerate(positions):
@@ -170,7 +170,7 @@ def test_half_steps_of_the_paper_are_enough_for_every_angle():
         (80, -math.inf, 'finite, not -inf rad'),
     ],
 )
-def test_what_has_no_setting_is_refused(ring_teeth, angle, cause):
+def test_impossible_arguments_are_refused(ring_teeth, angle, cause):
     with pytest.raises(ValueError, match=cause):
         nearest_setting(ring_teeth, angle)
 
@@ -184,14 +184,14 @@ def test_what_has_no_setting_is_refused(ring_teeth, angle, cause):
         ((0, -1, 0), 'ring hole -1 is not one of 0 to 80'),
     ],
 )
-def test_a_hole_that_is_not_there_is_refused(holes, cause):
+def test_a_hole_that_does_not_exist_is_refused(holes, cause):
     with pytest.raises(ValueError, match=cause):
         pin_setting(80, *holes)
 
 
 @pytest.mark.parametrize('ring_teeth', SMALL)
-def test_settings_of_a_position_are_all_that_there_are(ring_teeth):
-    """And of their bodies' turns the first is the least, from wherever the ring is turned."""
+def test_settings_of_a_position_are_complete(ring_teeth):
+    """The first turns the body least, from any setting of the ring."""
     same = defaultdict(set)
     for holes in every_setting(ring_teeth):
         same[turn_of(ring_teeth, *holes)].add(holes)
@@ -220,7 +220,7 @@ def test_settings_of_a_position_are_all_that_there_are(ring_teeth):
     data=st.data(),
 )
 def test_neighbours_are_the_next_positions_either_way(ring_teeth, angle, neighbours, data):
-    """As counted along the sorted list of all positions, over its ends."""
+    """As in the sorted list of all positions, cyclically."""
     start = pin_setting(ring_teeth, *data.draw(st.sampled_from(every_setting(ring_teeth))))
     positions = sorted({turn_of(ring_teeth, *holes) for holes in every_setting(ring_teeth)})
     found = choices(ring_teeth, angle, start, neighbours)
@@ -258,6 +258,6 @@ def test_the_work_does_not_grow_with_the_number_of_settings(ring_teeth):
     ('start', 'end', 'expected'),
     [('0', '1/4', 90), ('1/4', '0', -90), ('9/10', '1/10', 72), ('0', '1/2', -180), ('1', '2', 0)],
 )
-def test_angles_go_the_short_way_round(start, end, expected):
+def test_angle_between_is_the_shorter_one(start, end, expected):
     angle = angle_between(Fraction(start), Fraction(end))
     assert math.degrees(angle) == pytest.approx(expected, abs=1e-13)
