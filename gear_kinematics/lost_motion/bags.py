@@ -1,4 +1,4 @@
-"""Recordings as bags: the rotor's states, and where there is one the output's encoder."""
+"""Recordings as bags: the rotor's states and, if recorded, the output's encoder."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -41,14 +41,14 @@ def read_bag(
     Args:
         path: of the bag.
         parameters: of the node, as `parameters.load` gives them.
-        rotor_topic: of the rotor's states; None: by type and name.
-        encoder_topic: of the output's encoder; None: by type and name, if there is one.
-        counts: steps in a turn of the rotor's encoder.
-        output_counts: steps in a turn of the output's encoder.
-        progress: called with the messages of each batch, and of the whole bag if that is known.
+        rotor_topic: of the rotor's states; None finds it by type and name.
+        encoder_topic: of the output's encoder; None finds it by type and name, if recorded.
+        counts: steps per turn of the rotor's encoder.
+        output_counts: steps per turn of the output's encoder.
+        progress: called with the number of messages of each batch, and of the bag if known.
 
     Raises:
-        BagError: if the bag cannot be read, or has no such topics.
+        BagError: if the bag cannot be read, or lacks a topic.
         MechanismError: if the parameters describe no mechanism.
         MotionError: if no output angle can be compared.
     """
@@ -116,7 +116,7 @@ def _messages(
     encoder: str | None,
     progress: Callable[[int, int | None], None] | None,
 ) -> tuple[dict[str, list[bytes]], list[int], str | None]:
-    """The messages by topic, when those of the rotor were received, and what damage ended it."""
+    """The messages by topic, the reception times of the rotor's, and damage that ended reading."""
     messages: dict[str, list[bytes]] = {rotor: []}
     if encoder:
         messages[encoder] = []
@@ -142,7 +142,7 @@ def _compare(
     ideal: tuple[Array, Array, Array],
     measured: tuple[Array, Array],
 ) -> list[ErrorSample]:
-    """Feed both by stamp, as a node gets them: stamps, turns and angles; stamps and angles."""
+    """Feed ideal (stamp, turns, angle) and measured (stamp, angle) in the order of stamps."""
     coming = zip(*(column.tolist() for column in ideal), strict=True)
     samples: list[ErrorSample] = []
     waiting = next(coming, None)
@@ -166,14 +166,14 @@ def _loading(
     rotor_step: float,
     motion: Motion | None,
 ) -> Loading | None:
-    """Torque and wind-up: of the gear where the output was measured, else of all of it."""
+    """Torque and twist: of the gear if the output was measured, else of the whole drive."""
     known = np.isfinite(samples.effort)
     if not known.any():
         return None
     torque = ratio * samples.effort[known]
     if motion is None:
-        wound = (turns - turns[0])[known] * TURN + angle[known]
-        return Loading(torque, wound, rotor_step, measured=False)
+        twist = (turns - turns[0])[known] * TURN + angle[known]
+        return Loading(torque, twist, rotor_step, measured=False)
     start = samples.stamp[0]
     stamps = np.array([error.stamp for error in errors]) - start
     torque = np.interp(stamps, samples.stamp[known] - start, torque)

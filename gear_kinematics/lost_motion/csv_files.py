@@ -21,16 +21,16 @@ from gear_kinematics.state.transmission_error import TransmissionError
 Array = NDArray[np.float64]
 
 UNITS: Mapping[str, float] = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
-"""rad in units of angle."""
+"""Units of angle, rad."""
 _NAMES: Mapping[str, tuple[str, ...]] = {
     'angle': ('position', 'angle', 'deflection', 'twist', 'motor_position'),
     'torque': ('torque', 'effort', 'measured_torque', 'motor_torque'),
     'rotor': ('rotor_position', 'rotor_angle', 'rotor'),
     'output': ('output_position', 'output_angle', 'output_encoder', 'output'),
 }
-"""Columns to look for, in any case, with or without a unit behind the name."""
+"""Names of columns, in upper or lower case, with or without a unit appended."""
 _SETS = (('angle', 'torque'), ('rotor', 'output'), ('rotor', 'output', 'torque'))
-"""What belongs together."""
+"""Sets of columns that can be evaluated."""
 _UNIT = re.compile(rf'[\s_]*[\[(]?({"|".join(UNITS)})[\])]?$')
 _TORQUE_UNIT = re.compile(r'[\s_]*[\[(]?n[·*.]?m[\])]?$')
 _MOTEUS = {'position', 'torque', 'q_current'}
@@ -43,14 +43,14 @@ class CsvError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """Names of columns, and what they hold; None: by the names in the file."""
+    """Names and contents of columns; a column with the name None is found by `_NAMES`."""
 
     angle: str | None = None
     torque: str | None = None
     rotor: str | None = None
     output: str | None = None
     unit: str | None = None
-    """Of all angles: a key of UNITS."""
+    """Unit of all angles, a key of UNITS."""
     on_rotor: bool = False
     """Whether angle and torque are the rotor's, not those at the output."""
 
@@ -67,11 +67,11 @@ def read_csv(
 
     Args:
         path: of the file.
-        mechanism: whose ratio takes the rotor to the output.
-        columns: which to read.
+        mechanism: gives the gear ratio.
+        columns: the columns to read.
         travel: rad of the output after a reversal, until the new direction counts.
-        counts: steps in a turn of what the angle or rotor column shows.
-        output_counts: steps in a turn of the output's encoder.
+        counts: steps per turn of the encoder of the angle or rotor column.
+        output_counts: steps per turn of the output's encoder.
 
     Raises:
         CsvError: if it cannot be read, or has no such columns.
@@ -123,12 +123,12 @@ def _table(path: Path) -> tuple[list[str], list[list[str]]]:
     header = [name.strip() for name in rows[0]]
     twice = [name for name, count in Counter(header).items() if count > 1]
     if twice:
-        raise CsvError(f'{path}: the column {twice[0]!r} is there twice')
+        raise CsvError(f'{path}: more than one column {twice[0]!r}')
     return header, rows[1:]
 
 
 def _find(path: Path, header: Sequence[str], columns: Columns) -> dict[str, str]:
-    """The columns to read, by what they hold."""
+    """The columns to read, by their role."""
     given = {role: name for role in _NAMES if (name := getattr(columns, role))}
     for name in given.values():
         if name not in header:
@@ -150,7 +150,7 @@ def _find(path: Path, header: Sequence[str], columns: Columns) -> dict[str, str]
 
 
 def _plain(name: str) -> str:
-    """A name without its unit, in the form of the names to look for."""
+    """A name without its unit, in the form of `_NAMES`."""
     return _TORQUE_UNIT.sub('', _UNIT.sub('', name.lower())).strip().replace(' ', '_')
 
 
@@ -171,7 +171,7 @@ def _numbers(
 def _unit(
     path: Path, header: Sequence[str], columns: Columns, found: Mapping[str, str]
 ) -> tuple[str, str]:
-    """The unit of the angles, and how it is known."""
+    """The unit of the angles, and where it comes from."""
     if columns.unit:
         return columns.unit, 'as given'
     suffixes = [_UNIT.search(name.lower()) for role, name in found.items() if role != 'torque']
@@ -212,7 +212,7 @@ def _motion(
     counts: int | None,
     output_counts: int | None,
 ) -> Motion:
-    """Compare rotor and output row by row: what is in a row was sampled at once."""
+    """Compare rotor and output row by row; a row was sampled at one time."""
     comparison = TransmissionError(max_gap=1, travel=travel)
     turns, angle = closed_form(mechanism).output_angle(*split_turns(data['rotor']), np)
     samples = []

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
-from gear_kinematics.lost_motion.ramps import Branch, Ramps
+from gear_kinematics.lost_motion.ramps import HalfLoop, Ramps
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.transmission import Order
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, plus_minus, torque
@@ -36,8 +36,8 @@ def _ramp_panel(found: HysteresisReport, index: int) -> Panel:
     centre = _centre(ramps)
     lines = []
     for loop in ramps.loops:
-        lines.append(_branch('torque rising', Pen.FIRST, loop.rise, centre, ramps))
-        lines.append(_branch('torque falling', Pen.SECOND, loop.fall, centre, ramps))
+        lines.append(_half_loop('torque rising', Pen.FIRST, loop.rise, centre, ramps))
+        lines.append(_half_loop('torque falling', Pen.SECOND, loop.fall, centre, ramps))
     if model := figures.play_model:
         load, angle = model.loop(ramps.amplitude)
         lines.append(Line('play model', Pen.MODEL, load, (angle - centre) * ARC_MINUTES))
@@ -56,10 +56,10 @@ def _centre(ramps: Ramps) -> float:
     return float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
 
 
-def _branch(name: str, pen: Pen, branch: Branch, centre: float, ramps: Ramps) -> Line:
+def _half_loop(name: str, pen: Pen, half: HalfLoop, centre: float, ramps: Ramps) -> Line:
     # A ramp may go on to a larger amplitude, which is another panel's.
-    inside = np.abs(branch.torque) <= 1.02 * ramps.amplitude
-    load, angle = (_thinned(values[inside]) for values in (branch.torque, branch.angle))
+    inside = np.abs(half.torque) <= 1.02 * ramps.amplitude
+    load, angle = (_thinned(values[inside]) for values in (half.torque, half.angle))
     return Line(name, pen, load, (angle - centre) * ARC_MINUTES)
 
 

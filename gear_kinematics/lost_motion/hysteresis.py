@@ -1,7 +1,6 @@
 """The figures of a hysteresis curve, by the definitions in docs/lost_motion.md.
 
-The spring of the play model comes from the largest ramps, which load the gear; what moves at no
-load comes from the smallest ones.
+The spring of the play model is taken from the largest ramps, which load the gear.
 """
 
 import math
@@ -12,32 +11,32 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.lost_motion.ramps import Array, Branch, Loop, RampError, Ramps
+from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
 
 LOST_MOTION_SHARE = 0.03
-"""Of the rated torque, to either side."""
+"""Lost motion is measured between ± this share of the rated torque."""
 STIFFNESS_SHARES = (0.15, 0.5)
-"""Of the rated torque: where one range of stiffness ends and the next begins."""
+"""Limits between the ranges of stiffness, as shares of the rated torque."""
 
 _LEAST_RANGE = 1.5
-"""A range of stiffness ends at as many times the torque where it begins, if not at a corner."""
+"""Least ratio of the torques at the end and at the beginning of a range of stiffness."""
 _ROUNDING = 1e-11
-"""Share of an angle that sums of many readings may be off by."""
+"""Relative rounding error of sums of many angles."""
 _LEVELS = 200
 """Torques at which a curve is compared with a straight line or with the model."""
 _FRICTIONS = 50
-"""Values of the friction that are tried at first."""
+"""Values of the friction that are tried first."""
 _FINER, _REFINEMENTS = 11, 4
-"""Values that are tried between those beside the best, and how often."""
+"""Values that are then tried around the best one, and how often this is repeated."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stiffness:
-    """Torsional stiffness over a range of torque, N·m/rad, on the ways away from zero."""
+    """Torsional stiffness over a range of torque, N·m/rad, while the load increases."""
 
     low: float
-    """N·m, either sign."""
+    """N·m, magnitude."""
     high: float
     """N·m."""
     both: Estimate
@@ -51,18 +50,18 @@ class PlayModel:
     """Play and a spring in series, moved against Coulomb friction."""
 
     stiffness: float
-    """N·m/rad, of the spring: that of the largest ramps in their highest range, clear of zero."""
+    """N·m/rad, of the spring: from the highest range of the largest ramps, clear of zero."""
     play: Estimate
     """rad: the backlash."""
     friction: Estimate
     """N·m, at the output."""
     residual: float
-    """rad, root mean square of what the model leaves of the angle."""
+    """rad, root mean square of the angle minus the model's."""
     centre: float
     """rad, the angle in the middle of the play."""
 
     def loop(self, amplitude: float) -> tuple[Array, Array]:
-        """The model's own hysteresis curve: torques and angles, from one peak round to it."""
+        """Torques and angles of the model's hysteresis loop, from one peak back to it."""
         torque = amplitude * np.linspace(1.0, -1.0, _LEVELS)
         fall = _transmitted(torque, self.friction.value)
         load = np.concatenate([fall, -fall])
@@ -72,7 +71,7 @@ class PlayModel:
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """What the ramps of one amplitude tell."""
+    """Results from the ramps of one amplitude."""
 
     amplitude: float
     """N·m."""
@@ -80,11 +79,11 @@ class Figures:
     hysteresis: Estimate
     """rad, the width of the curve at zero torque."""
     lost_motion: Estimate | None
-    """rad, on the middle line between ± a share of the rated torque; None if they end before."""
+    """rad, on the middle line, see `LOST_MOTION_SHARE`; None if the ramps are too small."""
     stiffness: tuple[Stiffness, ...]
-    """In the ranges that they reach."""
+    """In the ranges that the ramps cover."""
     play_model: PlayModel | None = None
-    """None where no range of stiffness is clear of zero, to know the spring by."""
+    """None if no range of stiffness is clear of zero: the spring is then unknown."""
 
     @property
     def play(self) -> Estimate | None:
@@ -99,25 +98,25 @@ class Figures:
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What figures refer to."""
+    """Reference values of the figures."""
 
     rated_torque: float
     """N·m."""
     corners: tuple[float, ...]
-    """N·m, rising: between the ranges of stiffness."""
+    """N·m, ascending: limits between the ranges of stiffness."""
     angle_step: float
-    """rad at the output, between readings of the encoder; 0 where it is not known."""
+    """rad at the output, between readings of the encoder; 0 if unknown."""
 
 
 def figures(ramps: Sequence[Ramps], settings: Settings) -> tuple[Figures, ...]:
-    """Measure the ramps, by amplitude from small to large.
+    """Compute the figures of ramps, in ascending order of amplitude.
 
     Raises:
         RampError: if the angle does not grow with the torque.
     """
     _check(ramps[-1], settings)
     stiffness = [_stiffness(group, settings) for group in ramps]
-    # A range that begins at no torque has the play in it.
+    # A range that begins at zero torque includes the play.
     clear = [found.both for found in stiffness[-1] if found.low > 0.0]
     spring = clear[-1] if clear else None
     return tuple(
@@ -134,18 +133,18 @@ def figures(ramps: Sequence[Ramps], settings: Settings) -> tuple[Figures, ...]:
 
 
 def _check(ramps: Ramps, settings: Settings) -> None:
-    """Make sure that the torque moves the angle, and its own way."""
+    """Check that the angle grows with the torque."""
     ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps.loops]
     if float(np.mean(ways)) <= _still(ramps, settings):
         raise RampError(
-            'the angle does not grow with the torque. Does it stand still, or does one of them '
-            'count backwards?'
+            'the angle does not grow with the torque: it stands still, or one of them has the '
+            'wrong sign'
         )
 
 
 def _still(ramps: Ramps, settings: Settings) -> float:
-    """How far an angle is from another that may be the same, rad."""
-    angles = [branch.angle for loop in ramps.loops for branch in (loop.fall, loop.rise)]
+    """Difference up to which two angles may be equal, rad."""
+    angles = [half.angle for loop in ramps.loops for half in (loop.fall, loop.rise)]
     return max(settings.angle_step, _ROUNDING * float(np.max(np.abs(np.concatenate(angles)))))
 
 
@@ -157,21 +156,21 @@ def _hysteresis(loops: Sequence[Loop], settings: Settings) -> Estimate:
 
 
 def _rounded(rounding: float | np.floating) -> Component:
-    """Between no rounding and all of it, rad, anything is as likely, GUM 4.3.7."""
+    """Take errors up to the rounding, rad, as equally likely (GUM 4.3.7)."""
     return Component(abs(float(rounding)) / math.sqrt(3.0))
 
 
 def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
     torque = LOST_MOTION_SHARE * settings.rated_torque
     ways = [
-        [branch for branch in branches if branch.reaches(torque) and branch.reaches(-torque)]
-        for branches in ([loop.fall for loop in loops], [loop.rise for loop in loops])
+        [half for half in halves if half.reaches(torque) and half.reaches(-torque)]
+        for halves in ([loop.fall for loop in loops], [loop.rise for loop in loops])
     ]
     if not all(ways):
         return None
     angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
     rounding = [np.mean([b.rounding(torque) - b.rounding(-torque) for b in way]) for way in ways]
-    # Four readings, each by half.
+    # Four readings, each weighted by 1/2.
     reading = Component(resolution(settings.angle_step))
     return Estimate.of_sum([(0.5, way) for way in angles], reading, _rounded(np.mean(rounding)))
 
@@ -186,9 +185,9 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
         if high < _LEAST_RANGE * low:
             break
         pulls = [
-            [_compliance(branch, low, min(high, abs(branch.end))) for branch in pull]
+            [_compliance(half, low, min(high, abs(half.end))) for half in pull]
             for pull in ramps.pulls
-            if all(_loads(branch, low, ramps) for branch in pull)
+            if all(_loads(half, low, ramps) for half in pull)
         ]
         if pulls:
             positive, negative = zip(*pulls, strict=True)
@@ -196,7 +195,7 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
             reading = Component(math.sqrt(2.0) * resolution(settings.angle_step) / (high - low))
             compliances = (both, positive, negative)
             if min(map(np.mean, compliances)) * (high - low) <= still:
-                continue  # friction holds the gear all the way
+                continue  # friction holds the gear throughout
             found.append(
                 Stiffness(
                     low, high, *(Estimate.of_mean(c, reading).inverse() for c in compliances)
@@ -205,18 +204,18 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
     return tuple(found)
 
 
-def _loads(branch: Branch, low: float, ramps: Ramps) -> bool:
-    """Whether a branch loads from a torque on as one of these ramps.
+def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:
+    """Whether, from the torque `low` on, a half loop is like a full loading of these ramps.
 
-    One that comes from less does so beyond what it comes from: there the past is wiped out.
+    One from a smaller peak is so beyond that peak, where hysteresis has lost its memory of it.
     """
-    return abs(branch.start) < low or abs(branch.start) > 0.5 * ramps.amplitude
+    return abs(half.start) < low or abs(half.start) > 0.5 * ramps.amplitude
 
 
-def _compliance(branch: Branch, low: float, high: float) -> float:
+def _compliance(half: HalfLoop, low: float, high: float) -> float:
     """Slope of the line through the angles over the torques of a range, rad/(N·m)."""
-    torque = math.copysign(1.0, branch.end) * np.linspace(low, high, _LEVELS)
-    return float(np.polynomial.polynomial.polyfit(torque, branch.angle_at(torque), 1)[1])
+    torque = math.copysign(1.0, half.end) * np.linspace(low, high, _LEVELS)
+    return float(np.polynomial.polynomial.polyfit(torque, half.angle_at(torque), 1)[1])
 
 
 # Play model
@@ -229,7 +228,7 @@ def _play_model(loops: Sequence[Loop], spring: Estimate, settings: Settings) -> 
     play_parts = [Component(reading)]
     friction_parts = [Component(0.5 * spring.value * reading)]
     if compliance.standard:
-        # What the figures would be with another spring, GUM 5.1.3, note 2.
+        # Sensitivity to the compliance of the spring (GUM 5.1.3, note 2).
         softer, stiffer = (
             _fits(loops, compliance.value + change)
             for change in (compliance.standard, -compliance.standard)
@@ -247,23 +246,23 @@ def _play_model(loops: Sequence[Loop], spring: Estimate, settings: Settings) -> 
 
 
 def _fits(loops: Sequence[Loop], compliance: float) -> tuple[list[float], ...]:
-    """What `_fit` gives for each loop, sorted by quantity."""
+    """Apply `_fit` to each loop; returns a list per quantity."""
     return tuple(map(list, zip(*(_fit(loop, compliance) for loop in loops), strict=True)))
 
 
 def _fit(loop: Loop, compliance: float) -> tuple[float, float, float, float]:
-    """Fit play (rad) and friction (N·m) to a loop; then residual and centre, rad.
+    """Fit play (rad) and friction (N·m) to a loop; also returns residual and centre, rad.
 
-    The friction holds back a part of the torque; the spring gives way to the rest, which changes
-    once the torque has gone back by twice the friction. On either side of the play the angle less
-    the spring's is a constant, and the play is their difference. Medians bear what sticks and
-    slips.
+    The spring carries the torque minus the friction; after a reversal its load changes once the
+    torque has gone back by twice the friction. On either side of the play, the angle minus the
+    spring's is constant; the play is the difference of the two constants. Medians are robust
+    against stick-slip.
     """
     ways = [
-        (branch, np.linspace(branch.start, _opposite(branch, loop), _LEVELS))
-        for branch in (loop.fall, loop.rise)
+        (half, np.linspace(half.start, _opposite(half, loop), _LEVELS))
+        for half in (loop.fall, loop.rise)
     ]
-    angle = np.concatenate([branch.angle_at(torque) for branch, torque in ways])
+    angle = np.concatenate([half.angle_at(torque) for half, torque in ways])
 
     def sides_of(friction: float) -> tuple[float, float, Array]:
         load = np.concatenate([_transmitted(torque, friction) for _, torque in ways])
@@ -279,21 +278,21 @@ def _fit(loop: Loop, compliance: float) -> tuple[float, float, float, float]:
     return upper - lower, friction, float(np.sqrt(np.mean(rest**2))), 0.5 * (upper + lower)
 
 
-def _opposite(branch: Branch, loop: Loop) -> float:
-    """How far a branch belongs to the loop: to where the other one starts."""
-    other = loop.rise if branch is loop.fall else loop.fall
-    return max(branch.end, other.start) if branch is loop.fall else min(branch.end, other.start)
+def _opposite(half: HalfLoop, loop: Loop) -> float:
+    """Torque at which a half loop leaves the loop: where the other one starts."""
+    other = loop.rise if half is loop.fall else loop.fall
+    return max(half.end, other.start) if half is loop.fall else min(half.end, other.start)
 
 
 def _transmitted(torque: Array, friction: float) -> Array:
-    """What friction leaves of a torque on its way from one peak to the other."""
+    """Torque on the spring, on the way from one peak to the other."""
     sign = 1.0 if torque[-1] > torque[0] else -1.0
     load: Array = np.maximum(sign * torque - friction, sign * torque[0] + friction)
     return sign * load
 
 
 def _minimum(cost: Callable[[float], float], high: float) -> float:
-    """Where a function of one variable is least, from 0 on; it may have several minima."""
+    """Find the minimum of a function on [0, high]; it may have several local ones."""
     tried: NDArray[np.float64] = np.linspace(0.0, high, _FRICTIONS)
     for _ in range(_REFINEMENTS):
         best = int(np.argmin([cost(value) for value in tried.tolist()]))

@@ -1,6 +1,6 @@
-"""Ramps of torque: where they turn back, and the angle over the torque on each way.
+"""Torque ramps: their reversals, and the angle over the torque between these.
 
-Nothing but the torque tells one ramp from the next: no clock, no number of a test.
+Ramps are found by the torque alone, without time stamps or numbers of tests.
 """
 
 import math
@@ -14,53 +14,53 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 _ROWS = 25
-"""Least rows of a half-cycle."""
+"""Minimum number of rows of a half-cycle."""
 _CLEAR_OF_NOISE = 5.0
-"""Standard deviations of the noise that the torque exceeds in a half-cycle."""
+"""In a half-cycle the torque exceeds this many standard deviations of the noise."""
 _NEAR = 3.0
-"""Standard deviations of the noise within which a torque is another."""
+"""Torques closer than this many standard deviations of the noise count as equal."""
 _CLEAR_OF_ZERO = 0.01
-"""Share of the largest torque that it exceeds."""
+"""In a half-cycle the torque exceeds this share of the largest torque."""
 _FINE = 0.01
-"""Share of a ramp's amplitude to which means bring down the noise."""
+"""Moving means reduce the noise to this share of a ramp's amplitude."""
 _ALIKE = 1.5
-"""Peaks that differ by no more are of one amplitude."""
+"""Ratio up to which peaks count as of one amplitude."""
 
 
 class RampError(ValueError):
-    """A recording that holds no ramps to measure by."""
+    """A recording without usable torque ramps."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Branch:
-    """One way of the torque, from a peak to the opposite one."""
+class HalfLoop:
+    """Half of a hysteresis loop: from a torque peak to the opposite one."""
 
     torque: Array
-    """(n,), N·m, each beyond the one before."""
+    """(n,), N·m, strictly monotonic."""
     angle: Array
     """(n,), rad, at these torques."""
     noise: float
     """N·m, standard deviation of a reading of the torque."""
     blur: float
-    """N·m, standard deviation that is left of it: what is closer together is one."""
+    """N·m, standard deviation of the noise after smoothing."""
 
     @property
     def start(self) -> float:
-        """N·m, where the torque turned back."""
+        """N·m, the peak at which the half loop begins."""
         return float(self.torque[0])
 
     @property
     def end(self) -> float:
-        """N·m, where it turns back next."""
+        """N·m, the peak at which it ends."""
         return float(self.torque[-1])
 
     @property
     def rising(self) -> bool:
-        """Whether the torque grows."""
+        """Whether the torque increases."""
         return self.end > self.start
 
     def reaches(self, torque: float) -> bool:
-        """Whether the torque comes along here, within its noise."""
+        """Whether the half loop includes a torque, within the noise."""
         low, high = sorted((self.start, self.end))
         near = _NEAR * self.noise
         return low - near <= torque <= high + near
@@ -71,33 +71,33 @@ class Branch:
         return np.interp(sign * np.asarray(torque), sign * self.torque, self.angle)
 
     def rounding(self, torque: float) -> float:
-        """By how much noise may raise the angle at a torque, rad: it rounds corners."""
+        """Greatest rise of the angle at a torque by noise, which rounds corners, rad."""
         before, at, after = self.angle_at(torque + 2.0 * self.blur * np.array([-1.0, 0.0, 1.0]))
         return float(0.5 * (before + after) - at)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Loop:
-    """Two branches, one after the other: a hysteresis curve."""
+    """A hysteresis loop: two successive half loops."""
 
-    fall: Branch
-    rise: Branch
+    fall: HalfLoop
+    rise: HalfLoop
 
     @property
     def amplitude(self) -> float:
-        """N·m, from where both branches come."""
+        """N·m, the smaller of the peaks at which the half loops begin."""
         return min(self.fall.start, -self.rise.start)
 
     def reaches(self, torque: float) -> bool:
-        """Whether the torque comes along on both ways."""
+        """Whether both half loops include a torque."""
         return self.fall.reaches(torque) and self.rise.reaches(torque)
 
     def width(self, torque: float) -> float:
-        """The angle between the branches, rad."""
+        """The angle between the half loops, rad."""
         return float(self.fall.angle_at(torque) - self.rise.angle_at(torque))
 
     def middle(self, torque: float) -> float:
-        """The angle midway between the branches, rad."""
+        """The angle midway between the half loops, rad."""
         return float(0.5 * (self.fall.angle_at(torque) + self.rise.angle_at(torque)))
 
 
@@ -108,12 +108,12 @@ class Ramps:
     amplitude: float
     """N·m, the mean."""
     loops: tuple[Loop, ...]
-    pulls: tuple[tuple[Branch, Branch], ...]
-    """Loadings to the positive and to the negative peak, as they follow each other."""
+    pulls: tuple[tuple[HalfLoop, HalfLoop], ...]
+    """Half loops to the positive and to the negative peak, paired in order of time."""
 
 
 def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
-    """Find the ramps of a recording, by amplitude from small to large.
+    """Find the ramps of a recording, in ascending order of amplitude.
 
     Args:
         torque: (n,), N·m.
@@ -122,9 +122,9 @@ def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
     Raises:
         RampError: if the torque never goes to both sides and back.
     """
-    branches = _branches(torque, angle)
-    # What was before the first is not known: it belongs to no loop.
-    loops = [_loop(*pair) for pair in zip(branches[1::2], branches[2::2], strict=False)]
+    halves = _half_loops(torque, angle)
+    # What preceded the first half loop is not known, so it belongs to no loop.
+    loops = [_loop(*pair) for pair in zip(halves[1::2], halves[2::2], strict=False)]
     loops = [loop for loop in loops if loop.reaches(0.0)]
     if not loops:
         raise RampError('no torque ramp that goes to one side, to the other and back to zero')
@@ -134,17 +134,17 @@ def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
             groups[-1].append(loop)
         else:
             groups.append([loop])
-    return tuple(_ramps(group, loops, branches) for group in groups)
+    return tuple(_ramps(group, loops, halves) for group in groups)
 
 
-def _loop(first: Branch, second: Branch) -> Loop:
+def _loop(first: HalfLoop, second: HalfLoop) -> Loop:
     return Loop(second, first) if first.rising else Loop(first, second)
 
 
-def _ramps(group: Sequence[Loop], loops: Sequence[Loop], branches: Sequence[Branch]) -> Ramps:
+def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLoop]) -> Ramps:
     smallest = group[0].amplitude
     largest = group[-1].amplitude
-    alike = [b for b in branches if smallest / _ALIKE <= abs(b.end) <= largest * _ALIKE]
+    alike = [b for b in halves if smallest / _ALIKE <= abs(b.end) <= largest * _ALIKE]
     rises, falls = ([b for b in alike if b.rising == up] for up in (True, False))
     return Ramps(
         float(np.mean([loop.amplitude for loop in group])),
@@ -153,7 +153,7 @@ def _ramps(group: Sequence[Loop], loops: Sequence[Loop], branches: Sequence[Bran
     )
 
 
-def _branches(torque: Array, angle: Array) -> list[Branch]:
+def _half_loops(torque: Array, angle: Array) -> list[HalfLoop]:
     if len(torque) < _ROWS:
         return []
     noise = _noise(torque)
@@ -161,18 +161,18 @@ def _branches(torque: Array, angle: Array) -> list[Branch]:
     mean = np.convolve(np.pad(torque, _ROWS // 2, 'edge'), np.full(_ROWS, 1.0 / _ROWS), 'valid')
     turns = [_peak(torque, rows, noise) for rows in _half_cycles(mean, least)]
     return [
-        _branch(torque[first : last + 1], angle[first : last + 1], noise)
+        _half_loop(torque[first : last + 1], angle[first : last + 1], noise)
         for first, last in pairwise([0, *turns, len(torque) - 1])
         if last - first >= _ROWS
     ]
 
 
 def _half_cycles(torque: Array, least: float) -> list[slice]:
-    """Where the torque is clear of zero, on one side and then on the other."""
+    """Find the rows in which the torque is clear of zero, with alternating sign."""
     away = np.flatnonzero(np.abs(torque) > least)
     sides = np.split(away, np.flatnonzero(np.diff(np.sign(torque[away]))) + 1)
     sides = [side for side in sides if len(side) >= _ROWS]
-    # What was too short to count came between rows of the same side.
+    # Rows of the same sign become neighbours where a short part between them was dropped.
     return [
         slice(int(same[0][0]), int(same[-1][-1]) + 1)
         for _, group in groupby(sides, key=lambda side: torque[side[0]] > 0.0)
@@ -181,12 +181,12 @@ def _half_cycles(torque: Array, least: float) -> list[slice]:
 
 
 def _peak(torque: Array, rows: slice, noise: float) -> int:
-    """Where a half-cycle turns back."""
+    """Find the row of the peak of a half-cycle."""
     first: int = rows.start
     return first + int(np.argmax(np.abs(_smooth(torque[rows], noise))))
 
 
-def _branch(torque: Array, angle: Array, noise: float) -> Branch:
+def _half_loop(torque: Array, angle: Array, noise: float) -> HalfLoop:
     smooth = _smooth(torque, noise)
     blur = noise / math.sqrt(_mean_rows(torque, noise))
     sign = 1.0 if smooth[-1] > smooth[0] else -1.0
@@ -194,17 +194,17 @@ def _branch(torque: Array, angle: Array, noise: float) -> Branch:
     ends = np.cumsum(counts)
     sums = np.concatenate([[0.0], np.cumsum(angle)])
     angles = (sums[ends] - sums[ends - counts]) / counts
-    return Branch(sign * means, angles, noise, blur)
+    return HalfLoop(sign * means, angles, noise, blur)
 
 
 def _noise(torque: Array) -> float:
-    """Standard deviation of a reading, from second differences: a ramp has none."""
+    """Standard deviation of a reading, from second differences, which vanish on a ramp."""
     differences = np.abs(np.diff(torque, 2))
     return 1.4826 * float(np.median(differences)) / math.sqrt(6.0)
 
 
 def _smooth(torque: Array, noise: float) -> Array:
-    """Take the noise off a ramp: a moving mean, and at the ends, which have none, a line."""
+    """Smooth a ramp by a moving mean, and by a straight line at the ends, where it has none."""
     tenth = len(torque) // 10
     half = _mean_rows(torque, noise) // 2
     sums = np.concatenate([[0.0], np.cumsum(torque)])
@@ -219,7 +219,7 @@ def _smooth(torque: Array, noise: float) -> Array:
 
 
 def _mean_rows(torque: Array, noise: float) -> int:
-    """Over how many rows a mean goes: no more than it takes, for a ramp may halt on its way."""
+    """Rows of the moving mean: no more than needed, as a ramp may pause."""
     enough = (noise / (_FINE * 0.5 * float(np.ptp(torque)))) ** 2 if noise else 0.0
     return 2 * (int(min(enough, len(torque) // 10)) // 2) + 1
 
@@ -230,13 +230,13 @@ def _line(values: Array) -> Array:
 
 
 def _isotonic(values: Array) -> tuple[Array, NDArray[np.intp]]:
-    """Fit the nearest rising sequence by least squares: pool adjacent violators.
+    """Fit a non-decreasing sequence by least squares: pool adjacent violators.
 
     M. Ayer et al., An empirical distribution function for sampling with incomplete information,
     Annals of Mathematical Statistics 26 (1955), 641.
 
     Returns:
-        The steps of the sequence, each greater than the one before, and of how many values.
+        The distinct values of the sequence, ascending, and how often each occurs.
     """
     means: list[float] = []
     counts: list[int] = []

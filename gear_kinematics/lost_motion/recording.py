@@ -1,4 +1,4 @@
-"""What a recording holds to measure lost motion by, whatever kind of file it is."""
+"""The contents of a recording for measuring lost motion, whatever its file format."""
 
 import math
 from dataclasses import dataclass
@@ -13,9 +13,9 @@ from gear_kinematics.lost_motion.transmission import Motion
 Array = NDArray[np.float64]
 
 _FAR = 1000
-"""Distances of readings that are as many times the least tell nothing more about the step."""
+"""Gaps over this many times the smallest one are ignored."""
 _CLEAR = 1000
-"""A step is at least as many times what rounding makes of it."""
+"""A step is at least this many times the rounding error."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -25,19 +25,19 @@ class Loading:
     torque: Array
     """N·m, at the output."""
     angle: Array
-    """rad, at the output: how far the gear is wound up, from anywhere."""
+    """rad, at the output: the twist of the gear, from an arbitrary zero."""
     angle_step: float
-    """rad at the output, between readings of the angle; 0 where it is not known."""
+    """rad at the output, between readings of the angle; 0 if unknown."""
     measured: bool
-    """Whether an encoder saw the output; else it is taken to be locked."""
+    """Whether an encoder measured the output; if not, it is taken to be locked."""
 
     @classmethod
     def of_gear(cls, torque: Array, motion: Motion) -> Self:
-        """Of the gear alone, where both its encoders were recorded.
+        """Create the loading of the gear alone, from recordings of both its encoders.
 
         Args:
             torque: (n,), N·m, at the output, at the samples of `motion`.
-            motion: whose error is the wind-up.
+            motion: whose error is the negative twist.
         """
         step = math.hypot(motion.rotor_step, motion.output_step)
         return cls(torque, -motion.error, step, measured=True)
@@ -49,41 +49,41 @@ class Recording:
 
     name: str
     columns: tuple[str, ...]
-    """What was read from where, a phrase each."""
+    """Descriptions of the data that were read."""
     rows: int
-    """Samples that were read."""
+    """Number of samples read."""
     loading: Loading | None = None
     motion: Motion | None = None
     remarks: tuple[str, ...] = ()
     """Sentences about what was left out or assumed."""
     error: str | None = None
-    """What cut the recording short."""
+    """Damage at which reading ended."""
 
 
 def smallest_step(readings: Array) -> float:
-    """The step of a sensor whose readings are whole numbers of it; 0 if they are not.
+    """Compute the step of a sensor whose readings are its multiples; 0 if they are not.
 
-    It is the greatest common divisor of the distances between readings, by Euclid's algorithm.
+    It is the greatest common divisor of the gaps between readings, by Euclid's algorithm.
 
     Args:
-        readings: in their unit, and the step is, too.
+        readings: in any unit, which is also that of the step.
     """
     levels = np.unique(readings)
     rounding = 4.0 * float(np.spacing(np.max(np.abs(levels), initial=0.0)))
-    distances = np.diff(levels)
-    distances = distances[distances > rounding]
-    distances = distances[distances <= _FAR * np.min(distances, initial=np.inf)]
+    gaps = np.diff(levels)
+    gaps = gaps[gaps > rounding]
+    gaps = gaps[gaps <= _FAR * np.min(gaps, initial=np.inf)]
     step = 0.0
-    while len(distances):
-        step = float(np.min(distances))
+    while len(gaps):
+        step = float(np.min(gaps))
         if step < _CLEAR * rounding:
             return 0.0
-        wholes = np.round(distances / step)
-        rest = np.abs(distances - wholes * step)
-        distances = rest[rest > rounding * (1.0 + wholes)]
+        wholes = np.round(gaps / step)
+        rest = np.abs(gaps - wholes * step)
+        gaps = rest[rest > rounding * (1.0 + wholes)]
     return step
 
 
 def step_of(counts: int | None, readings: Array) -> float:
-    """The step of an encoder, rad: of so many in a turn, or what its readings show."""
+    """The step of an encoder, rad: from its counts per turn, or from its readings."""
     return TURN / counts if counts else smallest_step(readings)

@@ -1,6 +1,6 @@
-"""The transmission error of a recording over the output angle: both ways, orders, lost motion.
+"""The transmission error of a recording over the output angle: accuracy, lost motion, orders.
 
-An order is a number of cycles in a turn of the output.
+An order is a number of cycles per turn of the output.
 """
 
 import math
@@ -20,21 +20,21 @@ from gear_kinematics.state.transmission_error import ErrorSample
 Array = NDArray[np.float64]
 
 _LEVELS = 200
-"""Angles at which two runs over the same range are compared."""
+"""Number of angles at which two runs over the same range are compared."""
 _LONG = 0.5
-"""Share of the longest run from which on a run counts as one more like it."""
+"""Runs of at least this share of the longest one are repeats of it."""
 _CYCLES = 2.0
-"""Least cycles of an order in a run."""
+"""Minimum cycles of an order in a run."""
 _SAMPLES = 4.0
-"""Least samples in a cycle."""
+"""Minimum samples in a cycle."""
 _BINS = 8.0
-"""Parts of the spectrum's shortest cycle."""
+"""Interpolated samples in the spectrum's shortest cycle."""
 _BLOCK = 16_384
 """Samples that are fitted at a time."""
 
 
 class MotionError(ValueError):
-    """A recording of both encoders that holds nothing to measure by."""
+    """A recording of both encoders without usable samples."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -42,17 +42,17 @@ class Motion:
     """The transmission error as it was recorded, (n,) each, in the order of time."""
 
     angle: Array
-    """Ideal output angle, rad, from the first turn on."""
+    """Ideal output angle, rad, counted from the first turn."""
     error: Array
-    """Measured less ideal, rad."""
+    """Measured minus ideal output angle, rad."""
     direction: NDArray[np.int8]
-    """1, -1, or 0 where it is not known."""
+    """1, -1, or 0 where unknown."""
     unmatched: Mapping[str, int]
     """Measured angles without an error, by cause."""
     rotor_step: float
-    """rad at the output, between readings of the rotor's encoder; 0 where it is not known."""
+    """rad at the output, between readings of the rotor's encoder; 0 if unknown."""
     output_step: float
-    """rad, of the output's encoder."""
+    """rad, the same of the output's encoder."""
 
     @classmethod
     def from_samples(
@@ -62,7 +62,7 @@ class Motion:
         rotor_step: float,
         output_step: float,
     ) -> 'Motion':
-        """Gather samples.
+        """Convert samples to arrays.
 
         Raises:
             MotionError: if there are none.
@@ -87,7 +87,7 @@ class Order:
 
     name: str
     cycles: Fraction
-    """In a turn of the output."""
+    """Cycles per turn of the output."""
     forward: Estimate | None
     """Amplitude, rad; None where the motion is too short or the samples too far apart."""
     backward: Estimate | None
@@ -95,7 +95,7 @@ class Order:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Spectrum:
-    """Amplitudes over orders, (n,) each, of one way."""
+    """Amplitudes over orders, (n,) each, in one direction."""
 
     orders: Array
     amplitude: Array
@@ -104,18 +104,18 @@ class Spectrum:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TransmissionFigures:
-    """What the recording of both encoders tells."""
+    """Results from a recording of both encoders."""
 
     samples: int
     travel: float
     """rad, from the least to the greatest output angle."""
     offset: float
-    """rad, the mean error: where the encoders' zeros are."""
+    """rad, the mean error: the offset of the encoders' zeros."""
     forward: Estimate | None
-    """Transmission accuracy, rad: peak to peak without a reversal, on the way forward."""
+    """Transmission accuracy, rad: peak-to-peak error of forward motion without a reversal."""
     backward: Estimate | None
     lost_motion: Estimate | None
-    """rad, on reversals: error on the way back less that on the way there; None without any."""
+    """rad, on reversals: error of the backward minus the forward run; None without any."""
     orders: tuple[Order, ...]
     spectra: tuple[Spectrum | None, Spectrum | None]
     """Forward and backward."""
@@ -131,20 +131,20 @@ class _Run:
 
     @property
     def turns(self) -> float:
-        """Of the output."""
+        """Length, turns of the output."""
         return (self.high - self.low) / TURN
 
     @property
     def spacing(self) -> float:
-        """The angle within which nearly all samples have their next, in turns of the output."""
+        """Distance between samples, 99th percentile, turns of the output."""
         return float(np.quantile(np.diff(self.angle), 0.99)) / TURN
 
 
 def marked_orders(mechanism: Mechanism) -> dict[str, Fraction]:
-    """The orders to look for, by name, in cycles in a turn of the output.
+    """The orders to look for, by name, in cycles per turn of the output.
 
-    The rotor turns |i| times, the satellite |i| + 1 times against its cam: so often its teeth and
-    the Oldham coupling go round. Teeth mesh zk times in a turn of the rotor.
+    In a turn of the output, the rotor turns |i| times; the cam turns |i| + 1 times against the
+    satellite, as do its mesh and the Oldham coupling. Teeth mesh zk times per turn of the rotor.
     """
     rotor = abs(mechanism.gear_ratio)
     base = {
@@ -161,7 +161,7 @@ def marked_orders(mechanism: Mechanism) -> dict[str, Fraction]:
 
 
 def figures(motion: Motion, mechanism: Mechanism) -> TransmissionFigures:
-    """Measure a recording.
+    """Compute the figures of a recording.
 
     Raises:
         MotionError: if the output does not follow the rotor.
@@ -185,12 +185,12 @@ def figures(motion: Motion, mechanism: Mechanism) -> TransmissionFigures:
 
 
 def _check(motion: Motion) -> None:
-    """Make sure that the output follows the rotor: else errors within the turn mean nothing."""
+    """Check that the output follows the rotor; otherwise errors within the turn mean nothing."""
     if float(np.ptp(motion.error)) < 0.5 * TURN:
         return
     raise MotionError(
-        'the measured output angle does not follow the rotor: the errors go round the whole turn. '
-        'Is it the ratio, or does an encoder count backwards?'
+        'the measured output angle does not follow the rotor: the errors cover a whole turn; '
+        'the ratio is wrong, or an encoder counts backwards'
     )
 
 
@@ -214,7 +214,7 @@ def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:
 
 
 def _lost_motion(runs: Sequence[tuple[int, _Run]], reading: Component) -> Estimate | None:
-    """Compare runs there and back, each with one other, where they go over the same angles."""
+    """Compare successive runs, in pairs of opposite direction, over their common angles."""
     values = []
     for (sign, there), (_, back) in list(pairwise(runs))[::2]:
         low, high = max(there.low, back.low), min(there.high, back.high)
@@ -242,28 +242,29 @@ def _orders(
 def _amplitudes(
     runs: Sequence[_Run], marked: Mapping[str, Fraction], reading: Component
 ) -> dict[str, Estimate]:
-    """Amplitudes of those orders that all runs can tell from each other."""
+    """Amplitudes of the orders that every run resolves."""
     if not runs:
         return {}
     shortest, coarsest = min(run.turns for run in runs), max(run.spacing for run in runs)
-    told: list[str] = []
+    resolved: list[str] = []
     last = 0.0
     for name, cycles in sorted(marked.items(), key=lambda item: item[1]):
         order = float(cycles)
         apart = (order - last) * shortest >= 1.0
         if apart and order * shortest >= _CYCLES and order * coarsest * _SAMPLES <= 1.0:
-            told.append(name)
+            resolved.append(name)
             last = order
-    if not told:
+    if not resolved:
         return {}
-    fits = [_fit(run, [float(marked[name]) for name in told]) for run in runs]
+    fits = [_fit(run, [float(marked[name]) for name in resolved]) for run in runs]
     return {
-        name: Estimate.of_mean([fit[k] for fit in fits], reading) for k, name in enumerate(told)
+        name: Estimate.of_mean([fit[k] for fit in fits], reading)
+        for k, name in enumerate(resolved)
     }
 
 
 def _fit(run: _Run, orders: Sequence[float]) -> list[float]:
-    """Amplitudes of a sum of sines, by least squares; the samples need not be even."""
+    """Amplitudes of a sum of sines, by least squares; the samples need not be evenly spaced."""
     size = 2 * len(orders) + 1
     normal, right = np.zeros((size, size)), np.zeros(size)
     for start in range(0, len(run.angle), _BLOCK):
@@ -278,7 +279,7 @@ def _fit(run: _Run, orders: Sequence[float]) -> list[float]:
 
 
 def _spectrum(mechanism: Mechanism, runs: Sequence[_Run]) -> Spectrum | None:
-    """Amplitudes over all orders that the longest run resolves, through a Hann window."""
+    """Amplitudes of all orders that the longest run resolves, with a Hann window."""
     run = max(runs, key=lambda run: run.turns, default=None)
     if run is None:
         return None

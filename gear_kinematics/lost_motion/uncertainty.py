@@ -9,9 +9,9 @@ from typing import Self
 import numpy as np
 
 COVERAGE = 0.95
-"""Of expanded uncertainties: the share of such intervals that hold the value."""
+"""Coverage probability of expanded uncertainties."""
 _NORMAL = 1.959963984540054
-"""What the quantile of Student's distribution tends to with the degrees of freedom."""
+"""The quantile of Student's distribution for infinitely many degrees of freedom."""
 _MANY = 10_000
 
 
@@ -20,7 +20,7 @@ class Component:
     """One source of uncertainty."""
 
     standard: float
-    """The standard uncertainty that it gives the value."""
+    """Its contribution to the standard uncertainty of the value."""
     degrees_of_freedom: float = math.inf
 
 
@@ -30,31 +30,31 @@ class Estimate:
 
     value: float
     standard: float | None
-    """Its standard uncertainty, in its unit; None where nothing was repeated."""
+    """Standard uncertainty, in the unit of the value; None without repeats."""
     degrees_of_freedom: float
-    """Effective, of the standard uncertainty."""
+    """Effective degrees of freedom of the standard uncertainty."""
     repeats: int
 
     @classmethod
     def of_mean(cls, values: Sequence[float], *others: Component) -> Self:
-        """Estimate a quantity from its repeats, and from what these cannot show.
+        """Estimate a quantity from its repeats, and components that are the same in all of them.
 
         Args:
             values: at least one.
-            others: what is the same in every repeat, such as the resolution of the encoder.
+            others: such as the resolution of the encoder.
         """
         return cls.of_sum([(1.0, values)], *others)
 
     @classmethod
     def of_sum(cls, terms: Sequence[tuple[float, Sequence[float]]], *others: Component) -> Self:
-        """Estimate a sum of quantities that were repeated each for itself.
+        """Estimate a sum of quantities, each with its own repeats.
 
         The standard uncertainties of the means (GUM 4.2.3) and the other components are combined
         (GUM 5.1.2), with effective degrees of freedom by Welch and Satterthwaite (GUM G.4.1).
 
         Args:
-            terms: factors, and the values of the quantities, at least one of each.
-            others: of the sum.
+            terms: factor and repeated values of each quantity, at least one value each.
+            others: further components of the sum.
         """
         value = sum(factor * float(np.mean(values)) for factor, values in terms)
         repeats = min(len(values) for _, values in terms)
@@ -77,15 +77,15 @@ class Estimate:
 
     @property
     def uncertainty(self) -> float | None:
-        """Expanded to the coverage with Student's t (GUM G.3)."""
+        """Expanded uncertainty, by Student's t for `COVERAGE` (GUM G.3)."""
         if self.standard is None:
             return None
-        # Rounding must not take a whole degree away.
+        # Rounding must not cost a whole degree of freedom.
         degrees = int(min(self.degrees_of_freedom, _MANY) + 1e-6)
         return student_t(degrees) * self.standard
 
     def inverse(self) -> 'Estimate':
-        """Estimate one over the quantity."""
+        """Estimate the reciprocal of the quantity."""
         value = 1.0 / self.value
         standard = None if self.standard is None else value * value * self.standard
         return Estimate(value, standard, self.degrees_of_freedom, self.repeats)
@@ -106,7 +106,7 @@ def student_t(degrees: int) -> float:
     """Quantile t of Student's distribution: the coverage lies within ±t.
 
     Args:
-        degrees: of freedom, at least 1; those beyond 10 000 are infinitely many.
+        degrees: of freedom, at least 1; 10 000 and more count as infinitely many.
     """
     if degrees >= _MANY:
         return _NORMAL

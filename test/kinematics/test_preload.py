@@ -271,7 +271,7 @@ def test_loads_keep_their_shape(shape):
     [
         ((0.0, -1.0, 5.0), ['branch a must be greater than 0', 'branch b must be greater than 0']),
         ((1.0, 1.0, math.nan), ['shaft must be greater than 0, not nan']),
-        ((math.inf, math.inf, math.inf), ['can neither all be rigid']),
+        ((math.inf, math.inf, math.inf), ['must neither all be rigid']),
         ((1.0, 1e-320, 1.0), ['nor have infinite compliance']),
     ],
 )

@@ -27,7 +27,7 @@ NOISES = (0.0, 0.02, 0.1, 0.3)
 
 
 class Truth(NamedTuple):
-    """What the figures should be, by the definitions."""
+    """Expected figures, by the definitions."""
 
     hysteresis: float
     play: float
@@ -91,7 +91,7 @@ def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
 
 
 def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
-    """The share of intervals that hold the truth is what they state, and they are no wider."""
+    """Intervals contain the true value as often as stated, and are no wider than that needs."""
     hits: dict[str, list[bool]] = {}
     errors: dict[str, list[float]] = {}
     widths: dict[str, list[float]] = {}
@@ -104,7 +104,7 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
                     error = estimate.value - expected[figure]
                     hits.setdefault(figure, []).append(abs(error) <= estimate.uncertainty)
                     if noise == NOISES[-1]:
-                        # Relative to each gear's own, so that they can be put together.
+                        # Relative to the values of each gear, so that gears can be combined.
                         errors.setdefault(figure, []).append(error / estimate.uncertainty)
                     widths.setdefault(f'{name} {figure}', []).append(estimate.uncertainty)
     for figure, held in hits.items():
@@ -112,7 +112,7 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
         # Of 64 intervals of 95 %, fewer than 55 hold the truth once in 1000 times.
         assert sum(held) >= 55, figure
     for figure, relative in errors.items():
-        # Where noise rules, an interval is a few times the error, not many times.
+        # Where noise dominates, an interval is a few times the error, not many times.
         assert np.sqrt(np.mean(np.square(relative))) > 0.1, figure
     for figure, limit in (('hysteresis', 4e-4), ('play', 3e-4), ('friction', 0.05)):
         for name in GEARS:
@@ -166,7 +166,7 @@ def test_ranges_that_the_ramps_do_not_reach_are_left_out():
     assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, 6.0)]
 
 
-def test_spring_with_the_play_in_it_makes_no_play_model():
+def test_no_play_model_without_a_range_clear_of_the_play():
     """Small ramps alone, of a gear that is rated far higher."""
     torque = ramps(*[(SMALL, 200)] * 3)
     (found,) = measured(torque, creep(GEARS['backlash'], torque), step=0.0, rated=RATED)
@@ -190,7 +190,7 @@ def test_angle_that_does_not_follow_the_torque_is_refused(offset):
             measured(torque, angle + offset, step=0.0, rated=SMALL)
 
 
-def test_lost_motion_beyond_the_ramps_is_not_there():
+def test_no_lost_motion_beyond_the_ramps():
     torque = ramps((1.0, 200), (1.0, 200))
     (found,) = measured(torque, creep(Gear(0.01, 300.0, 0.2), torque), step=0.0)
     assert found.lost_motion is None
@@ -265,7 +265,7 @@ def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(actuator_tes
 
 
 def test_ramps_of_the_actuator_repeat_within_their_uncertainty(shared_path):
-    """Each ramp is where the others say that one more of them should be, with 95 %."""
+    """Each ramp lies in the 95 % prediction interval of the others."""
     inside = total = 0
     for name in FILES:
         data = columns(shared_path(f'data/torque_ramps/{name}_position_1.csv'))

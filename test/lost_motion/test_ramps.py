@@ -1,4 +1,4 @@
-"""Where torque ramps turn back, and the angle over the torque."""
+"""Reversals of torque ramps, and the angle over the torque between them."""
 
 import math
 
@@ -45,7 +45,7 @@ def test_ramps_are_told_apart_by_their_amplitude(noise):
             assert loop.reaches(0.0)
             assert np.all(np.diff(loop.rise.torque) > 0.0)
             assert np.all(np.diff(loop.fall.torque) < 0.0)
-    # Loadings to the peaks: the first comes from nowhere, the first large one from a small one.
+    # The first loading has no history; the first large one begins at a small peak.
     starts = [[round(branch.start / 4.0) for branch in pull] for pull in small.pulls]
     assert starts == [[0, 1], [-1, 1], [-1, 1]]
     starts = [[round(branch.start / 4.0) for branch in pull] for pull in large.pulls]
@@ -97,15 +97,15 @@ def test_noise_that_crosses_zero_is_no_ramp():
     ],
     ids=['none', 'one way', 'one side', 'too few samples', 'nothing', 'hardly anything'],
 )
-def test_what_is_no_ramp_is_refused(torque):
+def test_torque_without_ramps_is_refused(torque):
     with pytest.raises(RampError, match='no torque ramp'):
         find_ramps(torque, np.zeros(len(torque)))
 
 
 @pytest.mark.parametrize('noise', [0.02, 0.3])
-def test_noise_of_the_torque_is_taken_off_without_a_bias(noise):
+def test_noise_of_the_torque_leaves_no_bias(noise):
     torque = ramps((4.0, 450), (4.0, 450))
-    angle = torque / 300.0  # a spring and nothing else
+    angle = torque / 300.0  # an ideal spring
     errors = []
     for seed in range(20):
         noisy = torque + noise * np.random.default_rng(seed).standard_normal(len(torque))

@@ -1,4 +1,4 @@
-"""Reading recordings of torque and angle: columns, units, steps, and what is no use."""
+"""Reading recordings of torque and angle: columns, units, steps, and unusable files."""
 
 import math
 
@@ -74,8 +74,8 @@ def test_unit_in_any_name_is_that_of_all_angles(tmp_path, actuator):
 
 
 @pytest.mark.parametrize('on_rotor', [False, True])
-def test_torque_beside_both_encoders_winds_up_the_gear_alone(tmp_path, actuator, angle, on_rotor):
-    bench = TORQUE / 50.0  # gives way as well
+def test_torque_with_both_encoders_twists_the_gear_alone(tmp_path, actuator, angle, on_rotor):
+    bench = TORQUE / 50.0  # twists as well
     path = write_csv(
         tmp_path / 'r.csv',
         rotor=-19.0 * (angle + bench),
@@ -89,7 +89,7 @@ def test_torque_beside_both_encoders_winds_up_the_gear_alone(tmp_path, actuator,
     assert len(recording.motion.error) == len(angle)
 
 
-def test_torque_that_was_measured_comes_before_the_commanded(tmp_path, actuator, angle):
+def test_measured_torque_is_preferred_to_the_commanded(tmp_path, actuator, angle):
     path = write_csv(
         tmp_path / 'r.csv', POSITION=angle, CONTROL_TORQUE=-TORQUE, TORQUE=TORQUE, test_nr=TORQUE
     )
@@ -111,7 +111,7 @@ def test_other_delimiters_byte_order_marks_and_line_ends(tmp_path, actuator, ang
     assert len(read(path, actuator).loading.angle) == len(angle)
 
 
-def test_rows_that_are_not_finite_are_left_out_and_told(tmp_path, actuator, angle):
+def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, actuator, angle):
     holes = angle.copy()
     holes[[10, 500]] = math.nan, 1e17
     recording = read(write_csv(tmp_path / 'r.csv', angle=holes, torque=TORQUE), actuator)
@@ -127,7 +127,7 @@ def test_rows_that_are_not_finite_are_left_out_and_told(tmp_path, actuator, angl
         ('angle,torque\n1,2\n3\n', 'line 3: too few columns'),
         ('angle,torque\n1,2\nx,4\n', "line 3: could not convert string to float: 'x'"),
         ('a,b\n1,2\n', 'neither an angle and a torque nor a rotor and an output'),
-        ('angle,angle,torque\n1,2,3\n', "the column 'angle' is there twice"),
+        ('angle,angle,torque\n1,2,3\n', "more than one column 'angle'"),
         (b'\xff\xfe\x00\x01', 'not text in UTF-8'),
         (None, 'No such file or directory'),
     ],
@@ -170,7 +170,7 @@ def test_readings_without_steps_have_none():
         assert smallest_step(constant) == 0.0
 
 
-def test_steps_can_be_told(tmp_path, actuator, angle):
+def test_steps_can_be_given(tmp_path, actuator, angle):
     path = write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE)
     recording = read_csv(path, actuator, Columns(), TRAVEL, counts=4096)
     assert recording.loading.angle_step == TURN / 4096
@@ -216,7 +216,7 @@ def test_topics_that_are_not_there_are_named(tmp_path, config, angle, option):
         read_bag(path, config, **{option: '/nowhere'})
 
 
-def test_what_comes_before_a_damage_is_read(tmp_path, config, actuator, angle):
+def test_bag_is_read_up_to_the_damage(tmp_path, config, actuator, angle):
     (file,) = ramps_on_rotor(tmp_path / 'ramps', angle).glob('*.mcap')
     cut = tmp_path / 'cut.mcap'
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])

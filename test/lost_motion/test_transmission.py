@@ -29,7 +29,7 @@ def there_and_back(turns: float, times: int) -> np.ndarray:
 
 
 def follow(angle: np.ndarray, play: float) -> np.ndarray:
-    """Where something with play is that is pushed along, from the middle on."""
+    """Positions of a body that is pushed along with play, from the middle of the play."""
     place, places = float(angle[0]), []
     for pushed in angle:
         place = min(max(place, pushed - 0.5 * play), pushed + 0.5 * play)
@@ -72,7 +72,7 @@ def test_lost_motion_on_reversals_is_the_play(found):
     assert abs(found.lost_motion.value - PLAY) <= found.lost_motion.uncertainty < 2e-5
 
 
-def test_accuracy_is_peak_to_peak_on_one_way(found):
+def test_accuracy_is_peak_to_peak_in_one_direction(found):
     ideal = np.linspace(0.0, 2.2 * TURN, 200_000)
     errors = sum(a * np.sin(order * ideal + order) for order, a in AMPLITUDES.items())
     for way in (found.forward, found.backward):
@@ -106,12 +106,12 @@ def test_steps_of_both_encoders_are_known(recording):
     assert recording.motion.output_step == pytest.approx(TURN / 2**20, rel=1e-6)
 
 
-def test_offset_of_the_encoder_is_told(found):
+def test_offset_of_the_encoder_is_reported(found):
     assert found.offset == pytest.approx(1.0, abs=2e-4)
     assert found.travel == pytest.approx(2.2 * TURN, rel=1e-3)
 
 
-def test_rows_of_a_csv_belong_together(tmp_path, actuator):
+def test_values_of_a_csv_row_are_simultaneous(tmp_path, actuator):
     ideal = there_and_back(2.2, 2)
     path = write_csv(
         tmp_path / 'both.csv',
@@ -126,7 +126,7 @@ def test_rows_of_a_csv_belong_together(tmp_path, actuator):
     assert found.orders[2].forward.value == pytest.approx(AMPLITUDES[19], abs=3e-6)
 
 
-def test_short_motion_has_no_orders_that_it_cannot_tell(actuator):
+def test_short_motion_has_no_orders_that_it_cannot_resolve(actuator):
     angle = np.linspace(0.0, 0.3 * TURN, 3000)
     found = figures(motion(angle, 1e-3 * np.sin(19.0 * angle)), actuator)
     # 0.3 turns hold 5.7 cycles of the rotor, which cannot be told from 6 of the satellite.
@@ -137,7 +137,7 @@ def test_short_motion_has_no_orders_that_it_cannot_tell(actuator):
     assert found.lost_motion is None
 
 
-def test_coarse_samples_tell_no_fine_orders(actuator):
+def test_coarse_samples_resolve_no_high_orders(actuator):
     angle = np.linspace(0.0, 3.0 * TURN, 3000)
     found = figures(motion(angle, np.sin(angle)), actuator)
     told = {order.name for order in found.orders if order.forward}
@@ -179,11 +179,11 @@ def test_orders_of_any_tooth_pair():
     assert orders['teeth × 2'] == 2 * orders['teeth × 1']
 
 
-def test_wind_up_is_measured_where_both_encoders_are(tmp_path, config, actuator):
-    """The output turns under load: only what the gear gives way counts."""
+def test_twist_is_measured_with_both_encoders(tmp_path, config, actuator):
+    """The output turns under load; only the twist of the gear counts."""
     gear_stiffness, bench_stiffness, friction = 400.0, 50.0, 0.5
     torque = 8.0 * np.sin(np.arange(8000) * TURN / 2000)
-    load = np.array(follow(torque, 2.0 * friction))  # what friction leaves of it
+    load = np.array(follow(torque, 2.0 * friction))  # minus friction
     bench, gear = load / bench_stiffness, load / gear_stiffness
     stamps = START + np.arange(len(torque)) * MS
     rotor = Samples(stamps, -19.0 * (bench + gear), torque / -19.0)

@@ -60,7 +60,7 @@ def test_sum_of_means_of_different_repeats():
     assert estimate.repeats == 2
 
 
-def test_what_was_not_repeated_has_no_uncertainty():
+def test_single_value_has_no_uncertainty():
     estimate = Estimate.of_mean([4.0], Component(1.0))
     assert (estimate.value, estimate.standard, estimate.uncertainty) == (4.0, None, None)
     assert estimate.inverse().uncertainty is None
@@ -90,7 +90,7 @@ def test_no_scale_overflows(scale):
     assert scaled.degrees_of_freedom == pytest.approx(one.degrees_of_freedom)
 
 
-def test_reading_in_steps_is_evenly_spread():
+def test_reading_in_steps_has_a_rectangular_distribution():
     # The variance of a rectangle of width 0.3, by numbers.
     rectangle = (np.arange(100_000) + 0.5) / 100_000 * 0.3
     assert resolution(0.3) == pytest.approx(np.std(rectangle), rel=1e-9)
