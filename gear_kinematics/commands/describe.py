@@ -23,11 +23,13 @@ _DIGITS = 6
 
 
 class _Fact(NamedTuple):
-    """What JSON calls it, its value (None: there is none), and its unit."""
+    """A value (None: there is none) with its key in JSON and its unit."""
 
-    name: str
+    key: str
     value: Any
     unit: str = ''
+    label: str = ''
+    """For people, where the key does not say it."""
 
     @property
     def cell(self) -> Cell:
@@ -54,13 +56,13 @@ def run(options: argparse.Namespace) -> ExitCode:
     reporter = Reporter(options)
     described, size = mechanism(options), module(options)
     facts = [*_facts(described), *_tooth_facts(described, size)]
-    values = ((fact.name.replace('_', ' '), fact.cell) for fact in facts)
+    values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)
     section = Section(
         '',
         (Table.of_values(Layout.LINES, *values),),
         figure=plotting.outlines(described, size),
     )
-    data = {fact.name: fact.value for fact in facts}
+    data = {fact.key: fact.value for fact in facts}
     reporter.write(Document('gearkin describe', (section,), data))
     return ExitCode.DONE
 
@@ -100,7 +102,12 @@ def _tooth_facts(mechanism: Mechanism, module: float) -> list[_Fact]:
         _Fact('addendum', pair and pair.addendum, 'modules'),
         _Fact('satellite_tip_radius', pair and pair.satellite_tip_radius, 'm'),
         _Fact('ring_tip_radius', pair and pair.ring_tip_radius, 'm'),
-        _Fact('tip_clearance', pair and pair.tip_clearance, 'rad'),
+        _Fact(
+            'tip_clearance',
+            pair and pair.tip_interference_margin,
+            'rad',
+            'tip interference margin',
+        ),
         _Fact('contact_ratio', pair and pair.contact_ratio),
         _Fact('interference', interference),
     ]

@@ -1,7 +1,7 @@
-"""Figures of the mechanism, as image files or for a report; matplotlib is imported here only.
+"""Figures of the mechanism, as the bytes of image files or for a report.
 
-What makes an image file takes the path of the file that is to be, whose suffix says which format.
-It raises ValueError if there is no such format, and ModuleNotFoundError without matplotlib.
+Plots take the path of the image file, whose suffix determines the format. They raise ValueError
+for an unknown suffix and ModuleNotFoundError without matplotlib.
 """
 
 from gear_kinematics.plotting.animation import animate

@@ -1,4 +1,4 @@
-"""The mechanism moving, as a GIF or an MP4."""
+"""Animations of the mechanism as GIF or MP4."""
 
 import subprocess
 from collections.abc import Callable, Iterator
@@ -16,11 +16,11 @@ from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, styled
 from gear_kinematics.state.trajectory import Trajectory
 
-_WIDTH = 4.0  # inches, whatever the pixels, so that lines and letters grow with them
-_HEIGHT = 2 / 3  # of the width: the mechanism, and at half its size beside it the centres
+_WIDTH = 4.0  # inches for any number of pixels, so that lines and text scale with them
+_HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size
 _GROUND = '#ffffff'
 _MOST_PIXELS = 1_000_000_000
-"""Of all frames of a GIF, which are in memory until the last is drawn."""
+"""Pixels of all frames of a GIF, which are in memory until the last one is drawn."""
 
 
 def animate(
@@ -34,22 +34,22 @@ def animate(
     branch: int = 0,
     progress: Callable[[int], None] = lambda _: None,
 ) -> bytes:
-    """Draw a branch moving, and its centres magnified, with the rose of O4.
+    """Animate a branch, and its magnified centres with the rose of O4.
 
     Args:
         mechanism: the mechanism.
         module: of the teeth, m.
-        path: of the file that is to be, .gif or .mp4.
-        frames: the positions of the rotor to draw.
-        fps: frames in a second; a GIF counts in hundredths of a second.
+        path: of the image file, .gif or .mp4.
+        frames: rotor positions to draw.
+        fps: frames per second; a GIF rounds their duration to hundredths of a second.
         width: px; the height is two thirds of it.
         branch: index of the branch.
-        progress: called with each frame's number.
+        progress: called with the number of each frame.
 
     Raises:
-        ValueError: if `path` has another suffix, or a GIF would take too much memory.
+        ValueError: if `path` has another suffix, or a GIF would need too much memory.
         ModuleNotFoundError: without matplotlib.
-        RuntimeError: for an MP4 without ffmpeg, or if it fails.
+        RuntimeError: for an MP4, if ffmpeg is missing or fails.
     """
     writers = {'.gif': _gif, '.mp4': _mp4}
     suffix = path.suffix.lower()
@@ -76,7 +76,7 @@ def _moving(
     frames: Trajectory,
     progress: Callable[[int], None],
 ) -> Iterator[None]:
-    """Draw one frame after the other."""
+    """Draw the frames one by one."""
     figure.set_layout_engine('none')
     left = figure.add_axes((0.0, 0.0, _HEIGHT, 1.0))
     right = figure.add_axes((_HEIGHT, 0.25, 1.0 - _HEIGHT, 0.5))
@@ -120,16 +120,16 @@ def _gif(figure: Any, frames: Iterator[None], fps: int) -> bytes:
         'GIF',
         save_all=True,
         append_images=others,
-        duration=10 * max(2, round(100.0 / fps)),  # ms; players take less than 20 for none
+        duration=10 * max(2, round(100.0 / fps)),  # ms; players ignore durations under 20
         loop=0,
     )
     return content.getvalue()
 
 
 def _palette() -> Any:
-    """The colours of the drawing, and those halfway between two that meet, for smooth edges.
+    """The colours of the drawing, and the means of adjacent ones, for smooth edges.
 
-    Colours of its own for each frame would flicker, and more would take more space.
+    A palette for each frame would flicker; more colours would take more space.
     """
     from PIL import Image, ImageColor  # noqa: PLC0415, comes with matplotlib
 

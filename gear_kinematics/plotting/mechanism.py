@@ -1,4 +1,4 @@
-"""The mechanism itself: the bodies of a branch, and magnified how their centres are linked."""
+"""The kinematic scheme: the bodies of a branch, and their centres magnified."""
 
 import math
 from collections.abc import Iterable
@@ -21,21 +21,21 @@ COLOURS = {
     'oldham': ('#eac54f', '#7d4e00'),
     'output_shaft': ('#4ac26b', '#116329'),
 }
-"""Of the face of a body, and of its outline."""
+"""Colours of the face of each body and of its outline."""
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
-_LABEL = 15.0  # points from what it labels
-_SHORT = 0.2  # eccentricities: no label has room beside it
+_LABEL = 15.0  # points from the labelled point
+_SHORT = 0.2  # eccentricities; too short for a label
 _MM = 1e3  # in a metre
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 
 
 class Bodies:
-    """The bodies of a branch on axes, to scale, which `show` moves."""
+    """The bodies of a branch drawn to scale; `show` moves them."""
 
     def __init__(self, axes: Any, mechanism: Mechanism, module: float, branch: int) -> None:
-        """Draw them where they are at φ2 = 0."""
+        """Draw them at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         self._outlines = bodies(mechanism, module, branch)
         self.patches = {}
@@ -48,21 +48,21 @@ class Bodies:
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
-        """Move them to where they are at a position of the rotor."""
+        """Move them to their poses at a rotor position."""
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         for body, patch in self.patches.items():
             patch.set_path(_path(placed[body].place(part) for part in self._outlines[body]))
 
 
 class Centres:
-    """The centres of a branch's bodies on axes, in units of e, which `show` moves.
+    """The centres of a branch's bodies, in units of e; `show` moves them.
 
-    O4 is where the slot of the satellite, the x axis of its frame, meets that of the arm, the y
-    axis of the output shaft's frame: on the circle whose diameter is O1-O3.
+    O4 is where the slot of the satellite (the x axis of its frame) intersects that of the arm (the
+    y axis of the output shaft's frame), on the circle with the diameter O1-O3.
     """
 
     def __init__(self, axes: Any, mechanism: Mechanism, branch: int) -> None:
-        """Draw them where they are at φ2 = 0."""
+        """Draw them at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
         edge = {body: colours[1] for body, colours in COLOURS.items()}
@@ -85,7 +85,7 @@ class Centres:
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
-        """Move them to where they are at a position of the rotor."""
+        """Move them to their poses at a rotor position."""
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         e = self._mechanism.eccentricity
         o1 = np.zeros(2)
@@ -130,8 +130,8 @@ def scheme(
     Args:
         mechanism: the mechanism.
         module: of the teeth, m.
-        path: of the file that is to be.
-        rotor: its position φ2.
+        path: of the image file.
+        rotor: rotor position φ2.
         branch: index of the branch.
     """
     draw = partial(_draw_scheme, mechanism, module, rotor, branch)
@@ -167,12 +167,12 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
     e = mechanism.eccentricity
     o1 = np.zeros(2)
     o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
-    # O1, O4 and O3 are a triangle with its right angle at O4; each label is outside of it, also
-    # where two of them are in one place.
+    # O1, O4 and O3 form a triangle with its right angle at O4; each label is outside of it, even
+    # where two of the points coincide.
     along, upright = placed['output_shaft'].place(np.eye(2))
     x, y = (o4 - o3) @ along, o4 @ upright
     side, up = math.copysign(1.0, x) * along, math.copysign(1.0, y) * upright
-    inwards = abs(x) * up + abs(y) * side  # from O1-O3
+    inwards = abs(x) * up + abs(y) * side  # from the side O1-O3
     edge = {body: colours[1] for body, colours in COLOURS.items()}
     for text, colour, at, direction, length in (
         ('$O_1$', INK, o1, 0.8 * side - up, 1.0),

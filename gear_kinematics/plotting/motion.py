@@ -1,4 +1,4 @@
-"""The motion of couplings and output: roses, slides, and angles over time."""
+"""Plots of the motion: roses and slides of the couplings, and the output over time."""
 
 from functools import partial
 from itertools import cycle
@@ -15,7 +15,7 @@ from gear_kinematics.shape.outlines import Array
 from gear_kinematics.state.trajectory import Trajectory
 
 MOST_PETALS = 1000
-"""Beyond, a rose is a disc."""
+"""With more, a rose looks like a disc."""
 _PETAL_POINTS = 48
 _MM = 1e3  # in a metre
 
@@ -25,11 +25,11 @@ def roses(mechanism: Mechanism, path: Path, trajectory: Trajectory | None = None
 
     Args:
         mechanism: the mechanism.
-        path: of the file that is to be.
-        trajectory: of the rotor; the part of the roses that is run through in it stands out.
+        path: of the image file.
+        trajectory: of the rotor; highlights the part of the roses that it covers.
 
     Raises:
-        ValueError: if there are more than `MOST_PETALS`, or `path` has the suffix of no format.
+        ValueError: if there are more than `MOST_PETALS`, or `path` has an unknown suffix.
     """
     width = 3.4 * len(mechanism.branches)
     whole = rose(mechanism)
@@ -38,10 +38,10 @@ def roses(mechanism: Mechanism, path: Path, trajectory: Trajectory | None = None
 
 
 def rose(mechanism: Mechanism) -> Array:
-    """The whole paths of the centres of the couplings, O4, (n, B, 2), in m (eqs. 21, 22).
+    """The complete paths of the centres of the couplings, O4, (n, B, 2), m (eqs. 21, 22).
 
     Raises:
-        ValueError: if they have more than `MOST_PETALS`.
+        ValueError: if there are more petals than `MOST_PETALS`.
     """
     if mechanism.oldham_petals > MOST_PETALS:
         raise ValueError(
@@ -55,9 +55,9 @@ def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle
 
     Args:
         mechanism: the mechanism.
-        path: of the file that is to be.
+        path: of the image file.
         trajectory: of the rotor.
-        by_angle: over the rotor angle, not over time.
+        by_angle: whether to plot over the rotor angle instead of time.
     """
     return render(
         path, (7.0, 5.0), partial(_draw_slides, mechanism, trajectory, by_angle=by_angle)
@@ -69,7 +69,7 @@ def output(mechanism: Mechanism, path: Path, trajectory: Trajectory) -> bytes:
 
     Args:
         mechanism: the mechanism.
-        path: of the file that is to be.
+        path: of the image file.
         trajectory: of the rotor.
     """
     return render(path, (7.0, 4.5), partial(_draw_output, mechanism, trajectory))
@@ -121,7 +121,7 @@ def _draw_slides(
         axes.margins(x=0.0)
     if by_angle:
         speeds.set_xticks(np.arange(x[0], x[-1] + 1.0, 45.0))
-    # In one row, or in columns of a branch, or in as many as the width allows.
+    # One row; else one column per branch; else as many columns as fit the width.
     handles, names = positions.get_legend_handles_labels()
     for columns in (len(names), *range(len(mechanism.branches), 0, -1)):
         legend = figure.legend(handles, names, loc='outside upper center', ncols=columns)

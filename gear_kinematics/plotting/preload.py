@@ -1,4 +1,4 @@
-"""What an external torque does to two braced branches."""
+"""Plot of two preloaded branches under an external torque."""
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from gear_kinematics.shape.angles import arc_seconds
 
 
 def torque_split(preload: Preload, names: tuple[str, str], max_load: float) -> Figure:
-    """Plot how two branches share an external torque, and how far the output gives way.
+    """Plot how two branches share an external torque, and the turn of the output.
 
     Args:
-        preload: of the branches.
+        preload: of the two branches.
         names: of branches A and B.
         max_load: N·m; the plot reaches as far either way.
     """

@@ -1,1 +1,1 @@
-"""What the bodies look like: teeth, outlines, URDF, the pin sheet, and angles for people."""
+"""Shapes of the bodies: teeth, outlines, URDF and the pin sheet; formatted angles."""

@@ -1,4 +1,4 @@
-"""Angles as people read them."""
+"""Angles in degrees, minutes and seconds of arc."""
 
 import math
 from typing import Any, overload
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 
 def arc(angle: float) -> str:
-    """Degrees, minutes and seconds of arc to a thousandth: -1° 02′ 03.450″.
+    """Format an angle to a thousandth of a second of arc: -1° 02′ 03.450″.
 
     Args:
         angle: finite, rad.
@@ -30,5 +30,5 @@ def arc_seconds(angle: float) -> float: ...
 @overload
 def arc_seconds(angle: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def arc_seconds(angle: Any) -> Any:
-    """An angle in rad, or an array of them, as seconds of arc."""
+    """Convert an angle in rad, or an array of them, to seconds of arc."""
     return angle * (3600.0 * 180.0 / math.pi)

@@ -1,9 +1,8 @@
-"""The bodies of a branch as they are drawn: their outlines, and where they are at a rotor angle.
+"""Outlines of the bodies of a branch, and their poses at a rotor angle, for drawings and pages.
 
-Whatever draws the mechanism, with matplotlib or in a page, takes shapes and poses from here. The
-gears are to scale; cam, coupling and arm are shaped so that they fit inside the satellite and
-that their slides can be seen. Where these are too long for that, with very few teeth, coupling and
-arm are left out.
+The gears are to scale; cam, coupling and arm are sized so that they fit inside the satellite and
+their slides can be seen. Where the slides are too long for that, with very few teeth, coupling
+and arm are left out.
 """
 
 import math
@@ -19,8 +18,8 @@ from gear_kinematics.shape import teeth
 
 Array = NDArray[np.float64]
 Outlines = tuple[Array, ...]
-"""Closed polygons (n, 2), m, in the frame of their body: a border, anticlockwise, and then the
-holes in it, clockwise, so that either rule of filling does."""
+"""Closed polygons (n, 2), m, in the frame of their body: an anticlockwise border, then its holes,
+clockwise, so that the nonzero and the even-odd fill rule give the same."""
 
 NAMES = {
     'stator': 'ring gear',
@@ -29,18 +28,18 @@ NAMES = {
     'oldham': 'Oldham coupling',
     'output_shaft': 'arm',
 }
-"""What people call the bodies that are drawn."""
+"""Names of the bodies in drawings."""
 BODIES = tuple(NAMES)
-"""The bodies of a branch from back to front, as the links of the URDF are called."""
+"""The bodies of a branch from back to front, named as the links of the URDF."""
 
-_ARC = math.radians(3.0)  # between the points of a circle, about
-_RING_BORDER = 1.07  # of the ring gear, times the root circle of its teeth
+_ARC = math.radians(3.0)  # between points of a circle, approximately
+_RING_BORDER = 1.07  # of the ring gear, in root radii
 _LEAST_ROOM = 0.3
-"""Of the satellite's radius, which the slides have to leave for coupling and arm."""
+"""Share of the satellite's root radius that coupling and arm need beside their slides."""
 
 
 class Pose(NamedTuple):
-    """Where a body is, in the frame of the stator; `...` is the shape of the rotor angles."""
+    """Pose of a body in the frame of the stator; `...` is the shape of the rotor angles."""
 
     centre: Array
     """(..., 2), m."""
@@ -48,7 +47,7 @@ class Pose(NamedTuple):
     """(...), rad, within a turn."""
 
     def place(self, outline: Array) -> Array:
-        """Give the points (n, 2) of the body in the frame of the stator, (..., n, 2)."""
+        """Transform points (n, 2) of the body to the frame of the stator, (..., n, 2)."""
         cosine, sine = np.cos(self.angle), np.sin(self.angle)
         to_stator = np.stack([np.stack([cosine, sine], -1), np.stack([-sine, cosine], -1)], -2)
         turned: Array = outline @ to_stator
@@ -56,7 +55,7 @@ class Pose(NamedTuple):
 
 
 def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Outlines]:
-    """Shape the bodies of a branch.
+    """Compute the outlines of the bodies of a branch.
 
     Args:
         mechanism: the mechanism.
@@ -97,13 +96,13 @@ def poses(
     *,
     rotor_turns: ArrayLike = 0,
 ) -> dict[str, Pose]:
-    """Find where the bodies of a branch are.
+    """Compute the poses of the bodies of a branch.
 
     Args:
         mechanism: the mechanism.
         rotor_angle: φ2, rad, of any shape `(...)`.
         branch: index of the branch.
-        rotor_turns: whole turns to be added to it, as for `solve`.
+        rotor_turns: whole turns added to it, as for `solve`.
 
     Returns:
         The pose of each of `BODIES`, in this order.
@@ -126,8 +125,8 @@ def roses(mechanism: Mechanism, petals: int, points: int) -> Array:
 
     Args:
         mechanism: the mechanism.
-        petals: how many of its `oldham_petals` to go through.
-        points: of a petal.
+        petals: number of petals of each path, up to `oldham_petals`.
+        points: number of points of a petal.
 
     Returns:
         m, (petals · points + 1, B, 2).
@@ -150,20 +149,20 @@ class _Sizes(NamedTuple):
     coupling_bore: float
     coupling: float
     jaw: float
-    """Where the jaws of the arm begin."""
+    """Inner radius of the jaws of the arm."""
     tongue: float
-    """How far the keys of the coupling reach."""
+    """Outer radius of the keys of the coupling."""
     slot: float
-    """How far the slots for them reach."""
+    """Outer radius of the slots for the keys."""
     rim_bore: float
     rim: float
-    """Of the arm."""
+    """Outer radius of the rim of the arm."""
     key: float
     """Half the width of the keys."""
 
     @classmethod
     def within(cls, root: float, e: float) -> Self | None:
-        """Share the radius inside the teeth out; the slides take the eccentricity three times."""
+        """Divide the radius inside the teeth; the slides take three eccentricities of it."""
         room = root - 3.0 * e
         if room < _LEAST_ROOM * root:
             return None
@@ -194,7 +193,7 @@ def _jaw(sizes: _Sizes) -> list[tuple[float, float]]:
 
 
 def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int) -> Array:
-    """A circle with equal tabs, evenly spaced from the x axis on; the tab given on the x axis."""
+    """A circle with equal tabs, evenly spaced; `tab` is the one on the x axis."""
     half_width = abs(tab[0][1])
     start = math.asin(half_width / radius)
     foot = radius * math.cos(start)

@@ -1,4 +1,4 @@
-"""A drawing of the pin holes for a printed page of A4: which to bring together."""
+"""A drawing on A4 of the pin holes of ring gear and chassis, with the setting marked."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,15 +10,15 @@ from gear_kinematics.kinematics.vernier import PinSetting
 from gear_kinematics.shape.angles import arc
 
 MOST_TEETH = 1000
-"""Beyond, the holes of a ring on A4 are too small to print."""
+"""With more teeth, the holes are too small to print on A4."""
 
 _WIDTH, _HEIGHT = 210, 297  # mm, as every length here
 _CENTRE = (105.0, 124.0)
 _BORDER = 79.0  # radii
 _ROOT, _TIP, _TOOTH_NUMBER = 60.5, 58.0, 50.0
-_WIDEST_TOOTH = 1 / 40  # of the circumference, with its gap
+_WIDEST_TOOTH = 1 / 40  # of the circumference, including the gap
 _HOLE = 1.7
-_NUMBER, _NUMBER_PITCH = 2.5, 5.0  # size, and what one takes of the circumference
+_NUMBER, _NUMBER_PITCH = 2.5, 5.0  # size, and least distance along the circumference
 _DETAIL, _DETAIL_HOLES, _DETAIL_PITCH = 255.0, 4, 16.0
 _INK, _FAINT, _PIN = '#24292f', '#8c959f', '#cf222e'
 
@@ -32,28 +32,28 @@ class _Row(NamedTuple):
     holes: int
     pinned: int
     zero: Fraction
-    """Where its zero mark is, turns anticlockwise from the chassis's."""
+    """Position of its zero mark, turns anticlockwise from the chassis's."""
     direction: int
     """1 if the holes count anticlockwise, else -1."""
     radius: float
     outwards: int
-    """1 if its numbers are outside its holes, else -1."""
+    """1 if the numbers are outside the holes, else -1."""
 
     def turn(self, hole: int) -> Fraction:
-        """Where a hole is."""
+        """Position of a hole, turns anticlockwise from the chassis's zero mark."""
         return self.zero + Fraction(self.direction * hole, self.holes)
 
 
 def draw(
     ring_teeth: int, setting: PinSetting, notes: Sequence[str] = (), *, mirrored: bool = False
 ) -> str:
-    """Draw ring gear and chassis with all their teeth and holes, pinned.
+    """Draw ring gear and chassis with all teeth and holes, and the pin.
 
     Args:
         ring_teeth: zk, at most `MOST_TEETH`.
-        setting: of that ring gear.
-        notes: up to three lines more for the page.
-        mirrored: as seen along the z axis, not against it.
+        setting: tooth and holes to mark.
+        notes: up to three further lines of text.
+        mirrored: whether to draw the view along the z axis instead of against it.
 
     Returns:
         An SVG document of the size of A4.

@@ -1,15 +1,15 @@
-"""The outlines of ring gear and satellite as involute teeth which mesh at the eccentricity.
+"""Involute teeth of ring gear and satellite that mesh at the eccentricity.
 
 The teeth are those of the basic rack of ISO 53: pressure angle α = 20°, addendum m, clearance
 c = 0.25 m. Base circles and thickness follow from module m, tooth numbers and profile shifts, as
-in ISO 21771 (which has DIN 3960's equations). The satellite has no profile shift; the ring gear
-has the one with which both fit without backlash at the centre distance e:
+in ISO 21771 (which has DIN 3960's equations). The satellite has no profile shift; that
+of the ring gear gives zero backlash at the centre distance e:
 
     cos αw = m (zk - zs) cos α/(2 e)        xk - xs = (zk - zs)(inv αw - inv α)/(2 tan α)
 
-A ring tooth counts its shift outwards, so its spaces are the teeth of an external gear of zk teeth
-and shift xk. With few teeth of difference the tips get into each other's way beyond the contact
-(trochoid interference), unless
+The profile shift of the ring gear is positive outwards, so its spaces are the teeth of an external
+gear with zk teeth and shift xk. If the tooth numbers differ by little, the tips collide outside
+the contact (trochoid interference), unless
 
     [Θs + inv αs - inv αw] zs/zk + inv αw - inv αk ≥ Θk
     cos Θs = (rk² - rs² - e²)/(2 e rs)      cos Θk = (rk² - rs² + e²)/(2 e rk)
@@ -17,9 +17,9 @@ and shift xk. With few teeth of difference the tips get into each other's way be
 with rs, rk the tip radii and αs, αk the involute's pressure angles there; and a ring tip stays
 clear of the satellite's base circle (involute interference) if tan αk ≥ (1 - zs/zk) tan αw. Both
 are in SDP/SI, Elements of Metric Gear Technology, section 5, and derived in Colbourne, The
-Geometry of Involute Gears. The usual remedy is shorter teeth: here as high as interference
-permits. Trimming interference, which only forbids to push the satellite in from the side, does
-not matter: it is put in along the axis.
+Geometry of Involute Gears. The usual remedy is shorter teeth: here they are as high as
+interference permits. Trimming interference does not matter, since the satellite is assembled
+axially, not radially.
 """
 
 import math
@@ -39,10 +39,10 @@ PRESSURE_ANGLE = math.radians(20.0)
 """α of the basic rack, rad (ISO 53)."""
 _CLEARANCE = 0.25  # between tip and root, modules (ISO 53, type A)
 _BACKLASH = 0.02  # between the flanks, along their normal, modules; taken from the satellite
-_LEAST_TIP = 0.2  # thickness of a tip, modules: the usual limit of what is called pointed
-_FLANK_POINTS = 8  # with less, the chords of teeth of low numbers come too near to each other
+_LEAST_TIP = 0.2  # thickness of a tip, modules: thinner ones count as pointed
+_FLANK_POINTS = 8  # with fewer, the chords of gears with few teeth come too close
 _CIRCLE_POINTS = 360
-_MOST_TEETH = 1000  # to be drawn; no picture shows finer ones
+_MOST_TEETH = 1000  # more are too fine for any picture
 
 
 class InterferenceError(ValueError):
@@ -50,27 +50,27 @@ class InterferenceError(ValueError):
 
 
 class Outlines(NamedTuple):
-    """Closed polygons without their first point repeated, counter-clockwise, m."""
+    """Closed anticlockwise polygons, m, without repeating the first point."""
 
     ring: Array
-    """(n, 2), in the stator's frame less `ring_phase`: the material is outside of it."""
+    """(n, 2), in the stator's frame, before a turn by `ring_phase`; the material is outside."""
     satellite: Array
-    """(m, 2), in frame 3: about the satellite's centre, turning with φ5."""
+    """(m, 2), in frame 3: about the satellite's centre, at the angle φ5."""
 
 
 def outlines(mechanism: Mechanism, module: float) -> Outlines:
     """The outlines of ring gear and satellite, which mesh at every rotor angle.
 
     Draw the satellite at `satellite_centre`, turned by `output_angle`, and the ring gear of a
-    branch turned by its `ring_phase`. Where teeth cannot mesh (see `tooth_pair`), or are too many
-    to be seen, these are the circles which roll on each other: every mechanism can be drawn.
+    branch turned by its `ring_phase`. If the teeth cannot mesh (see `tooth_pair`), or are too many
+    to be seen, the outlines are the rolling circles.
 
     Args:
         mechanism: the mechanism.
-        module: m, in m.
+        module: m, in metres.
 
     Raises:
-        MechanismError: if the module is no length.
+        MechanismError: if the module is not finite and greater than 0.
     """
     try:
         pair = tooth_pair(mechanism, module)
@@ -84,20 +84,20 @@ def outlines(mechanism: Mechanism, module: float) -> Outlines:
 
 
 def ring_phase(mechanism: Mechanism, branch: Branch) -> float:
-    """ψ_k: the turn of a branch's ring gear that its cam calls for, rad, within half a pitch."""
+    """ψ_k: the turn of a branch's ring gear for its cam phase, rad, within half a tooth pitch."""
     return ring_turn_between(mechanism, 0.0, branch.cam_phase)
 
 
 def tooth_pair(mechanism: Mechanism, module: float) -> 'ToothPair':
-    """The highest teeth, up to those of the basic rack, which mesh without interference.
+    """Find the highest teeth, up to those of the basic rack, that mesh without interference.
 
     Args:
         mechanism: the mechanism.
-        module: m, in m.
+        module: m, in metres.
 
     Raises:
-        InterferenceError: if there are none, with the numbers.
-        MechanismError: if the module is no length.
+        InterferenceError: if there are none; the text gives the numbers.
+        MechanismError: if the module is not finite and greater than 0.
     """
     if not 0.0 < module < math.inf:
         raise MechanismError([f'module must be finite and greater than 0, not {module!r}'])
@@ -126,20 +126,21 @@ class ToothPair:
 
     def __str__(self) -> str:
         return (
-            f'an addendum of {self.addendum:g} modules gives a tip clearance of '
-            f'{self.tip_clearance:.3g} rad and a contact ratio of {self.contact_ratio:.3f}'
+            f'an addendum of {self.addendum:g} modules gives a tip interference margin of '
+            f'{self.tip_interference_margin:.3g} rad and a contact ratio of '
+            f'{self.contact_ratio:.3f}'
         )
 
     @property
     def working_pressure_angle(self) -> float:
-        """αw, between the line of action and the tangent of the rolling circles."""
+        """αw, between the line of action and the common tangent of the rolling circles."""
         teeth = self.mechanism.ring_teeth - self.mechanism.satellite_teeth
         reference = 0.5 * self.module * teeth
         return math.acos(reference * math.cos(PRESSURE_ANGLE) / self.mechanism.eccentricity)
 
     @property
     def ring_profile_shift(self) -> float:
-        """xk, modules; that of the satellite is 0."""
+        """xk, in modules; that of the satellite is 0."""
         teeth = self.mechanism.ring_teeth - self.mechanism.satellite_teeth
         involute = _inv(self.working_pressure_angle) - _inv(PRESSURE_ANGLE)
         return 0.5 * teeth * involute / math.tan(PRESSURE_ANGLE)
@@ -156,12 +157,12 @@ class ToothPair:
 
     @property
     def satellite_tip_radius(self) -> float:
-        """rs."""
+        """rs, m."""
         return self.module * (0.5 * self.mechanism.satellite_teeth + self.addendum)
 
     @cached_property
     def ring_tip_radius(self) -> float:
-        """rk; further out if the satellite's flanks begin too late for it."""
+        """rk, m; greater where involute interference requires it."""
         teeth = 0.5 * self.mechanism.ring_teeth
         ratio = self.mechanism.satellite_teeth / self.mechanism.ring_teeth
         flank = (1.0 - ratio) * math.tan(self.working_pressure_angle)
@@ -172,17 +173,17 @@ class ToothPair:
 
     @property
     def satellite_root_radius(self) -> float:
-        """Leaves the clearance below the tips of the ring gear."""
+        """Root radius, m, with clearance to the tips of the ring gear."""
         return self.ring_tip_radius - self.mechanism.eccentricity - _CLEARANCE * self.module
 
     @property
     def ring_root_radius(self) -> float:
-        """Leaves the clearance beyond the tips of the satellite."""
+        """Root radius, m, with clearance to the tips of the satellite."""
         return self.satellite_tip_radius + self.mechanism.eccentricity + _CLEARANCE * self.module
 
     @cached_property
-    def tip_clearance(self) -> float:
-        """By how much the tips pass each other, as a turn of the ring gear; 0 is just touching."""
+    def tip_interference_margin(self) -> float:
+        """Margin to trochoid interference, as a turn of the ring gear, rad; 0 is contact."""
         e, rs, rk = self.mechanism.eccentricity, self.satellite_tip_radius, self.ring_tip_radius
         difference = rk * rk - rs * rs
         # Tip circles that do not cross have the angle 0 or π.
@@ -200,7 +201,7 @@ class ToothPair:
 
     @property
     def contact_ratio(self) -> float:
-        """How many base pitches long the path of contact is: the tooth pairs that share a load."""
+        """Length of the path of contact in base pitches: the mean number of pairs in contact."""
         length = (
             self.satellite.roll(self.satellite_tip_radius)
             - self.ring.roll(self.ring_tip_radius)
@@ -210,7 +211,7 @@ class ToothPair:
 
     @property
     def outlines(self) -> Outlines:
-        """Of both, whether they mesh or not."""
+        """Outlines of both gears, whether they mesh or not."""
         return Outlines(
             self.ring.outline(self.ring_tip_radius, self.ring_root_radius),
             self.satellite.outline(self.satellite_root_radius, self.satellite_tip_radius),
@@ -218,9 +219,9 @@ class ToothPair:
 
     @property
     def clear(self) -> bool:
-        """Whether the tips pass each other, and teeth and spaces have a width everywhere."""
+        """Whether the tips do not interfere, and no tooth or space is too thin."""
         return (
-            self.tip_clearance >= 0.0
+            self.tip_interference_margin >= 0.0
             and self.satellite_root_radius > 0.0
             and self.satellite.tooth(self.satellite_tip_radius) >= _LEAST_TIP * self.module
             and self.ring.space(self.ring_tip_radius) >= _LEAST_TIP * self.module
@@ -230,20 +231,20 @@ class ToothPair:
 
 
 class Involute(NamedTuple):
-    """External involute teeth; those of the ring gear's spaces too, as if they were a gear."""
+    """External involute teeth; also the spaces of the ring gear, taken as teeth."""
 
     teeth: int
     base_radius: float
-    """Of the base circle, m."""
+    """m."""
     base_half_angle: float
-    """Half of the angle that a tooth takes on the base circle, rad."""
+    """Half the angular thickness of a tooth on the base circle, rad."""
 
     @classmethod
     def of(cls, teeth: int, module: float, profile_shift: float, backlash: float) -> Self:
-        """Those of the basic rack, thinner by the backlash; both are in modules."""
+        """Teeth of the basic rack, thinner by the backlash; shift and backlash are in modules."""
         base_radius = 0.5 * module * teeth * math.cos(PRESSURE_ANGLE)
         half_angle = (0.5 * math.pi + 2.0 * profile_shift * math.tan(PRESSURE_ANGLE)) / teeth
-        # An involute that turns by an angle moves by base radius × angle along its normal.
+        # Turning an involute by an angle moves it by base radius × angle along its normal.
         return cls(
             teeth,
             base_radius,
@@ -251,7 +252,7 @@ class Involute(NamedTuple):
         )
 
     def pressure_angle(self, radius: float) -> float:
-        """Of the involute at a radius; 0 below the base circle."""
+        """Pressure angle of the involute at a radius, rad; 0 below the base circle."""
         return math.acos(min(1.0, self.base_radius / radius))
 
     def roll(self, radius: float) -> float:
@@ -259,7 +260,7 @@ class Involute(NamedTuple):
         return self.base_radius * math.tan(self.pressure_angle(radius))
 
     def half_angle(self, radius: float) -> float:
-        """Half of the angle that a tooth takes at a radius; below the base circle it is radial."""
+        """Half the angular thickness at a radius, rad; flanks are radial below the base circle."""
         return self.base_half_angle - _inv(self.pressure_angle(radius))
 
     def tooth(self, radius: float) -> float:
@@ -278,7 +279,7 @@ class Involute(NamedTuple):
         if root_radius < start:
             radii = np.append(root_radius, radii)
         half_angles = np.array([self.half_angle(radius) for radius in radii])
-        # A tooth counter-clockwise: up its one flank, down the other.
+        # A tooth, anticlockwise: up one flank, down the other.
         radius = np.concatenate([radii, radii[::-1]])
         angle = 0.5 * math.pi + np.concatenate([-half_angles, half_angles[::-1]])
         pitches = 2.0 * math.pi / self.teeth * np.arange(self.teeth)[:, np.newaxis]

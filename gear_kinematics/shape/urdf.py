@@ -1,8 +1,8 @@
-"""The mechanism as a URDF, for robot_state_publisher, RViz and every tool that reads one.
+"""The mechanism as a URDF, for robot_state_publisher, RViz and other tools.
 
 The tree: stator → rotor → satellite → Oldham coupling for each branch, and stator → output shaft.
-Each joint has the name of the link it moves. The loops through the arms of the output shaft, which
-a URDF cannot hold, are closed by the joint positions in mechanism_joint_states.
+Each joint has the name of the link it moves. A URDF is a tree, so
+the joint positions in mechanism_joint_states close the loops through the arms of the output shaft.
 """
 
 import math
@@ -12,7 +12,7 @@ from gear_kinematics.kinematics import Branch, Mechanism
 
 _STEEL = 7850.0  # kg/m³
 FACE_WIDTH = 0.01
-"""Of the gears, along the axis, m."""
+"""Of the gears, m."""
 COLOURS = {
     'stator': '0.55 0.57 0.60 0.35',
     'rotor': '0.72 0.45 0.20 1.0',
@@ -20,15 +20,15 @@ COLOURS = {
     'oldham': '0.85 0.65 0.13 1.0',
     'output': '0.35 0.37 0.40 1.0',
 }
-"""Red, green, blue and opacity of the bodies, as a URDF has them."""
+"""Red, green, blue and opacity of the bodies, in the format of URDF."""
 
 
 def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> list[str]:
-    """Name every joint of the URDF: rotor, satellites, Oldham couplings, output shaft.
+    """Names of all joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
 
     Raises:
-        ValueError: if `output_joint` is empty or the name of another joint, or a name has
-            characters that are none in XML.
+        ValueError: if `output_joint` is empty or the name of another joint, or a name is not
+            printable.
     """
     branches = [branch.name for branch in mechanism.branches]
     names = ['rotor']
@@ -42,18 +42,18 @@ def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -
 
 
 def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix: str) -> str:
-    """Describe the mechanism.
+    """Write the URDF of a mechanism.
 
     Args:
         mechanism: the mechanism.
-        module: of the teeth, m; with the tooth numbers it gives the bodies their size.
+        module: of the teeth, m; together with the tooth numbers, it determines the sizes.
         output_joint: the output shaft's joint, without the prefix.
         frame_prefix: put before every link and joint name.
 
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint.
     """
-    joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)  # may refuse
+    joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)  # to check them
     e = mechanism.eccentricity
     ring_radius = 0.5 * module * mechanism.ring_teeth
     satellite_radius = 0.5 * module * mechanism.satellite_teeth
@@ -75,7 +75,7 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
     joint('continuous', 'rotor', 'stator', 'rotor')
     shaft = link('output_shaft', 0.2 * ring_radius, 2.4 * half_length)
     joint('continuous', output_joint, 'stator', 'output_shaft')
-    # Cams and arms end a little beyond the faces of satellites and couplings, to be seen there.
+    # Cams and arms protrude beyond the faces of satellites and couplings, so that they are seen.
     cam = {'radius': repr(0.6 * ring_radius), 'length': repr(1.3 * FACE_WIDTH)}
     arm = {'size': f'{0.1 * satellite_radius!r} {1.8 * satellite_radius!r} {1.4 * FACE_WIDTH!r}'}
     for branch in mechanism.branches:
@@ -105,7 +105,7 @@ def _colour(link: str) -> str:
 
 
 def _link(robot: ET.Element, name: str, radius: float, length: float, colour: str) -> ET.Element:
-    """A cylinder of steel about the link's z axis; what else is shown of it has no mass."""
+    """Add a steel cylinder about the link's z axis; further visuals of the link have no mass."""
     link = ET.SubElement(robot, 'link', name=name)
     inertial = ET.SubElement(link, 'inertial')
     mass = _STEEL * math.pi * radius**2 * length

@@ -82,7 +82,7 @@ def test_describe_says_where_teeth_cannot_avoid_interference(capsys):
     assert main([*arguments, '--json']) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts['contact_ratio'] is None
-    assert 'tip clearance of -' in facts['interference']
+    assert 'tip interference margin of -' in facts['interference']
     assert main(arguments) == 0
     text = ' '.join(capsys.readouterr().out.split())
     assert 'do not mesh at an eccentricity of 0.001 m' in text

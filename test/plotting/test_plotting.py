@@ -1,4 +1,4 @@
-"""What is drawn, as matplotlib gets it, against 50-digit and matrix-method motion."""
+"""The data given to matplotlib, against 50-digit and matrix-method motion."""
 
 import math
 from io import BytesIO
@@ -27,7 +27,7 @@ PNG = Path('figure.png')
 
 @pytest.fixture
 def figures(monkeypatch) -> list:
-    """Return the figures that are made."""
+    """Collect the figures that are created."""
     made = []
 
     class Kept(figure_module.Figure):
@@ -40,12 +40,12 @@ def figures(monkeypatch) -> list:
 
 
 def corners(patch) -> list[np.ndarray]:
-    """The polygons of a patch, each without the point that closes it."""
+    """The polygons of a patch, each without its closing point."""
     return [polygon[:-1] for polygon in patch.get_path().to_polygons(closed_only=False)]
 
 
 def middle(polygon) -> np.ndarray:
-    """Of points that are spread evenly round it."""
+    """The centre of evenly spaced points."""
     return np.mean(polygon, axis=0)
 
 
@@ -110,7 +110,7 @@ def test_scheme_shows_the_bodies_named_and_the_angles(actuator, figures):
 
 @pytest.mark.parametrize('rotor_angle', [0.0, math.pi * 76 / 160, 2.0, -1.0])
 def test_labels_of_the_centres_do_not_lie_on_each_other(actuator, figures, rotor_angle):
-    """Also where two centres are in one place: O4 in O3, and O4 in O1."""
+    """Also where two centres coincide: O4 and O3, or O4 and O1."""
     plotting.scheme(actuator, MODULE, PNG, split_turns(rotor_angle))
     boxes = {
         text.get_text(): text.get_window_extent()
@@ -123,7 +123,7 @@ def test_labels_of_the_centres_do_not_lie_on_each_other(actuator, figures, rotor
         assert not overlapping, name
 
 
-def test_roses_have_the_law_of_the_paper(actuator, figures):
+def test_roses_follow_the_formula(actuator, figures):
     """r = e cos(zk ψ/(zk - zs)), with as many petals as the greatest radii."""
     moved = Trajectory.at_constant_speed(300.0, duration=0.05)
     plotting.roses(actuator, PNG, moved)
@@ -187,7 +187,7 @@ LONG = 'far_end_of_the_left_elbow'  # 25 letters
 
 
 @pytest.mark.parametrize('names', [('a', 'b'), (LONG,), ('left', LONG, 'c'), tuple('abcde')])
-def test_nothing_is_cut_off_whatever_the_branches_are_called(figures, names):
+def test_nothing_is_cut_off_with_long_branch_names(figures, names):
     mechanism = Mechanism(80, 76, 0.0011, tuple(Branch(name) for name in names))
     turn = Trajectory.at_constant_speed(20.0)
     for picture in (
@@ -219,12 +219,12 @@ def test_output_turns_by_the_ratio(actuator, figures):
 
 @pytest.fixture(scope='module')
 def loop():
-    """Return a whole turn of the output in few frames: 19 turns of the rotor, and they are 20."""
+    """A whole turn of the output, 19 turns of the rotor, in 20 frames."""
     return Trajectory.at_constant_speed(19.0, turns=19).every(2.0 * math.pi / 20, closed=True)
 
 
 def test_frames_of_a_gif_show_the_bodies_in_turn(actuator, loop):
-    """At the place of the satellite's mark there is ground, and on the other side there is not."""
+    """The background shows through the satellite's mark, but not on the opposite side."""
     told = []
     content = plotting.animate(
         actuator, MODULE, Path('a.gif'), loop, fps=25, width=300, progress=told.append
@@ -250,7 +250,7 @@ def test_frames_of_a_gif_show_the_bodies_in_turn(actuator, loop):
             assert colours.getpixel((round(99.5 + x), round(99.5 - y))) == colour
 
 
-def test_what_stands_still_is_one_long_frame(actuator):
+def test_standstill_is_one_long_frame(actuator):
     still = Trajectory(*(np.zeros(5) for _ in range(4)))
     image = Image.open(
         BytesIO(plotting.animate(actuator, MODULE, Path('a.GIF'), still, fps=10, width=100))

@@ -1,4 +1,4 @@
-"""What is drawn: shapes that fit each other, where the 50-digit motion says the bodies are."""
+"""Outlines fit each other, and poses agree with the 50-digit motion."""
 
 import math
 
@@ -15,13 +15,13 @@ ANGLES = [0.0, 0.7, -2.5, 40.0, 1234.5]
 
 
 def area(outline) -> float:
-    """By the shoelace formula; negative if clockwise."""
+    """Area by the shoelace formula; negative if clockwise."""
     x, y = outline.T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
 def centroid(outline) -> np.ndarray:
-    """Of the area."""
+    """Centroid of the area."""
     (x, y), (next_x, next_y) = outline.T, np.roll(outline, -1, axis=0).T
     parts = x * next_y - y * next_x
     return np.array([np.sum((x + next_x) * parts), np.sum((y + next_y) * parts)]) / (
@@ -74,7 +74,7 @@ def test_borders_are_anticlockwise_and_holes_in_them_are_not(mechanism):
             assert all(-area(border) < area(hole) < 0.0 for hole in holes)
 
 
-def test_coupling_and_arm_are_drawn_where_the_slides_leave_them_room(actuator):
+def test_coupling_and_arm_are_drawn_if_the_slides_leave_room(actuator):
     assert tuple(bodies(actuator, MODULE)) == BODIES
     few_teeth = Mechanism(12, 9, 0.001, (Branch('a'),))
     assert tuple(bodies(few_teeth, MODULE)) == ('stator', 'satellite', 'rotor')
@@ -83,7 +83,7 @@ def test_coupling_and_arm_are_drawn_where_the_slides_leave_them_room(actuator):
 
 
 @pytest.mark.parametrize('eccentricity', [1e-300, 1e300])
-def test_sizes_that_have_no_squares_are_drawn_too(eccentricity):
+def test_sizes_whose_squares_underflow_or_overflow_are_drawn(eccentricity):
     shapes = bodies(Mechanism(80, 76, eccentricity, (Branch('a'),)), eccentricity)
     assert tuple(shapes) == BODIES
     assert all(np.isfinite(outline).all() for outlines in shapes.values() for outline in outlines)

@@ -1,4 +1,4 @@
-"""The drawing of the pin holes: true numbers of holes, where they are, and which are pinned."""
+"""The drawing of the pin holes: their numbers and positions, and which are pinned."""
 
 import math
 from xml.etree import ElementTree as ET
@@ -16,7 +16,7 @@ def parse(svg: str) -> ET.Element:
 
 
 def holes(root: ET.Element, body: str) -> list[ET.Element]:
-    """Give a body's holes in the order of their numbers."""
+    """The holes of a body in the order of their numbers."""
     circles = root.iter(f'{SVG}circle')
     return [circle for circle in circles if body in circle.get('class', '').split()]
 
@@ -35,7 +35,7 @@ def angles(circles: list[ET.Element], centre: tuple[float, float]) -> list[float
 
 
 def centre_of(circles: list[ET.Element]) -> tuple[float, float]:
-    """Give the middle of holes that are spread evenly."""
+    """The centre of evenly spaced holes."""
     return tuple(
         sum(float(circle.get(name)) for circle in circles) / len(circles) for name in ('cx', 'cy')
     )
@@ -111,13 +111,13 @@ def test_the_page_says_what_to_pin_and_how_holes_are_counted():
     assert 'Chassis holes and teeth count clockwise, ring holes anticlockwise.' in mirrored
 
 
-def test_numbers_are_as_many_as_the_page_has_room_for():
-    """Of 502 holes every fifth, and always the pinned ones and their neighbours."""
+def test_only_some_holes_are_numbered_if_there_is_no_room_for_all():
+    """Every fifth of 502 holes, and always the pinned ones and their neighbours."""
     words = texts(parse(draw(500, pin_setting(500, 0, 333, 111))))
     assert len(words) < 200
     assert {'333', '111', '112', '334'} <= set(words)
 
 
-def test_what_no_page_has_room_for_is_refused():
+def test_too_many_holes_for_a_page_are_refused():
     with pytest.raises(ValueError, match='room for 1000 teeth, not for 1001'):
         draw(1001, pin_setting(1001, 0, 0, 0))

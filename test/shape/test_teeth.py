@@ -53,7 +53,7 @@ def name(mechanism: Mechanism) -> str:
 
 
 def mesh_cycle(mechanism: Mechanism) -> np.ndarray:
-    """Give rotor angles over a cycle of the mesh, one ring tooth, the first turns and later."""
+    """Rotor angles over a cycle of the mesh (one ring tooth), the first turns and later ones."""
     cycle = np.linspace(0.0, math.tau / mechanism.ring_teeth, 16, endpoint=False)
     return np.concatenate([cycle, 5.0 + cycle[::4], -777.0 + cycle[::4]])
 
@@ -61,7 +61,7 @@ def mesh_cycle(mechanism: Mechanism) -> np.ndarray:
 def overlaps(
     mechanism: Mechanism, shapes: Outlines, branch: int, rotor_angles, turn: float = 0.0
 ) -> list[float]:
-    """Give the area in which ring gear and satellite overlap at some angles, in modules².
+    """Compute the area in which ring gear and satellite overlap at some angles, in modules².
 
     `turn` turns the satellite about its own centre.
     """
@@ -131,7 +131,7 @@ def test_teeth_that_would_interfere_are_shortened():
     assert pair.addendum < 0.9
     for addendum, least in ((1.0, 1e-3), (pair.addendum + 0.06, 1e-6)):
         higher = ToothPair(mechanism, MODULE, addendum)
-        assert higher.tip_clearance < 0.0
+        assert higher.tip_interference_margin < 0.0
         assert max(overlaps(mechanism, higher.outlines, 0, mesh_cycle(mechanism))) > least
 
 
@@ -143,10 +143,10 @@ def test_numbers_of_the_handbooks_example():
     assert 2.0 * pair.satellite.base_radius == pytest.approx(0.045105, abs=1e-6)
     assert 2.0 * pair.ring.base_radius == pytest.approx(0.067658, abs=1e-6)
     assert 2.0 * pair.satellite_tip_radius == pytest.approx(0.054)
-    # A hair further out than in the table, where it would touch below the satellite's base circle.
+    # Slightly larger than in the table, which would touch below the satellite's base circle.
     assert 0.069 < 2.0 * pair.ring_tip_radius < 0.06902
-    assert pair.tip_clearance > 0.0
-    # With its angles, as the sum of what both gears turn through: ISO 21771.
+    assert pair.tip_interference_margin > 0.0
+    # From its angles, as the sum for both gears: ISO 21771.
     satellite, ring = (
         math.tan(math.acos(base / tip)) for base, tip in ((45.105, 54.0), (67.658, 69.0))
     )
@@ -177,13 +177,13 @@ def test_module_must_be_a_length(module):
         outlines(pair_of(80, 76, 1.1), module)
 
 
-def test_what_cannot_mesh_is_drawn_as_the_circles_that_roll():
+def test_teeth_that_cannot_mesh_are_drawn_as_rolling_circles():
     ring, satellite = outlines(Mechanism(80, 76, 0.002, (Branch('a'),)), MODULE)
     np.testing.assert_allclose(np.hypot(*ring.T), 0.040)
     np.testing.assert_allclose(np.hypot(*satellite.T), 0.038)
 
 
-def test_teeth_beyond_number_are_drawn_as_circles():
+def test_too_many_teeth_are_drawn_as_circles():
     mechanism = pair_of(100_000, 99_998, 1.35)
     assert tooth_pair(mechanism, MODULE).contact_ratio > 1.0
     assert sum(map(len, outlines(mechanism, MODULE))) < 10_000

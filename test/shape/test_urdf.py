@@ -1,4 +1,4 @@
-"""The URDF as its readers see it: XML, tree, inertias, and where its joints put the links."""
+"""The URDF as read by others: XML, tree, inertias, and the poses of the links."""
 
 import math
 import xml.etree.ElementTree as ET
@@ -65,7 +65,7 @@ def test_joint_names_are_those_of_the_urdf(mechanism):
 
 @pytest.mark.parametrize('name', ['rotor', 'satellite_a', 'oldham_b'])
 @pytest.mark.parametrize('prefix', ['', 'left/'])
-def test_output_joint_of_another_joints_name_is_refused(actuator, name, prefix):
+def test_output_joint_with_the_name_of_another_joint_is_refused(actuator, name, prefix):
     with pytest.raises(ValueError, match=f'output_joint.*{name}'):
         urdf(actuator, module=MODULE, output_joint=name, frame_prefix=prefix)
 
@@ -116,8 +116,8 @@ def origin(visual) -> list[float]:
     return [float(number) for number in visual.find('origin').get('xyz').split()]
 
 
-def test_mechanism_that_is_thin_has_sizes_too():
-    # A branch is at 0 unless it is told to be elsewhere.
+def test_thin_mechanism_has_sizes():
+    # The axial position of a branch is 0 by default.
     thin = Mechanism(80, 76, 0.0011, (Branch('a'),))
     robot = ET.fromstring(urdf(thin, module=MODULE, **NAMES))  # noqa: S314, our own
     lengths = [float(x.get('length')) for x in robot.iterfind('link/visual/geometry/cylinder')]
@@ -141,7 +141,7 @@ def messages_at(mechanism, rotor_angle, names=NAMES):
 
 
 def assert_links_are_where_the_bodies_are(mechanism, rotor_angle, names=NAMES) -> None:
-    """Hold the links, moved by the joint states, against the poses of the bodies."""
+    """Compare the links, moved by the joint states, with the poses of the bodies."""
     _, joints = read(urdf(mechanism, module=MODULE, **names))
     poses, states = messages_at(mechanism, rotor_angle, names)
     assert sorted(states.name) == sorted(joints)
@@ -191,7 +191,7 @@ def pinocchio():
 
 
 def drawn_mechanism(generator, ring_teeth, satellite_teeth, count) -> Mechanism:
-    """Cams and branches anywhere."""
+    """Random cam phases and axial positions."""
     branches = tuple(
         Branch('abc'[k], generator.uniform(-math.pi, math.pi), generator.uniform(-0.1, 0.1))
         for k in range(count)
@@ -204,7 +204,7 @@ def drawn_mechanism(generator, ring_teeth, satellite_teeth, count) -> Mechanism:
     ('ring_teeth', 'satellite_teeth', 'count'), [(80, 76, 2), (80, 78, 1), (61, 58, 3), (7, 2, 2)]
 )
 def test_pinocchio_puts_the_links_where_the_bodies_are(ring_teeth, satellite_teeth, count, prefix):
-    """Kinematics that know nothing of the project, at random angles of many turns."""
+    """Independent kinematics, at random angles of many turns."""
     pin = pinocchio()
     generator = np.random.default_rng(ring_teeth)
     mechanism = drawn_mechanism(generator, ring_teeth, satellite_teeth, count)
@@ -215,7 +215,7 @@ def test_pinocchio_puts_the_links_where_the_bodies_are(ring_teeth, satellite_tee
     bodies = [f'{prefix}{kind}_{branch.name}' for kind in kinds for branch in mechanism.branches]
     links = [model.getFrameId(name, pin.FrameType.BODY) for name in bodies]
     shaft = model.getFrameId(f'{prefix}output_shaft', pin.FrameType.BODY)
-    assert max(*links, shaft) < model.nframes  # what it does not find
+    assert max(*links, shaft) < model.nframes  # the index of a frame that does not exist
 
     # Some hundred turns, which the angles of the joints count, leave them 12 digits of a turn.
     fastest = max(1.0, 1.0 + 1.0 / abs(mechanism.gear_ratio))
@@ -242,7 +242,7 @@ def test_pinocchio_puts_the_links_where_the_bodies_are(ring_teeth, satellite_tee
 
 
 def configuration(model, positions: dict[str, float]) -> np.ndarray:
-    """Pinocchio's: continuous joints have cosine and sine of their angle."""
+    """Configuration of Pinocchio: continuous joints have cosine and sine of their angle."""
     q = np.zeros(model.nq)
     for name, position in positions.items():
         joint = model.joints[model.getJointId(name)]
@@ -253,7 +253,7 @@ def configuration(model, positions: dict[str, float]) -> np.ndarray:
     return q
 
 
-def test_urdfdom_has_nothing_to_complain_of(mechanism, capfd):
+def test_urdfdom_does_not_complain(mechanism, capfd):
     """The parser of robot_state_publisher and RViz; Pinocchio's too. It complains on stderr."""
     pin = pinocchio()
     branches = len(mechanism.branches)
@@ -274,7 +274,7 @@ def test_urdfdom_has_nothing_to_complain_of(mechanism, capfd):
         ('link/visual/material', 'name'),
     ],
 )
-def test_urdfdom_does_complain_of_what_is_missing(actuator, element, attribute, capfd):
+def test_urdfdom_complains_of_missing_elements(actuator, element, attribute, capfd):
     pin = pinocchio()
     robot = ET.fromstring(urdf(actuator, module=MODULE, **NAMES))  # noqa: S314, our own
     del robot.find(element).attrib[attribute]
