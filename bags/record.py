@@ -171,7 +171,7 @@ def record(path: Path, scenario: Scenario) -> None:
                 replay.send(data)
                 sent += 1
         replay.wait_until(
-            lambda: sum(m.topic == '/rotor_state' for m in replay.received) == sent, 5.0
+            lambda: sum(topic == '/rotor_state' for topic, *_ in replay.received) == sent, 5.0
         )
         replay.receive_until(time.monotonic() + 0.5)  # what the node still answers
         write_bag(path, replay.received, storage=scenario.storage)

@@ -18,9 +18,10 @@ from pathlib import Path
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from validation import compare, repeated
 
-from gear_kinematics.bag import TOPIC_TYPES, Bag, BagWriter, in_batches
+from gear_kinematics.bag import Bag, BagWriter, in_batches
 from gear_kinematics.state import parameters
 from gear_kinematics.state.compute import compute
+from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _ROTOR = '/rotor_state'
 _BATCH = 1024  # messages
@@ -52,10 +53,10 @@ def _ways(folder: Path, storage: str, count: int) -> dict[str, Callable[[], obje
     """Make both bags in a folder, and give what is to be compared; the first is the measure."""
     read, written = Path(folder, 'read'), Path(folder, 'written')
     messages = [
-        message for message in repeated(len(TOPIC_TYPES) * count) if message.topic == _ROTOR
+        message for message in repeated(len(RECORDED_TOPICS) * count) if message[0] == _ROTOR
     ]
     with BagWriter(read, storage) as writer:
-        writer.add_topic(_ROTOR, TOPIC_TYPES[_ROTOR])
+        writer.add_topic(_ROTOR, RECORDED_TOPICS[_ROTOR])
         writer.write_all(messages)
     _compute(storage, read, written)
     ways = {'compute': partial(_compute, storage, read)}

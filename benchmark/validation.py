@@ -26,12 +26,13 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
-from gear_kinematics.bag import TOPIC_TYPES, BagMessage, read_bag, write_bag
+from gear_kinematics.bag import Message, read_bag, write_bag
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.validation.fleet import Task, validate_bag
-from gear_kinematics.validation.validator import Tolerances
+from gear_kinematics.validation.output_topics import Tolerances
+from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _SOURCE = 'servo_point_to_point'
 _LENGTH = 7  # s, of which the source takes 6
@@ -70,17 +71,17 @@ def main() -> None:
         print(f'{options.memory} messages: peak of resident memory {results["memory"]:.0f} MB')
 
 
-def repeated(count: int) -> Iterator[BagMessage]:
+def repeated(count: int) -> Iterator[Message]:
     """Give a number of messages of the source, repeated with stamps that go on."""
-    source = list(read_bag(share_directory() / 'bags' / _SOURCE, TOPIC_TYPES))
+    source = list(read_bag(share_directory() / 'bags' / _SOURCE, RECORDED_TOPICS))
     # Whole sets: an input without its outputs would be a failure.
-    for number in range(count - count % len(TOPIC_TYPES)):
+    for number in range(count - count % len(RECORDED_TOPICS)):
         repetition, index = divmod(number, len(source))
         topic, received, data = source[index]
         (seconds,) = struct.unpack_from('<i', data, 4)
         later = struct.pack('<i', seconds + _LENGTH * repetition)
         shift = _LENGTH * repetition * _SECOND
-        yield BagMessage(topic, received + shift, data[:4] + later + data[8:])
+        yield topic, received + shift, data[:4] + later + data[8:]
 
 
 def _ways(storage: str) -> dict[str, Callable[[Path], object]]:

@@ -5,23 +5,31 @@ rosbags refuses unfinished and damaged files as a whole and takes longer over ea
 """
 
 from gear_kinematics.bag.errors import BagError, DamagedBagError, TopicError
-from gear_kinematics.bag.reading import Bag, BagMessage, read_bag
-from gear_kinematics.bag.storage import RawMessage, in_batches
-from gear_kinematics.bag.topics import TOPIC_TYPES, Topic, listed
+from gear_kinematics.bag.reading import (
+    Bag,
+    ReportProgress,
+    TopicMessages,
+    in_batches,
+    read_bag,
+    sort_by_topic,
+)
+from gear_kinematics.bag.storage import Message
+from gear_kinematics.bag.topics import Topic, listed
 from gear_kinematics.bag.writing import BagWriter, write_bag
 
 __all__ = [
-    'TOPIC_TYPES',
     'Bag',
     'BagError',
-    'BagMessage',
     'BagWriter',
     'DamagedBagError',
-    'RawMessage',
+    'Message',
+    'ReportProgress',
     'Topic',
     'TopicError',
+    'TopicMessages',
     'in_batches',
     'listed',
     'read_bag',
+    'sort_by_topic',
     'write_bag',
 ]

@@ -16,7 +16,7 @@ from gear_kinematics.bag.limits import (
     Descriptions,
     expanded_size,
 )
-from gear_kinematics.bag.storage import RawMessage, Storage
+from gear_kinematics.bag.storage import Message, Storage
 from gear_kinematics.bag.topics import Topic, check_encoding
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
@@ -76,12 +76,12 @@ class Mcap(Storage):
         """Give the number in the index, if there is one; `topics` has to be asked first."""
         return self._total
 
-    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+    def messages(self, topics: Collection[str]) -> Iterator[Message]:
         """Read messages, in order if they are off it by no more than a chunk."""
         # Recorders with several threads, and those with several chunks open at a time, put
         # messages aside by up to a chunk: as much is held back to bring them into order.
         number = 0
-        held: list[RawMessage] = []
+        held: list[Message] = []
         self._read_summary()
         self._wanted = topics
         for channel, topic in self._channels.items():
@@ -110,9 +110,9 @@ class Mcap(Storage):
         if number < expected:
             raise ValueError(f'the index lists {expected} messages, there are {number}')
 
-    def _batches(self) -> Iterator[list[RawMessage]]:
+    def _batches(self) -> Iterator[list[Message]]:
         """Walk through the file; on damage, give the messages before it and then raise."""
-        stream, batch, size = self._stream, list[RawMessage](), 0
+        stream, batch, size = self._stream, list[Message](), 0
         self._offset = stream.seek(len(MCAP_MAGIC))
         try:
             while header := stream.read(RECORD.size):  # an unfinished file just ends
@@ -146,9 +146,7 @@ class Mcap(Storage):
             raise
         yield batch
 
-    def _fill(
-        self, batch: list[RawMessage], chunk: bytes, *, whole: bool
-    ) -> Iterator[list[RawMessage]]:
+    def _fill(self, batch: list[Message], chunk: bytes, *, whole: bool) -> Iterator[list[Message]]:
         """Fill a batch from a chunk; whenever it is full, give what is in it and begin anew."""
         records, end = self._chunk_records(chunk, whole=whole), 0
         while (end := self._walk(records, end, batch)) < len(records):
@@ -159,7 +157,7 @@ class Mcap(Storage):
         self,
         records: bytes,
         end: int,
-        batch: list[RawMessage],
+        batch: list[Message],
         learned: Collection[int] = _DESCRIPTIONS,
     ) -> int:
         """Append the wanted messages among the next records, up to the first damage.

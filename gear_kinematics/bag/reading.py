@@ -1,29 +1,48 @@
 """Reading a recording, whatever it consists of."""
 
-from collections.abc import Collection, Generator, Iterator, Mapping
-from contextlib import ExitStack
+import tempfile
+from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 from types import MappingProxyType
-from typing import NamedTuple, Self
+from typing import IO, Self
 
-from gear_kinematics.bag.compression import MESSAGE_DECOMPRESSORS
+from gear_kinematics.bag.compression import (
+    FILE_OPENERS,
+    MESSAGE_DECOMPRESSORS,
+    decompress_file,
+)
 from gear_kinematics.bag.contents import find_contents
-from gear_kinematics.bag.errors import BagError, bag_errors
+from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
 from gear_kinematics.bag.limits import Budget, Descriptions
-from gear_kinematics.bag.opening import opened
-from gear_kinematics.bag.storage import RawMessage
-from gear_kinematics.bag.topics import Topic
+from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
+from gear_kinematics.bag.ros1 import Ros1
+from gear_kinematics.bag.sqlite import Sqlite
+from gear_kinematics.bag.storage import Message, Storage
+from gear_kinematics.bag.topics import Topic, missing_topic
+
+ReportProgress = Callable[[int, int | None], None]
+"""Called now and then with the number of messages done, and of all if that is known."""
+
+_BATCH = 8192  # messages
+_BATCH_SIZE = 2**24  # bytes
+_KINDS: Mapping[bytes, Callable[[Path, Budget], Storage]] = {
+    MCAP_MAGIC: Mcap,
+    b'SQLite format 3\0': Sqlite,
+    b'#ROSBAG V2.0': Ros1,
+}
 
 
-class BagMessage(NamedTuple):
-    """A message as it was recorded."""
+@dataclass(slots=True)
+class TopicMessages:
+    """Messages of one topic."""
 
-    topic: str
-    received: int
-    """ns."""
-    data: bytes
+    data: list[bytes] = field(default_factory=list)
     """CDR."""
+    received: list[int] = field(default_factory=list)
+    """ns."""
 
 
 class Bag:
@@ -59,7 +78,7 @@ class Bag:
     def __exit__(self, *_: object) -> None:
         self._readings.close()
 
-    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+    def messages(self, topics: Collection[str]) -> Iterator[Message]:
         """Read raw messages in the order in which they were received, those of ROS 1 as CDR.
 
         Args:
@@ -76,14 +95,40 @@ class Bag:
         self._readings.callback(reading.close)
         return reading
 
+    def read(
+        self, columns: Mapping[str, TopicMessages], progress: ReportProgress | None = None
+    ) -> None:
+        """Read all messages on topics.
+
+        Args:
+            columns: where to put the messages of each topic; what came before an error is there.
+            progress: told after each batch, with the messages on all topics of the bag.
+
+        Raises:
+            BagError: as `messages` does.
+        """
+        messages = self.messages(columns)
+        for batch in in_batches(messages, progress=progress, total=self.message_count):
+            sort_by_topic(batch, columns)
+
+    def type_of(self, topic: str, wanted: str = '') -> str:
+        """Give the type of a topic.
+
+        Raises:
+            BagError: if the topic is not in the bag, or not of the type that is wanted.
+        """
+        found = self.topics.get(topic)
+        if found is None or (wanted and found != wanted):
+            raise missing_topic(self.path, self.topics, topic, wanted)
+        return found
+
     def describe(self, name: str) -> Topic:
         """Give what the bag says about a topic.
 
         Raises:
             BagError: if it is not in the bag, or the bag cannot be read.
         """
-        if name not in self.topics:
-            raise BagError(f'{self.path}: no topic {name}')
+        self.type_of(name)
         if not self._described:
             self._describe()
         listed = self._listed.get(name) or self._described[name]
@@ -103,7 +148,7 @@ class Bag:
         budget, descriptions, definitions = self._budget(), Descriptions(), set[str]()
         for file in self._files:
             try:
-                with opened(file, budget) as storage:
+                with _opened(file, budget) as storage:
                     for topic in storage.topics():
                         if topic.name in self._described:
                             continue
@@ -122,10 +167,10 @@ class Bag:
             known = [count for count in counts if count is not None]
             self.message_count = sum(known) if len(known) == len(counts) else None
 
-    def _read(self, topics: frozenset[str]) -> Generator[RawMessage, None, None]:
+    def _read(self, topics: frozenset[str]) -> Generator[Message, None, None]:
         read, budget = 0, self._budget()
         for file in self._files:
-            with opened(file, budget, read) as storage:
+            with _opened(file, budget, read) as storage:
                 messages = storage.messages(topics)
                 for first in messages:
                     messages = chain([first], messages)
@@ -136,14 +181,103 @@ class Bag:
             read += storage.read
 
 
-def read_bag(path: Path, topics: Collection[str]) -> Iterator[BagMessage]:
+def read_bag(path: Path, topics: Collection[str]) -> Iterator[Message]:
     """Read the messages of a bag, all of whose topics must be there.
 
     Raises:
         BagError: if a topic is missing or the bag cannot be read; see `Bag.messages`.
     """
     with Bag(path) as bag:
-        missing = set(topics) - set(bag.topics)
-        if missing:
-            raise BagError(f'{path}: no messages on {", ".join(sorted(missing))}')
-        yield from map(BagMessage._make, bag.messages(topics))
+        for topic in topics:
+            bag.type_of(topic)
+        yield from bag.messages(topics)
+
+
+def in_batches(
+    messages: Iterable[Message],
+    size: int = _BATCH,
+    progress: ReportProgress | None = None,
+    total: int | None = None,
+) -> Iterator[list[Message]]:
+    """Gather messages, up to so many at a time, and no more than take little memory.
+
+    What came before an exception is given before it is raised; the last batch can be empty.
+
+    Args:
+        messages: to gather.
+        size: of a batch.
+        progress: told after each batch.
+        total: of the messages, for `progress`.
+    """
+    done = 0
+    for batch in _batches(messages, size):
+        yield batch
+        done += len(batch)
+        if progress:
+            progress(done, total)
+
+
+def _batches(messages: Iterable[Message], size: int) -> Iterator[list[Message]]:
+    batch, taken = list[Message](), 0
+    try:
+        for message in messages:
+            batch.append(message)
+            taken += len(message[2])
+            if len(batch) == size or taken >= _BATCH_SIZE:
+                yield batch
+                batch, taken = [], 0
+    except Exception:
+        yield batch
+        raise
+    yield batch
+
+
+def sort_by_topic(messages: Iterable[Message], columns: Mapping[str, TopicMessages]) -> None:
+    """Append messages to the columns of their topics."""
+    for topic, received, data in messages:
+        column = columns[topic]
+        column.data.append(data)
+        column.received.append(received)
+
+
+@contextmanager
+def _opened(file: Path, budget: Budget, read: int = 0) -> Iterator[Storage]:
+    """Open a file of a bag; a compressed one by way of a temporary file.
+
+    Args:
+        file: to open.
+        budget: what may come out of the files of the bag.
+        read: messages that were read before, from other files.
+
+    Raises:
+        BagError: for whatever is raised about the file, also by the one who uses it.
+    """
+    storage, broken = None, ''
+    try:
+        with ExitStack() as stack:
+            source = stack.enter_context(file.open('rb'))
+            content = file
+            if opener := FILE_OPENERS.get(_start(source, 4)):
+                content = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'bag')
+                broken = decompress_file(source, content, opener)
+                source = stack.enter_context(content.open('rb'))
+            start = _start(source, 16)
+            kind = next((kind for magic, kind in _KINDS.items() if start.startswith(magic)), None)
+            if not kind:
+                raise ValueError('not a bag of a known kind' if start else 'the file is empty')
+            storage = stack.enter_context(closing(kind(content, budget)))
+            yield storage
+            if broken:
+                raise ValueError(broken)
+    except BagError:
+        raise
+    except Exception as error:
+        where, here = (storage.position(), storage.read) if storage else ('', 0)
+        text = f'{file}: {where}{broken or cause(error)}'
+        raise (DamagedBagError if read + here else BagError)(text) from error
+
+
+def _start(source: IO[bytes], size: int) -> bytes:
+    start = source.read(size)
+    source.seek(0)
+    return start

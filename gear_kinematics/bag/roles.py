@@ -1,43 +1,37 @@
 """Which topic of a recording plays which part."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
+from typing import NamedTuple, Self
 
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.reading import Bag
-from gear_kinematics.bag.topics import listed
-from gear_kinematics.wire.cdr import JOINT_STATE, POSE_ARRAY
+from gear_kinematics.bag.topics import listed, missing_topic
+from gear_kinematics.wire.topics import (
+    BODY_POSES,
+    OUTPUT_ENCODER,
+    OUTPUT_STATE,
+    ROTOR_STATE,
+    TOPICS,
+)
 
-_CONTRACT = {
-    'output': ('output_state', JOINT_STATE),
-    'poses': ('body_poses', POSE_ARRAY),
-    'rotor': ('rotor_state', JOINT_STATE),
-}
-"""Name and type of the topics."""
-_OURS = {
-    *(name for name, _ in _CONTRACT.values()),
-    'mechanism_joint_states',
-    'output_encoder',
-    'transmission_error',
-}
+_PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
+"""The parts in a validation; the rotor is what is left when the outputs are found."""
 
 
-@dataclass(frozen=True, slots=True)
-class Topics:
+class Topics(NamedTuple):
     """The names of the topics in the recording."""
 
-    rotor: str = '/rotor_state'
-    output: str = '/output_state'
-    poses: str = '/body_poses'
+    rotor: str = f'/{ROTOR_STATE}'
+    output: str = f'/{OUTPUT_STATE}'
+    poses: str = f'/{BODY_POSES}'
 
-    def names(self) -> tuple[str, str, str]:
-        """All three."""
-        return self.rotor, self.output, self.poses
-
-
-_TOPICS = Topics()
+    @classmethod
+    def beside(cls, rotor: str) -> Self:
+        """Those of the node, in the namespace of the rotor's topic."""
+        namespace, _, _ = rotor.rpartition('/')
+        return cls(rotor, f'{namespace}/{OUTPUT_STATE}', f'{namespace}/{BODY_POSES}')
 
 
 def find_topics(
@@ -55,22 +49,22 @@ def find_topics(
     Raises:
         BagError: if one is not there, or which one is meant is not clear.
     """
-    roles = list(_CONTRACT) if outputs else ['rotor']
-    found = {role: topic for role in roles if (topic := given.get(role))}
+    parts = list(_PARTS) if outputs else ['rotor']
+    found = {part: topic for part in parts if (topic := given.get(part))}
     left = dict(bag.topics)
-    namespace, _, _ = found.get('rotor', '').rpartition('/')
-    for role in roles if 'rotor' in found else ():
-        beside = f'{namespace}/{_CONTRACT[role][0]}'
-        if bag.topics.get(beside) == _CONTRACT[role][1]:
-            found.setdefault(role, beside)
-    for role, topic in found.items():
-        if left.pop(topic, None) != (kind := _CONTRACT[role][1]):
-            raise BagError(f'{bag.path}: no topic {topic} of type {kind} in it')
-    for role in roles:
-        if role not in found:
-            found[role] = _find_topic(bag.path, left, *_CONTRACT[role])
-            del left[found[role]]
-    return replace(_TOPICS, **found)
+    if 'rotor' in found:
+        for part, topic in Topics.beside(found['rotor'])._asdict().items():
+            if part in parts and bag.topics.get(topic) == TOPICS[_PARTS[part]].type:
+                found.setdefault(part, topic)
+    for part, topic in found.items():
+        if left.get(topic) != (wanted := TOPICS[_PARTS[part]].type):
+            raise missing_topic(bag.path, left, topic, wanted)
+        del left[topic]
+    for part in parts:
+        if part not in found:
+            found[part] = _find_topic(bag, left, _PARTS[part])
+            del left[found[part]]
+    return Topics(**found)
 
 
 def find_rotor_topic(bag: Bag, given: str | None = None) -> str:
@@ -79,24 +73,43 @@ def find_rotor_topic(bag: Bag, given: str | None = None) -> str:
     Raises:
         BagError: if it is not there, or which one is meant is not clear.
     """
-    if not given:
-        return find_topics(bag, outputs=False).rotor
-    if bag.topics.get(given) != JOINT_STATE:
-        raise BagError(f'{bag.path}: no topic {given} of type {JOINT_STATE} in it')
-    return given
+    return find_topics(bag, {'rotor': given}, outputs=False).rotor
 
 
-def _find_topic(path: Path, available: Mapping[str, str], name: str, kind: str) -> str:
-    by_type = {
-        topic: topic.rpartition('/')[2]
-        for topic, its_kind in sorted(available.items())
-        if its_kind == kind
-    }
-    candidates = [topic for topic, base in by_type.items() if base == name] or [
-        topic for topic, base in by_type.items() if base not in _OURS
+def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
+    """Give the topic of the output's encoder: the given one, or else by name; None without one.
+
+    Raises:
+        BagError: if the given one is not there, or which one is meant is not clear.
+    """
+    wanted = TOPICS[OUTPUT_ENCODER].type
+    if given:
+        bag.type_of(given, wanted)
+        return given
+    named = [topic for topic in _of_type(bag.topics, wanted) if _base(topic) == OUTPUT_ENCODER]
+    return _only(bag.path, named, OUTPUT_ENCODER) if named else None
+
+
+def _find_topic(bag: Bag, available: Mapping[str, str], name: str) -> str:
+    of_type = _of_type(available, TOPICS[name].type)
+    candidates = [topic for topic in of_type if _base(topic) == name] or [
+        topic for topic in of_type if _base(topic) not in TOPICS
     ]
     if not candidates:
-        raise BagError(f'{path}: no topic {name} of type {kind} in it')
+        raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
+    return _only(bag.path, candidates, name)
+
+
+def _only(path: Path, candidates: list[str], name: str) -> str:
     if len(candidates) > 1:
         raise BagError(f'{path}: which topic is {name}? {listed(candidates)}')
     return candidates[0]
+
+
+def _of_type(topics: Mapping[str, str], wanted: str) -> list[str]:
+    return [topic for topic, kind in topics.items() if kind == wanted]
+
+
+def _base(topic: str) -> str:
+    """The name without its namespace."""
+    return topic.rpartition('/')[2]

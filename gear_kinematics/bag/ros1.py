@@ -14,7 +14,7 @@ from rosbags.rosbag1.reader import IndexData
 from gear_kinematics.bag.compression import DECOMPRESSORS, Decompressor, expanded
 from gear_kinematics.bag.limits import MAX_DEFINITIONS, Budget, Descriptions
 from gear_kinematics.bag.ros1_types import MAX_PARTS, ros1_types
-from gear_kinematics.bag.storage import RawMessage, Storage
+from gear_kinematics.bag.storage import Message, Storage
 from gear_kinematics.bag.topics import Topic
 
 
@@ -80,7 +80,7 @@ class Ros1(Storage):
         """Give the number in the index."""
         return sum(connection.msgcount for connection in self._reader.connections)
 
-    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+    def messages(self, topics: Collection[str]) -> Iterator[Message]:
         """Read messages in the order of reception, as CDR."""
         wanted = [c for c in self._reader.connections if c.topic in topics]
         types = {c.msgtype: ros1_types(c.msgtype, c.msgdef.data) for c in wanted}

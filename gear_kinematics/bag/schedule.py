@@ -2,10 +2,10 @@
 
 import math
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Collection, Iterator
 from itertools import chain
 
-from gear_kinematics.bag import Bag, BagError, RawMessage, listed
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress
 from gear_kinematics.wire.cdr import SECOND
 
 _PROGRESS_PERIOD = 0.1  # s
@@ -19,7 +19,7 @@ def due_messages(
     duration: float = math.inf,
     *,
     loop: bool = False,
-) -> Iterator[tuple[float, RawMessage]]:
+) -> Iterator[tuple[float, Message]]:
     """Give messages with the time at which each is due, s from the first; see `play`.
 
     Raises:
@@ -40,7 +40,7 @@ def _rounds(
     duration: float,
     *,
     loop: bool,
-) -> Iterator[tuple[float, RawMessage]]:
+) -> Iterator[tuple[float, Message]]:
     due = round_start = 0.0
     while True:
         first, begin, count = None, 0, 0
@@ -66,27 +66,14 @@ def _rounds(
         round_start = due + ((due - round_start) / max(count - 1, 1) or 1.0 / rate)
 
 
-def type_of(source: Bag, topic: str) -> str:
-    """Give the type of a topic.
-
-    Raises:
-        BagError: if it is not in the bag.
-    """
-    try:
-        return source.topics[topic]
-    except KeyError:
-        there = listed(source.topics) or 'no topics'
-        raise BagError(f'{source.path}: no {topic} in it; there are {there}') from None
-
-
-def throttled(progress: Callable[[int], None]) -> Callable[[int], None]:
+def throttled(progress: ReportProgress) -> ReportProgress:
     """The same, at most ten times a second."""
     next_call = 0.0
 
-    def call(count: int) -> None:
+    def call(done: int, total: int | None) -> None:
         nonlocal next_call
         if (now := time.monotonic()) >= next_call:
             next_call = now + _PROGRESS_PERIOD
-            progress(count)
+            progress(done, total)
 
     return call

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag.limits import Budget
-from gear_kinematics.bag.storage import RawMessage, Storage
+from gear_kinematics.bag.storage import Message, Storage
 from gear_kinematics.bag.topics import Topic, check_encoding
 
 _STEPS = 1000
@@ -101,7 +101,7 @@ class Sqlite(Storage):
             return int(self._execute('SELECT count(timestamp) FROM messages').fetchone()[0])
         return None
 
-    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+    def messages(self, topics: Collection[str]) -> Iterator[Message]:
         """Read messages in the order of reception."""
         wanted = {key: topic for key, topic in self._topics().items() if topic.name in topics}
         for topic in wanted.values():

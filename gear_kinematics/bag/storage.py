@@ -1,34 +1,13 @@
 """The interface of storages: the files that a bag consists of."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 
 from gear_kinematics.bag.compression import Decompressor, expanded
 from gear_kinematics.bag.limits import Budget, Descriptions
 from gear_kinematics.bag.topics import Topic
 
-RawMessage = tuple[str, int, bytes]
+Message = tuple[str, int, bytes]
 """Topic, reception in ns, CDR."""
-
-_BATCH_SIZE = 2**24  # bytes
-
-
-def in_batches(messages: Iterable[RawMessage], count: int) -> Iterator[list[RawMessage]]:
-    """Gather messages, up to so many at a time, and no more than take little memory.
-
-    What came before an exception is given before it is raised; the last batch can be empty.
-    """
-    batch, size = list[RawMessage](), 0
-    try:
-        for message in messages:
-            batch.append(message)
-            size += len(message[2])
-            if len(batch) == count or size >= _BATCH_SIZE:
-                yield batch
-                batch, size = [], 0
-    except Exception:
-        yield batch
-        raise
-    yield batch
 
 
 class Storage:
@@ -53,7 +32,7 @@ class Storage:
         """Count the messages; None where only reading all of them would tell."""
         raise NotImplementedError
 
-    def messages(self, topics: Collection[str]) -> Iterator[RawMessage]:
+    def messages(self, topics: Collection[str]) -> Iterator[Message]:
         """Read the messages on topics in the order of reception, as far as there are any."""
         raise NotImplementedError
 
@@ -66,8 +45,8 @@ class Storage:
         return f'after message {self.read}: ' if self.read else ''
 
     def decompressed(
-        self, messages: Iterator[RawMessage], decompress: Decompressor
-    ) -> Iterator[RawMessage]:
+        self, messages: Iterator[Message], decompress: Decompressor
+    ) -> Iterator[Message]:
         """Decompress each message."""
         number = 0
         try:

@@ -1,20 +1,17 @@
 """Topics: what a bag says about them, and the definitions of their types."""
 
 from collections.abc import Collection, Mapping
+from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from rosbags.typesys import Stores, get_typestore
 
+from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.ros1_types import ros1_types
 
-TOPIC_TYPES: Mapping[str, str] = {
-    '/rotor_state': 'sensor_msgs/msg/JointState',
-    '/output_state': 'sensor_msgs/msg/JointState',
-    '/body_poses': 'geometry_msgs/msg/PoseArray',
-}
-"""The topics of a recording, by their names in the root namespace."""
-
 _SHOWN = 10  # topics
+_COMPARED = 1000  # topics whose names are compared with one that is not there
 
 
 class Topic(NamedTuple):
@@ -33,10 +30,39 @@ class Topic(NamedTuple):
     """The offered profiles, as a list or as YAML."""
 
 
-def listed(names: Collection[str]) -> str:
-    """Name topics in a line, of many only the first: a bag can have tens of thousands."""
-    shown, more = sorted(names)[:_SHOWN], max(0, len(names) - _SHOWN)
-    return ', '.join(f'{name:.100}' for name in shown) + (f' and {more} more' if more else '')
+def listed(names: Collection[str], first: Collection[str] = ()) -> str:
+    """Name topics in a line, of many only the first: a bag can have tens of thousands.
+
+    Args:
+        names: of topics.
+        first: which of them to name before the others.
+    """
+    shown, more = sorted(names, key=lambda name: (name not in first, name)), len(names) - _SHOWN
+    text = ', '.join(f'{name:.100}' for name in shown[:_SHOWN])
+    return f'{text} and {more} more' if more > 0 else text
+
+
+def missing_topic(
+    path: Path, topics: Mapping[str, str], name: str, wanted: str = '', *, suggest: bool = True
+) -> BagError:
+    """Give the error for a topic that is not in a bag, or not of the type that is wanted.
+
+    Args:
+        path: of the bag.
+        topics: that are there: types by names.
+        name: of the topic.
+        wanted: its type; '' takes any.
+        suggest: whether to name the one that is spelled most like it.
+    """
+    of_type = {topic for topic, kind in topics.items() if kind == wanted}
+    text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'
+    if name in topics:
+        text += f', it is of type {topics[name]}'
+    elif suggest:
+        alike = get_close_matches(name, sorted(of_type or topics)[:_COMPARED], 1)
+        text += ''.join(f'; did you mean {topic}?' for topic in alike)
+    there = f'there are: {listed(topics, of_type)}' if topics else 'there are no topics'
+    return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')
 
 
 def check_encoding(topic: Topic) -> None:

@@ -22,10 +22,11 @@ from rosbags.rosbag2.metadata import parse_qos
 
 from gear_kinematics.bag.contents import parse_yaml
 from gear_kinematics.bag.errors import BagError, TopicError, bag_errors, cause
-from gear_kinematics.bag.reading import Bag, BagMessage
-from gear_kinematics.bag.storage import RawMessage, in_batches
+from gear_kinematics.bag.reading import Bag, in_batches
+from gear_kinematics.bag.storage import Message
 from gear_kinematics.bag.storage_writers import BulkWriter
-from gear_kinematics.bag.topics import TOPIC_TYPES, Topic, as_ros2, jazzy_definition
+from gear_kinematics.bag.topics import Topic, as_ros2, jazzy_definition
+from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _BATCH = 1024  # messages
 _MAX_ENTRIES = 4000  # of metadata; rosbags takes 3 ms to write one
@@ -151,7 +152,7 @@ class BagWriter:
         """
         self.write_all([(topic, received, data)])
 
-    def write_all(self, messages: Sequence[RawMessage]) -> None:
+    def write_all(self, messages: Sequence[Message]) -> None:
         """Write messages, which is faster than one by one.
 
         Raises:
@@ -180,20 +181,20 @@ class BagWriter:
 
 
 def write_bag(
-    path: Path, messages: Iterable[BagMessage], *, storage: Literal['mcap', 'sqlite3'] = 'mcap'
+    path: Path, messages: Iterable[Message], *, storage: Literal['mcap', 'sqlite3'] = 'mcap'
 ) -> None:
     """Write a rosbag2 recording, chunks compressed with zstd where the storage has chunks.
 
     Args:
         path: the folder to make, in one that exists.
-        messages: on topics of `TOPIC_TYPES`.
+        messages: on topics of `RECORDED_TOPICS`.
         storage: of the messages.
 
     Raises:
         BagError: if it cannot be written.
     """
     with BagWriter(path, storage, 'zstd' if storage == 'mcap' else 'none') as writer:
-        for topic, message_type in TOPIC_TYPES.items():
+        for topic, message_type in RECORDED_TOPICS.items():
             writer.add_topic(topic, message_type)
         for batch in in_batches(messages, _BATCH):
             writer.write_all(batch)

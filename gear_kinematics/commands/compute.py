@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from gear_kinematics.bag import Bag, TopicError, listed
-from gear_kinematics.bag.roles import find_topics
+from gear_kinematics.bag.roles import Topics, find_rotor_topic
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import add_config, add_topics, load_config
 from gear_kinematics.commands.output import complain, message_progress
@@ -31,27 +31,20 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Write the bag, and say what is in it."""
     config = load_config(options, options.bag)
     with Bag(options.bag) as bag, message_progress(options.bag.name) as progress:
-        rotor = options.rotor_topic or find_topics(bag, outputs=False).rotor
-        namespace = rotor.rpartition('/')[0]
-        count = 0
-
-        def told(now: int) -> None:
-            nonlocal count
-            progress(now - count, bag.message_count if options.topics is None else None)
-            count = now
-
+        rotor = options.rotor_topic or find_rotor_topic(bag)
+        beside = Topics.beside(rotor)
         try:
             result = compute(
                 bag,
                 options.out,
                 config,
                 rotor_topic=rotor,
-                output_topic=options.output_topic or f'{namespace}/output_state',
-                poses_topic=options.poses_topic or f'{namespace}/body_poses',
+                output_topic=options.output_topic or beside.output,
+                poses_topic=options.poses_topic or beside.poses,
                 topics=options.topics,
                 storage=options.storage,
                 compression=options.compression,
-                progress=told,
+                progress=progress,
             )
         except TopicError as error:
             raise TopicError(f'{error}; --topics says which topics to copy') from error

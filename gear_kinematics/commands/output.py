@@ -20,6 +20,7 @@ from rich.progress import (
 )
 from rich.text import Text
 
+from gear_kinematics.bag import ReportProgress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Document, printable
 from gear_kinematics.report.html import to_html
@@ -165,13 +166,13 @@ def tell_of_circles(mechanism: Mechanism, module: float) -> None:
 
 
 @contextmanager
-def message_progress(name: str) -> Iterator[Callable[[int, int | None], None]]:
-    """Show messages/s and the remaining time; gives what is to be called with each batch."""
+def message_progress(name: str) -> Iterator[ReportProgress]:
+    """Show messages/s and the remaining time; gives what is told after each batch."""
     with progress('messages') as bars:
         task = bars.add_task(printable(name), total=None)
 
-        def update(count: int, total: int | None) -> None:
-            bars.update(task, advance=count, total=total)
+        def update(done: int, total: int | None) -> None:
+            bars.update(task, completed=done, total=total)
 
         yield update
 

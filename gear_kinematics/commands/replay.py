@@ -9,6 +9,7 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import warn_of_shared_memory
+from gear_kinematics.wire.topics import ROTOR_STATE
 
 HELP = "publish a bag's rotor topic in its own time"
 
@@ -41,7 +42,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         if options.topics:
             topics = {topic: topic for topic in options.topics}
         else:
-            topics = {find_rotor_topic(bag): 'rotor_state'}
+            topics = {find_rotor_topic(bag): ROTOR_STATE}
         if not options.no_wait:
             print(f'waiting for a subscriber on {", ".join(topics.values())}', file=sys.stderr)
         played = play(

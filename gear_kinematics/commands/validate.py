@@ -1,8 +1,9 @@
 """`gearkin validate`: whether the recorded outputs are what the rotor topic calls for."""
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
+from gear_kinematics.bag import ReportProgress
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import (
@@ -28,8 +29,8 @@ from gear_kinematics.validation.fleet import (
     validate_on_cluster,
     validate_on_this_machine,
 )
+from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.validator import Tolerances
 
 HELP = 'recorded outputs against recomputed ones'
 _EXIT_CODES = {
@@ -122,7 +123,7 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
             yield (_validate_live if options.live else validate_bag)(task, told)
 
 
-def _validate_live(task: Task, progress: Callable[[int, int | None], None]) -> BagReport:
+def _validate_live(task: Task, progress: ReportProgress) -> BagReport:
     # Needs ROS, which the validation of a recording does without.
     from gear_kinematics.ros.replay import live_messages  # noqa: PLC0415
 

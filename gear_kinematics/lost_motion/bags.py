@@ -1,14 +1,14 @@
 """Recordings as bags: the rotor's states and, if recorded, the output's encoder."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import Bag, BagError, DamagedBagError
-from gear_kinematics.bag.roles import find_rotor_topic
+from gear_kinematics.bag import Bag, BagError, DamagedBagError, ReportProgress, TopicMessages
+from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -18,13 +18,9 @@ from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSamples
 from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.wire.batches import decode_joint_states
-from gear_kinematics.wire.cdr import JOINT_STATE
+from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 Array = NDArray[np.float64]
-
-ENCODER = 'output_encoder'
-"""The topic of the output's encoder."""
-_BATCH = 8192  # messages
 
 
 def read_bag(
@@ -34,7 +30,7 @@ def read_bag(
     encoder_topic: str | None = None,
     counts: int | None = None,
     output_counts: int | None = None,
-    progress: Callable[[int, int | None], None] | None = None,
+    progress: ReportProgress | None = None,
 ) -> Recording:
     """Read a bag.
 
@@ -45,7 +41,7 @@ def read_bag(
         encoder_topic: of the output's encoder; None finds it by type and name, if recorded.
         counts: steps per turn of the rotor's encoder.
         output_counts: steps per turn of the output's encoder.
-        progress: called with the number of messages of each batch, and of the bag if known.
+        progress: called after each batch, with the messages on all topics of the bag.
 
     Raises:
         BagError: if the bag cannot be read, or lacks a topic.
@@ -54,11 +50,16 @@ def read_bag(
     """
     mechanism = Mechanism.from_mapping(parameters)
     with Bag(path) as bag:
-        encoder = _find_encoder(bag, encoder_topic)
+        encoder = find_encoder_topic(bag, encoder_topic)
         rotor = find_rotor_topic(bag, rotor_topic)
-        messages, received, error = _messages(bag, rotor, encoder, progress)
+        messages = {topic: TopicMessages() for topic in (rotor, encoder) if topic}
+        error = None
+        try:
+            bag.read(messages, progress)
+        except DamagedBagError as damage:
+            error = str(damage)
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
-    samples = rotor_input.accept_batch(messages[rotor], received)
+    samples = rotor_input.accept_batch(messages[rotor].data, messages[rotor].received)
     if not len(samples.stamp):
         raise BagError(f'{path}: no usable rotor states on {rotor}')
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
@@ -71,7 +72,7 @@ def read_bag(
     errors: list[ErrorSample] = []
     if encoder:
         settings = EncoderSettings.from_mapping(parameters)
-        states = decode_joint_states(messages[encoder], settings.output_encoder_joint)
+        states = decode_joint_states(messages[encoder].data, settings.output_encoder_joint)
         comparison = settings.comparison()
         usable = ~states.malformed & states.present[:, 0]
         measured = settings.output_angle(states.values[usable, 0])
@@ -86,7 +87,7 @@ def read_bag(
     if loading:
         columns.append(f'torque: effort of {rotor} × {ratio:g}, N·m')
     elif not motion:
-        raise BagError(f'{path}: {rotor} has no effort, and there is no {ENCODER}')
+        raise BagError(f'{path}: {rotor} has no effort, and there is no {OUTPUT_ENCODER}')
     return Recording(
         path.name,
         tuple(columns),
@@ -96,45 +97,6 @@ def read_bag(
         tuple(remarks),
         error,
     )
-
-
-def _find_encoder(bag: Bag, given: str | None) -> str | None:
-    states = [topic for topic, kind in bag.topics.items() if kind == JOINT_STATE]
-    if given:
-        if given not in states:
-            raise BagError(f'{bag.path}: no topic {given} of type {JOINT_STATE} in it')
-        return given
-    found = [topic for topic in states if topic.rpartition('/')[2] == ENCODER]
-    if len(found) > 1:
-        raise BagError(f'{bag.path}: which topic is {ENCODER}? {", ".join(sorted(found))}')
-    return found[0] if found else None
-
-
-def _messages(
-    bag: Bag,
-    rotor: str,
-    encoder: str | None,
-    progress: Callable[[int, int | None], None] | None,
-) -> tuple[dict[str, list[bytes]], list[int], str | None]:
-    """The messages by topic, the reception times of the rotor's, and damage that ended reading."""
-    messages: dict[str, list[bytes]] = {rotor: []}
-    if encoder:
-        messages[encoder] = []
-    received: list[int] = []
-    error = None
-    count = 0
-    try:
-        for count, (topic, stamp, data) in enumerate(bag.messages(messages), start=1):
-            messages[topic].append(data)
-            if topic == rotor:
-                received.append(stamp)
-            if progress and count % _BATCH == 0:
-                progress(_BATCH, bag.message_count)
-    except DamagedBagError as damage:
-        error = str(damage)
-    if progress:
-        progress(count % _BATCH, bag.message_count)
-    return messages, received, error
 
 
 def _compare(

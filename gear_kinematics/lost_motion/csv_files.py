@@ -17,6 +17,7 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_tu
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.state.transmission_error import TransmissionError
+from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 Array = NDArray[np.float64]
 
@@ -26,7 +27,7 @@ _NAMES: Mapping[str, tuple[str, ...]] = {
     'angle': ('position', 'angle', 'deflection', 'twist', 'motor_position'),
     'torque': ('torque', 'effort', 'measured_torque', 'motor_torque'),
     'rotor': ('rotor_position', 'rotor_angle', 'rotor'),
-    'output': ('output_position', 'output_angle', 'output_encoder', 'output'),
+    'output': ('output_position', 'output_angle', OUTPUT_ENCODER, 'output'),
 }
 """Names of columns, in upper or lower case, with or without a unit appended."""
 _SETS = (('angle', 'torque'), ('rotor', 'output'), ('rotor', 'output', 'torque'))

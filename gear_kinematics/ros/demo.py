@@ -9,25 +9,29 @@ from rich.live import Live
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from gear_kinematics.bag import Bag, BagMessage
+from gear_kinematics.bag import Bag, Message
+from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.ros.live import live_messages
 from gear_kinematics.state import parameters
 from gear_kinematics.state.share import share_directory
+from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.validator import Tolerances, Validator
-from gear_kinematics.wire.cdr import decode_joint_state, decode_pose_array
+from gear_kinematics.validation.validator import Validator
+from gear_kinematics.wire.batches import decode_pose_arrays
+from gear_kinematics.wire.joint_reader import JointReader
 
 TOLERANCE = 1e-12
 """Greatest deviation that passes: of angles in rad, of positions in units of the eccentricity."""
 _BAG = 'servo_point_to_point'
+_TOPICS = Topics()
 
 
 def run(console: Console) -> BagReport:
     """Play the shipped bag's rotor states into a node process and validate what comes back."""
     config = parameters.load(parameters.default_config())
     with Bag(share_directory() / 'bags' / _BAG) as bag:
-        count = sum(1 for _ in bag.messages(['/rotor_state']))
+        count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
         console.print(
             f'Playing [bold]{_BAG}[/bold], {count} recorded rotor states, '
             'into gear_state_publisher over DDS.'
@@ -46,7 +50,7 @@ def run(console: Console) -> BagReport:
     return report
 
 
-def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> list[BagMessage]:
+def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> list[Message]:
     progress = Progress(
         TextColumn('rotor states'),
         BarColumn(),
@@ -55,30 +59,30 @@ def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> 
         console=console,
     )
     task = progress.add_task('', total=count)
-    received: list[BagMessage] = []
+    bodies = 2 * len(config['branches'])
+    received: list[Message] = []
     with Live(progress, console=console, auto_refresh=False, transient=True) as live:
 
-        def show(sent: int) -> None:
+        def show(sent: int, _total: int | None) -> None:
             progress.update(task, completed=sent)
-            live.update(Group(progress, _current(received)), refresh=True)
+            live.update(Group(progress, _current(received, bodies)), refresh=True)
 
         for message in live_messages(bag, config, progress=show):
             received.append(message)  # noqa: PERF402  # for `show` to see it
     return received
 
 
-def _current(received: list[BagMessage]) -> Table:
-    """The latest message of each topic in words."""
+def _current(received: list[Message], bodies: int) -> Table:
+    """The latest message of each topic in words; of so many bodies there are poses."""
     table = Table('topic', 'now', box=None)
-    latest = {message.topic: message.data for message in received[-12:]}
-    for topic, name in (('/rotor_state', 'rotor angle'), ('/output_state', 'output angle')):
+    latest = {topic: data for topic, _, data in received[-12:]}
+    for topic, name in ((_TOPICS.rotor, 'rotor angle'), (_TOPICS.output, 'output angle')):
         if topic in latest:
-            (angle,) = decode_joint_state(latest[topic]).position
+            _, _, angle, *_ = JointReader('').read(latest[topic])
             table.add_row(topic, f'{name} {angle:10.4f} rad {math.degrees(angle):10.2f}°')
-    if '/body_poses' in latest:
-        numbers = decode_pose_array(latest['/body_poses']).numbers
-        x, y = (1e3 * value for value in numbers[:2])
-        table.add_row('/body_poses', f'satellite_a {x:+.4f} mm, {y:+.4f} mm')
+    if poses := latest.get(_TOPICS.poses):
+        x, y = 1e3 * decode_pose_arrays([poses], bodies).poses[0, 0, :2]
+        table.add_row(_TOPICS.poses, f'satellite_a {x:+.4f} mm, {y:+.4f} mm')
     return table
 
 

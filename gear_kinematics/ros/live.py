@@ -27,26 +27,29 @@ from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.bag import Bag, BagError, BagMessage, DamagedBagError
-from gear_kinematics.bag.schedule import due_messages, throttled, type_of
+from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
+from gear_kinematics.bag.roles import Topics
+from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.node import make_executor
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.wire.cdr import JOINT_STATE, SECOND, JointStateTemplate
+from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.topics import (
+    JOINT_STATE,
+    POSE_ARRAY,
+    RECORDED_TOPICS,
+    ROTOR_STATE,
+)
 
 DEPTH = 2000
 """Messages that wait on either side of a topic."""
 POLL = 0.1
 """s: how late a signal can be noticed."""
 
-_OUTPUTS = ('/output_state', '/body_poses')
-_STAMP = slice(4, 12)  # of a serialised message with a header
-_MESSAGE_TYPES: Mapping[str, type] = {
-    'rotor_state': JointState,
-    'output_state': JointState,
-    'body_poses': PoseArray,
-}
+_TOPICS = Topics()
+_MESSAGE_TYPES: Mapping[str, type] = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
+_STAMP = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s: for messages that nobody expects
 _WINDOW = 500  # messages that the node may be behind: no queue of DEPTH runs over
@@ -81,10 +84,10 @@ def live_messages(
     source: Bag,
     parameters: Mapping[str, Any],
     *,
-    rotor_topic: str = '/rotor_state',
+    rotor_topic: str = _TOPICS.rotor,
     rate: float = 1.0,
-    progress: Callable[[int], None] = lambda _: None,
-) -> Iterator[BagMessage]:
+    progress: ReportProgress = lambda _done, _total: None,
+) -> Iterator[Message]:
     """Play a bag's rotor topic into a node process of its own and give what it publishes.
 
     The node runs in a private namespace and talks to this machine only. It is never sent more
@@ -97,8 +100,7 @@ def live_messages(
         parameters: of the node, as `parameters.load` gives them.
         rotor_topic: name of the rotor topic in the bag.
         rate: bag time per real time.
-        progress: called with the number of rotor messages sent, at most ten times a second and at
-            the end.
+        progress: told of the rotor messages sent, at most ten times a second and at the end.
 
     Yields:
         Messages on /rotor_state, /output_state and /body_poses in the order of their reception.
@@ -109,8 +111,7 @@ def live_messages(
         ReplayError: if the node ends, or does not answer at all.
     """
     expected = RotorInput(InputSettings.from_mapping(parameters))
-    if (found := type_of(source, rotor_topic)) != JOINT_STATE:
-        raise BagError(f'{source.path}: {rotor_topic} is of type {found}, not {JOINT_STATE}')
+    source.type_of(rotor_topic, JOINT_STATE)
     schedule = due_messages(source, [rotor_topic], rate)
     report = throttled(progress)
     wanted: Counter[str] = Counter()
@@ -124,20 +125,20 @@ def live_messages(
                     yield from replay.take()
                 data = _stamped(recorded, received)
                 replay.send(data)
-                wanted['/rotor_state'] += 1
+                wanted[_TOPICS.rotor] += 1
                 with suppress(RejectedInputError):
                     expected.accept(data, partial(int, received))
-                    wanted.update(_OUTPUTS)
+                    wanted.update(_TOPICS[1:])
                 if not replay.receive(wanted, but=_WINDOW):
                     wanted = replay.counts.copy()  # what has not come by now does not come
-                report(expected.received)
+                report(expected.received, None)
                 yield from replay.take()
         except DamagedBagError as error:
             damage = error
         replay.receive(wanted)
         replay.receive_until(time.monotonic() + _AFTERWARDS)
         yield from replay.take()
-    progress(expected.received)
+    progress(expected.received, None)
     if damage:
         raise damage
 
@@ -156,7 +157,7 @@ class Replay:
             namespace: of the topics.
             alive: whether the node can still answer.
         """
-        self.received: list[BagMessage] = []
+        self.received: list[Message] = []
         self.counts: Counter[str] = Counter()
         """Of the messages received so far, by topic."""
         self._alive = alive
@@ -167,10 +168,10 @@ class Replay:
         self._resources.callback(self._executor.shutdown)
         self._executor.add_node(self._node)
         qos = QoSProfile(depth=DEPTH)
-        self._publisher = self._node.create_publisher(JointState, 'rotor_state', qos)
-        for topic, message_type in _MESSAGE_TYPES.items():
+        self._publisher = self._node.create_publisher(JointState, ROTOR_STATE, qos)
+        for topic, name in RECORDED_TOPICS.items():
             self._node.create_subscription(
-                message_type, topic, self._recorder('/' + topic), qos, raw=True
+                _MESSAGE_TYPES[name], topic[1:], self._recorder(topic), qos, raw=True
             )
 
     def __enter__(self) -> Self:
@@ -203,7 +204,7 @@ class Replay:
             if time.monotonic() >= next_probe:
                 self.send(message)
                 next_probe = time.monotonic() + _PROBE_PERIOD
-            return len(self._probed) == len(_MESSAGE_TYPES)
+            return self._probed == RECORDED_TOPICS.keys()
 
         self.wait_until(answered, timeout)
 
@@ -216,7 +217,7 @@ class Replay:
         """Send a serialised JointState as rotor_state."""
         self._publisher.publish(data)
 
-    def take(self) -> list[BagMessage]:
+    def take(self) -> list[Message]:
         """Take what was received out of `received`."""
         taken, self.received = self.received, []
         return taken
@@ -267,7 +268,7 @@ class Replay:
                 self._probed.add(topic)
                 return
             self.counts[topic] += 1
-            self.received.append(BagMessage(topic, time.time_ns(), data))
+            self.received.append((topic, time.time_ns(), data))
 
         return record
 

@@ -54,13 +54,22 @@ from gear_kinematics.state import parameters
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.state.state_messages import STATE_TOPICS, StateMessages
+from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.state.transmission_error import ErrorSample
-from gear_kinematics.wire.cdr import JOINT_STATE, POSE_ARRAY
 from gear_kinematics.wire.joint_reader import RejectedInputError
+from gear_kinematics.wire.topics import (
+    DIAGNOSTICS,
+    JOINT_STATE,
+    MARKERS,
+    OUTPUT_ENCODER,
+    POSE_ARRAY,
+    ROBOT_DESCRIPTION,
+    ROTOR_STATE,
+    STATE_TOPICS,
+    TRANSMISSION_ERROR,
+)
 
 _MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
-_ROTOR, _ENCODER = 'rotor_state', 'output_encoder'
 _DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
@@ -103,18 +112,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._description = String()
 
         self._all_outputs: list[Publisher] = []
-        self._description_publisher = self._create_output(String, 'robot_description', _latched())
+        self._description_publisher = self._create_output(String, ROBOT_DESCRIPTION, _latched())
         self._outputs = {
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
             for topic, name in STATE_TOPICS.items()
         }
         self._listened_to: list[str] = []  # what nobody listens to is not computed
         self._transmission_error = self._create_output(
-            JointState, 'transmission_error', QoSProfile(depth=_DEPTH)
+            JointState, TRANSMISSION_ERROR, QoSProfile(depth=_DEPTH)
         )
-        self._diagnostics = self._create_output(
-            DiagnosticArray, '/diagnostics', QoSProfile(depth=10)
-        )
+        self._diagnostics = self._create_output(DiagnosticArray, DIAGNOSTICS, QoSProfile(depth=10))
         self._configure()
         self.add_post_set_parameters_callback(lambda _: self._configure())
         self.create_service(Trigger, '~/home', self._home)
@@ -128,17 +135,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 1.0 / rate, self._publish_markers, clock=steady, autostart=False
             )
             self._marker_publisher = self._create_output(
-                MarkerArray, 'markers', _latched(), matched=self._on_viewers
+                MarkerArray, MARKERS, _latched(), matched=self._on_viewers
             )
         self._unheard: set[str] = set()  # inputs of which the first message is still to come
-        self._inputs = {topic: self._listen(topic) for topic in (_ROTOR, _ENCODER)}
+        self._inputs = {topic: self._listen(topic) for topic in (ROTOR_STATE, OUTPUT_ENCODER)}
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
             f'gear ratio {self._mechanism.gear_ratio} '
             f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
             f'teeth), listening for {listening_for} on '
-            f'{self._inputs[_ROTOR].subscription.topic_name}'
+            f'{self._inputs[ROTOR_STATE].subscription.topic_name}'
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -202,7 +209,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         That is what best available means; it is decided when the subscription is made.
         """
         self._unheard.add(topic)
-        on_message = {_ROTOR: self._on_rotor_state, _ENCODER: self._on_output_encoder}
+        on_message = {ROTOR_STATE: self._on_rotor_state, OUTPUT_ENCODER: self._on_output_encoder}
         subscription = self.create_subscription(
             JointState,
             topic,
@@ -267,12 +274,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
-        if _ROTOR in self._unheard:
-            self._begin_to_count_losses(_ROTOR)
+        if ROTOR_STATE in self._unheard:
+            self._begin_to_count_losses(ROTOR_STATE)
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
-            self._warn(f'{_ROTOR} rejected: {rejection}')
+            self._warn(f'{ROTOR_STATE} rejected: {rejection}')
             return
         for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
@@ -283,12 +290,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
-        if _ENCODER in self._unheard:
-            self._begin_to_count_losses(_ENCODER)
+        if OUTPUT_ENCODER in self._unheard:
+            self._begin_to_count_losses(OUTPUT_ENCODER)
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
-            self._warn(f'{_ENCODER} rejected: {rejection}')
+            self._warn(f'{OUTPUT_ENCODER} rejected: {rejection}')
 
     def _publish_errors(self, samples: Iterable[ErrorSample]) -> None:
         for sample in samples:
@@ -354,7 +361,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         with losses:
             status = losses.take_event()
         if topic not in self._unheard:
-            monitor = self._monitor if topic == _ROTOR else self._encoder_monitor
+            monitor = self._monitor if topic == ROTOR_STATE else self._encoder_monitor
             monitor.lost += status.total_count_change
 
     def wait_for_delivery(self, timeout: float) -> None:
@@ -369,7 +376,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         try:
             zero = self._input.home(self._mechanism.rotor_angle(home_angle))
         except RuntimeError:
-            response.message = 'there was no valid rotor_state yet'
+            response.message = f'there was no valid {ROTOR_STATE} yet'
             return response
         result = self.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
         response.success = result.successful
@@ -383,7 +390,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._count_losses(topic)
             if not topic_input.subscription.get_publisher_count():
                 self._unheard.add(topic)
-        self._monitor.drivers = self._inputs[_ROTOR].subscription.get_publisher_count()
+        self._monitor.drivers = self._inputs[ROTOR_STATE].subscription.get_publisher_count()
         self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {

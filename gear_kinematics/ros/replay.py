@@ -17,8 +17,8 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 
-from gear_kinematics.bag import Bag
-from gear_kinematics.bag.schedule import due_messages, throttled, type_of
+from gear_kinematics.bag import Bag, ReportProgress
+from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.ros.live import DEPTH, POLL, ReplayError, live_messages, replay_node
 from gear_kinematics.wire.cdr import SECOND
 
@@ -62,7 +62,7 @@ def play(
     clock: float = 0.0,
     wait: float = math.inf,
     stopped: Callable[[], bool] = lambda: False,
-    progress: Callable[[int], None] = lambda _: None,
+    progress: ReportProgress = lambda _done, _total: None,
 ) -> Played:
     """Publish a bag's messages, unchanged, in their own time, as `ros2 bag play` does.
 
@@ -80,8 +80,8 @@ def play(
         clock: Hz of the bag's time on /clock; 0 for none.
         wait: s to wait until every topic has a subscriber; 0 does not wait.
         stopped: asked at least every 0.1 s whether to stop.
-        progress: called with the number of messages sent: with 0 when the wait is over, then at
-            most ten times a second, and at the end.
+        progress: told of the messages sent: when the wait is over, then at most ten times a
+            second, and at the end.
 
     Raises:
         BagError: if the bag has no such topics or nothing to play, or is damaged; then what could
@@ -97,7 +97,7 @@ def play(
     ):
         if not value >= 0.0:
             raise ValueError(f'{name} must not be negative, but is {value:g}')
-    types = {topic: type_of(source, topic) for topic in topics}
+    types = {topic: source.type_of(topic) for topic in topics}
     schedule = due_messages(source, topics, rate, start_offset, duration, loop=loop)
     played = Played()
     report = throttled(progress)
@@ -107,7 +107,7 @@ def play(
         }
         bag_clock = _Clock(node, clock)
         _wait_for_subscribers(publishers.values(), wait, stopped)
-        progress(0)
+        progress(0, None)
         start = time.monotonic()
         try:
             for due, (topic, received, data) in schedule:
@@ -120,12 +120,12 @@ def play(
                 publishers[topic].publish(data)
                 played.messages += 1
                 played.worst_delay = max(played.worst_delay, time.monotonic() - start - due)
-                report(played.messages)
+                report(played.messages, None)
         finally:
             # What got lost on the way is sent again as long as the publisher is there.
             for publisher in publishers.values():
                 publisher.wait_for_all_acked(Duration(seconds=0.0 if stopped() else _GRACE))
-    progress(played.messages)
+    progress(played.messages, None)
     return played
 
 

@@ -1,6 +1,6 @@
 """The outputs that the node gives for a recorded rotor topic, written to a new bag without ROS."""
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
@@ -8,19 +8,16 @@ from typing import Any, Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, BagWriter, in_batches, listed
+from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_batches
+from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.state.state_messages import (
-    BODY_POSES,
-    OUTPUT_STATE,
-    STATE_TOPICS,
-    StateMessages,
-)
-from gear_kinematics.wire.cdr import JOINT_STATE
+from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.wire.topics import BODY_POSES, JOINT_STATE, OUTPUT_STATE, STATE_TOPICS
 
 _BATCH = 1024  # messages
+_TOPICS = Topics()
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,13 +47,13 @@ def compute(
     target: Path,
     parameters: Mapping[str, Any],
     *,
-    rotor_topic: str = '/rotor_state',
-    output_topic: str = '/output_state',
-    poses_topic: str = '/body_poses',
+    rotor_topic: str = _TOPICS.rotor,
+    output_topic: str = _TOPICS.output,
+    poses_topic: str = _TOPICS.poses,
     topics: Collection[str] | None = None,
     storage: Literal['mcap', 'sqlite3'] = 'mcap',
     compression: Literal['none', 'zstd'] = 'none',
-    progress: Callable[[int], None] = lambda _: None,
+    progress: ReportProgress | None = None,
 ) -> ComputeResult:
     """Copy a bag and add the output topics to it, or replace them.
 
@@ -73,7 +70,7 @@ def compute(
         topics: others to copy; None copies all.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
-        progress: called now and then with the number of messages read.
+        progress: told after each batch, with the messages of the bag if all are read.
 
     Raises:
         BagError: if the source has no such topics, is damaged, or no rotor message of it gives
@@ -90,15 +87,16 @@ def compute(
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
     outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
     chosen = {rotor_topic, *(source.topics if topics is None else topics)}
-    _check_topics(source, chosen, {rotor_topic: JOINT_STATE, **outputs})
+    _check_topics(source, rotor_topic, chosen, outputs)
     kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
 
-    computed = copied = read = 0
+    computed = copied = 0
     with BagWriter(target, storage=storage, compression=compression) as writer:
         written = [writer.copy_topic(source, topic) for topic in kept]
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
-        for batch in in_batches(source.messages({*kept, *outputs}), _BATCH):
+        total = source.message_count if topics is None else None
+        for batch in in_batches(source.messages({*kept, *outputs}), _BATCH, progress, total):
             messages = [message for message in batch if message[0] not in outputs]
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
             samples = rotor_input.accept_batch(
@@ -113,8 +111,6 @@ def compute(
             for state, encoded in state_messages.encode_outputs(samples).items():
                 messages += zip(repeat(topic_of[state]), received, encoded)
             writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
-            read += len(batch)
-            progress(read)
         if not computed:
             raise BagError(_nothing_computed(source, rotor_topic, rotor_input))
     return ComputeResult(
@@ -129,12 +125,13 @@ def compute(
     )
 
 
-def _check_topics(source: Bag, needed: Collection[str], types: Mapping[str, str]) -> None:
+def _check_topics(
+    source: Bag, rotor: str, needed: Collection[str], outputs: Mapping[str, str]
+) -> None:
+    source.type_of(rotor, JOINT_STATE)
     for topic in sorted(needed):
-        if topic not in source.topics:
-            there = listed(source.topics) or 'no topics'
-            raise BagError(f'{source.path}: no {topic} in it; there are {there}')
-    for topic, message_type in types.items():
+        source.type_of(topic)
+    for topic, message_type in outputs.items():
         # A topic of another type is somebody else's, not an output of old.
         found = source.topics.get(topic, message_type)
         if found != message_type:

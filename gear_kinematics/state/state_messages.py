@@ -1,7 +1,7 @@
 """The messages that the node publishes for its samples, as bytes ready to be sent."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from types import ModuleType
 from typing import Any
 
@@ -14,20 +14,8 @@ from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state.rotor_input import RotorSample, RotorSamples
 from gear_kinematics.state.transmission_error import ErrorSample
 from gear_kinematics.wire.batches import encode
-from gear_kinematics.wire.cdr import (
-    JOINT_STATE,
-    POSE_ARRAY,
-    JointStateTemplate,
-    PoseArrayTemplate,
-)
-
-OUTPUT_STATE, BODY_POSES, JOINT_STATES = 'output_state', 'body_poses', 'mechanism_joint_states'
-STATE_TOPICS: Mapping[str, str] = {
-    OUTPUT_STATE: JOINT_STATE,
-    BODY_POSES: POSE_ARRAY,
-    JOINT_STATES: JOINT_STATE,
-}
-"""The topics of the state and their types."""
+from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
+from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE, STATE_TOPICS
 
 
 class StateMessages:

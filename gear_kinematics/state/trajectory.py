@@ -1,14 +1,14 @@
 """The rotor's motion over time, as recorded or at a constant speed."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -21,7 +21,6 @@ MOST_TURNS = 1000
 """Of the rotor at a constant speed; more are a blur."""
 _PER_TURN = 360  # samples
 _ROUNDING = 1e-9  # by which intervals may miss the end
-_BATCH = 8192  # messages
 
 
 class Trajectory(NamedTuple):
@@ -106,7 +105,7 @@ def read_trajectory(
     path: Path,
     parameters: Mapping[str, Any],
     rotor_topic: str | None = None,
-    progress: Callable[[int, int | None], None] = lambda _count, _total: None,
+    progress: ReportProgress | None = None,
 ) -> Trajectory:
     """Read the rotor's topic of a bag, up to where its stamps begin anew, if they do.
 
@@ -114,7 +113,7 @@ def read_trajectory(
         path: of the bag.
         parameters: of the node, as `parameters.load` gives them.
         rotor_topic: its name; None: by type and name.
-        progress: called with the messages of each batch, and of the whole bag if that is known.
+        progress: told after each batch, with the messages on all topics of the bag.
 
     Returns:
         Where messages have no velocity, it is that of the differences of positions.
@@ -122,16 +121,12 @@ def read_trajectory(
     Raises:
         BagError: if the bag cannot be read, or has no states of the rotor at two times.
     """
-    messages, received = [], []
+    rotor = TopicMessages()
     with Bag(path) as bag:
         topic = find_rotor_topic(bag, rotor_topic)
-        for _, stamp, data in bag.messages([topic]):
-            messages.append(data)
-            received.append(stamp)
-            if len(messages) % _BATCH == 0:
-                progress(_BATCH, bag.message_count)
-        progress(len(messages) % _BATCH, bag.message_count)
-    samples = RotorInput(InputSettings.from_mapping(parameters)).accept_batch(messages, received)
+        bag.read({topic: rotor}, progress)
+    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    samples = rotor_input.accept_batch(rotor.data, rotor.received)
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
     if len(used) < 2:  # noqa: PLR2004, what a motion takes

@@ -14,21 +14,20 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import Topics, find_topics
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.validator import Message, Tolerances, Validator
+from gear_kinematics.validation.validator import Validator
 
 _TRIES = 3
 """How often a bag is begun whose worker dies."""
 _CONNECT_TIMEOUT = 10.0  # s
 _PATIENCE = 60.0  # s, with a cluster that has no workers
 _TOPICS = Topics()
-Progress = Callable[[int, int | None], None]
-"""Messages of a batch, and of the whole bag if that is known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,14 +56,14 @@ class SchedulerError(ValueError):
 
 def validate_bag(
     task: Task,
-    progress: Progress | None = None,
+    progress: ReportProgress | None = None,
     play: Callable[..., Iterable[Message]] | None = None,
 ) -> BagReport:
     """Validate one bag. Whatever goes wrong with a recording is told in its report.
 
     Args:
         task: the bag, and what to validate it with.
-        progress: called with the messages of each batch and of the whole bag, if that is known.
+        progress: told after each batch, with the messages on all topics of the bag.
         play: `replay.live_messages`, to validate what it gives for the rotor topic and not what
             was recorded.
 
@@ -83,7 +82,7 @@ def validate_bag(
                 messages = play(bag, task.parameters, rotor_topic=topics.rotor)
                 # Nothing gets lost on the way to what is recorded here.
                 return validate_messages(replace(task, strict=True), messages, progress)
-            messages = bag.messages(topics.names())
+            messages = bag.messages(topics)
             return validate_messages(task, messages, progress, topics, bag.message_count)
     except BagError as error:
         return _unusable(task, str(error))
@@ -96,7 +95,7 @@ def validate_bag(
 def validate_messages(
     task: Task,
     messages: Iterable[Message],
-    progress: Progress | None = None,
+    progress: ReportProgress | None = None,
     topics: Topics = _TOPICS,
     total: int | None = None,
 ) -> BagReport:
@@ -110,7 +109,7 @@ def validate_messages(
     )
     damage = None
     try:
-        validator.feed(messages, progress and (lambda count: progress(count, total)))
+        validator.feed(messages, progress, total)
     except BagError as error:
         damage = str(error)
     return replace(validator.report(str(task.bag), error=damage), config=task.config)

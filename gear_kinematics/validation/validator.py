@@ -1,6 +1,6 @@
 """What a node published, against what it should have published: one pass over a recording."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import in_batches
+from gear_kinematics.bag import Message, ReportProgress, TopicMessages, in_batches, sort_by_topic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
@@ -28,13 +28,8 @@ from gear_kinematics.wire.cdr import (
     pose_array_layout,
 )
 
-__all__ = ['Message', 'Tolerances', 'Validator']
-
 Array = NDArray[Any]
-Message = tuple[str, int, bytes]
-"""Topic, received (ns), CDR."""
 
-_BATCH = 8192  # messages
 _FRAME = 'stator'
 
 
@@ -42,24 +37,15 @@ _TOPICS, _TOLERANCES = Topics(), Tolerances()
 
 
 @dataclass(slots=True)
-class _Messages:
-    """Of one topic."""
-
-    data: list[bytes] = field(default_factory=list)
-    received: list[int] = field(default_factory=list)
-    """ns."""
-
-
-@dataclass(slots=True)
 class _Batch:
     """Messages by topic."""
 
-    rotor: _Messages = field(default_factory=_Messages)
-    output: _Messages = field(default_factory=_Messages)
-    poses: _Messages = field(default_factory=_Messages)
+    rotor: TopicMessages = field(default_factory=TopicMessages)
+    output: TopicMessages = field(default_factory=TopicMessages)
+    poses: TopicMessages = field(default_factory=TopicMessages)
 
-    def topics(self) -> tuple[_Messages, _Messages, _Messages]:
-        """All three, in the order of `Topics.names`."""
+    def topics(self) -> tuple[TopicMessages, TopicMessages, TopicMessages]:
+        """All three, in the order of `Topics`."""
         return self.rotor, self.output, self.poses
 
     def __len__(self) -> int:
@@ -117,7 +103,10 @@ class Validator:
         self._findings: list[str] = []
 
     def feed(
-        self, messages: Iterable[Message], progress: Callable[[int], None] | None = None
+        self,
+        messages: Iterable[Message],
+        progress: ReportProgress | None = None,
+        total: int | None = None,
     ) -> None:
         """Take the messages of the recording, on the three topics.
 
@@ -125,17 +114,13 @@ class Validator:
 
         Args:
             messages: in the order of their reception.
-            progress: called with the number of messages of each batch.
+            progress: told after each batch.
+            total: of the messages, if that is known.
         """
-        for raw in in_batches(messages, _BATCH):
+        for recorded in in_batches(messages, progress=progress, total=total):
             batch = _Batch()
-            by_topic = dict(zip(self._topics.names(), batch.topics(), strict=True))
-            for topic, received, data in raw:
-                by_topic[topic].data.append(data)
-                by_topic[topic].received.append(received)
+            sort_by_topic(recorded, dict(zip(self._topics, batch.topics(), strict=True)))
             self._take(batch)
-            if progress:
-                progress(len(raw))
 
     @np.errstate(all='ignore')  # recorded numbers can be anything; what overflows fails
     def report(self, bag: str = '', *, error: str | None = None) -> BagReport:
@@ -190,7 +175,7 @@ class Validator:
         settled = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(settled, len(done) - WINDOW))
 
-    def _add_samples(self, messages: _Messages) -> None:
+    def _add_samples(self, messages: TopicMessages) -> None:
         """Put the rotor's samples into the window."""
         samples = self._input.accept_batch(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
@@ -292,7 +277,7 @@ class Validator:
         yield from self.poses.findings()
         if self._unseen:
             yield from self._unseen.findings()
-        for topic, missing in zip(self._topics.names()[1:], self._absences.topics, strict=True):
+        for topic, missing in zip(self._topics[1:], self._absences.topics, strict=True):
             if missing.ended_early is not None:
                 yield (
                     f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '

@@ -19,7 +19,7 @@ import pytest
 from live import rotor_bytes
 from rosbags import rosbag1, rosbag2
 
-from gear_kinematics.bag import TOPIC_TYPES
+from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 if sys.version_info >= (3, 14):
     from compression import zstd
@@ -182,7 +182,7 @@ def database(path: Path, topics: Iterable[str], messages: Iterable[bytes]) -> Pa
         )
         rows.executemany(
             "INSERT INTO topics VALUES (NULL, ?, ?, 'cdr', '')",
-            [*TOPIC_TYPES.items(), *((topic, JOINT_STATE) for topic in topics)],
+            [*RECORDED_TOPICS.items(), *((topic, JOINT_STATE) for topic in topics)],
         )
         rows.executemany(
             'INSERT INTO messages(topic_id, timestamp, data) VALUES (1, 9, ?)',
@@ -236,7 +236,7 @@ def ros1(
     with writer:
         rotor, *_ = (
             writer.add_connection(topic, kind, msgdef=definition, md5sum='0')
-            for topic, kind in TOPIC_TYPES.items()
+            for topic, kind in RECORDED_TOPICS.items()
         )
         for received, data in messages:
             writer.write(rotor, received, data)
@@ -248,7 +248,7 @@ def ros1_index_again_and_again(path: Path) -> Path:
     data = bytearray(ros1(path, 'int8 a\n', messages, threshold=GB).read_bytes())
     place = data.index(b'index_pos=') + len(b'index_pos=')
     (index,) = struct.unpack_from('<Q', data, place)
-    for _ in range(2 * len(TOPIC_TYPES)):  # headers and bodies of connections
+    for _ in range(2 * len(RECORDED_TOPICS)):  # headers and bodies of connections
         index += 4 + struct.unpack_from('<I', data, index)[0]
     data += 5000 * data[index:]
     place = data.index(b'chunk_count=') + len(b'chunk_count=')

@@ -28,6 +28,7 @@ from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import cli, output
 from gear_kinematics.ros.replay import ReplayError, play
 from gear_kinematics.state import parameters
+from gear_kinematics.wire.topics import TOPICS
 
 ROOT = Path(__file__).resolve().parents[2]
 BAG = ROOT / 'bags/servo_point_to_point'
@@ -110,6 +111,16 @@ def test_names_that_xml_cannot_hold_are_refused(live, name):
     assert not result.successful
     assert name in result.reason
     ET.fromstring(live.peer.description().encode())  # noqa: S314, our node's
+
+
+def test_policy_allows_the_topics_of_the_node_and_those_of_every_node():
+    for publisher, verb, of_every_node in (
+        ('driver', 'subscribe', set()),
+        ('node', 'publish', {'/parameter_events', '/rosout'}),
+    ):
+        allowed = {name for rule, name in rules() if rule == verb}
+        ours = {name for name, topic in TOPICS.items() if topic.publisher == publisher}
+        assert allowed == {f'/{name.lstrip("/")}' for name in ours} | of_every_node
 
 
 def test_policy_is_one_plain_profile():

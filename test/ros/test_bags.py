@@ -163,9 +163,9 @@ def test_the_node_publishes_what_the_rotor_topic_calls_for(
             '/output_state': recording.compared,
             '/body_poses': recording.compared,
         }
-        replay.wait_until(lambda: Counter(m.topic for m in replay.received) == wanted, 10.0)
+        replay.wait_until(lambda: Counter(topic for topic, *_ in replay.received) == wanted, 10.0)
         received = {
-            topic: [m.data for m in replay.received if m.topic == topic] for topic in wanted
+            topic: [data for name, _, data in replay.received if name == topic] for topic in wanted
         }
     worst = replaying.compare_messages(samples, received['/output_state'], received['/body_poses'])
     record_property('worst_angle', worst.angle)

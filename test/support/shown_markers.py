@@ -13,7 +13,8 @@ from gear_kinematics.kinematics import Mechanism, split_turns
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.state.rotor_input import RotorSample
-from gear_kinematics.state.state_messages import JOINT_STATES, StateMessages
+from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.wire.topics import JOINT_STATES
 
 MODULE = 0.0005
 

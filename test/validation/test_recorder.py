@@ -15,9 +15,10 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.validation import wording
 from gear_kinematics.validation.fleet import Task, validate_bag
+from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.recorder import BEFORE, NO_INPUT
 from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.validator import Tolerances, Validator
+from gear_kinematics.validation.validator import Validator
 
 ROOT = Path(__file__).resolve().parents[2]
 RECORDED = ROOT.parent / 'shared' / 'data' / 'recorded'

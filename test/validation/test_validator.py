@@ -11,12 +11,15 @@ import pytest
 import replaying
 from rosbags.rosbag2 import Reader
 
+from gear_kinematics.bag import Message
+from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.validation.matching import WINDOW
+from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport, TopicReport
-from gear_kinematics.validation.validator import Message, Tolerances, Topics, Validator
+from gear_kinematics.validation.validator import Validator
 
 BAGS = Path(__file__).resolve().parents[2] / 'bags'
 ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
@@ -694,6 +697,8 @@ def test_the_series_shows_the_worst(recorded, config):
 def test_progress_is_told(recorded, config):
     told = []
     validator = Validator(config)
-    validator.feed(repeated(recorded, 20, 1), progress=told.append)
-    assert sum(told) == 18_000
+    messages = repeated(recorded, 20, 1)
+    validator.feed(messages, lambda done, total: told.append((done, total)), total=20_000)
+    assert told == sorted(told)
+    assert told[-1] == (18_000, 20_000)
     assert len(told) > 1

@@ -1,0 +1,54 @@
+"""The topics of the node: the only place where their names and types are written.
+
+Names are relative to the namespace of the node, unless they begin with a slash.
+"""
+
+from collections.abc import Mapping
+from typing import Literal, NamedTuple
+
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+POSE_ARRAY = 'geometry_msgs/msg/PoseArray'
+
+ROTOR_STATE = 'rotor_state'
+OUTPUT_ENCODER = 'output_encoder'
+OUTPUT_STATE = 'output_state'
+BODY_POSES = 'body_poses'
+JOINT_STATES = 'mechanism_joint_states'
+TRANSMISSION_ERROR = 'transmission_error'
+ROBOT_DESCRIPTION = 'robot_description'
+MARKERS = 'markers'
+DIAGNOSTICS = '/diagnostics'
+
+
+class NodeTopic(NamedTuple):
+    """What is agreed on a topic."""
+
+    type: str
+    part: Literal['input', 'state', 'comparison', 'display', 'health']
+    """A `state` is published for every valid rotor_state, a `comparison` where there is an
+    output_encoder, and what is for `display` when somebody looks."""
+    publisher: Literal['driver', 'node']
+
+
+TOPICS: Mapping[str, NodeTopic] = {
+    ROTOR_STATE: NodeTopic(JOINT_STATE, 'input', 'driver'),
+    OUTPUT_ENCODER: NodeTopic(JOINT_STATE, 'input', 'driver'),
+    OUTPUT_STATE: NodeTopic(JOINT_STATE, 'state', 'node'),
+    BODY_POSES: NodeTopic(POSE_ARRAY, 'state', 'node'),
+    JOINT_STATES: NodeTopic(JOINT_STATE, 'state', 'node'),
+    TRANSMISSION_ERROR: NodeTopic(JOINT_STATE, 'comparison', 'node'),
+    ROBOT_DESCRIPTION: NodeTopic('std_msgs/msg/String', 'display', 'node'),
+    MARKERS: NodeTopic('visualization_msgs/msg/MarkerArray', 'display', 'node'),
+    DIAGNOSTICS: NodeTopic('diagnostic_msgs/msg/DiagnosticArray', 'health', 'node'),
+}
+"""All of them, by their names."""
+
+STATE_TOPICS: Mapping[str, str] = {
+    name: topic.type for name, topic in TOPICS.items() if topic.part == 'state'
+}
+"""The topics of the state and their types."""
+
+RECORDED_TOPICS: Mapping[str, str] = {
+    f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)
+}
+"""The topics that a recording is validated by, in the root namespace, and their types."""

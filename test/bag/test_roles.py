@@ -1,0 +1,213 @@
+"""Finding the topics of a recording by their names and types."""
+
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.roles import Topics, find_encoder_topic, find_topics
+
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+
+
+def bag_with(joint_states: str, pose_arrays: str = '') -> SimpleNamespace:
+    kinds = dict.fromkeys(joint_states.split(), JOINT_STATE)
+    kinds |= dict.fromkeys(pose_arrays.split(), POSE_ARRAY)
+    return SimpleNamespace(path=Path('some.mcap'), topics=kinds | {'/rosout': 'rcl/msg/Log'})
+
+
+@pytest.mark.parametrize(
+    ('joint_states', 'pose_arrays', 'given', 'found'),
+    [
+        ('/rotor_state /output_state', '/body_poses', {}, Topics()),
+        (
+            '/arm/rotor_state /arm/output_state /arm/mechanism_joint_states /joint_states',
+            '/arm/body_poses /markers',
+            {},
+            Topics('/arm/rotor_state', '/arm/output_state', '/arm/body_poses'),
+        ),
+        # By type alone.
+        ('/motor /output_state', '/p', {}, Topics('/motor', '/output_state', '/p')),
+        ('/rotor_state /shaft', '/p', {}, Topics('/rotor_state', '/shaft', '/p')),
+        # Those that are named are none of the others.
+        ('/a /b', '/p', {'rotor': '/a'}, Topics('/a', '/b', '/p')),
+        ('/a /b', '/p', {'output': '/a'}, Topics('/b', '/a', '/p')),
+        ('/a /b', '/p /q', {'rotor': '/a', 'poses': '/q'}, Topics('/a', '/b', '/q')),
+        (
+            '/rotor_state /output_state /old/output_state',
+            '/body_poses',
+            {'output': '/old/output_state'},
+            Topics('/rotor_state', '/old/output_state', '/body_poses'),
+        ),
+        # Two nodes: those beside the one that is named.
+        (
+            '/left/rotor_state /left/output_state /right/rotor_state /right/output_state',
+            '/left/body_poses /right/body_poses',
+            {'rotor': '/right/rotor_state'},
+            Topics('/right/rotor_state', '/right/output_state', '/right/body_poses'),
+        ),
+        (
+            '/left/rotor_state /left/output_state /output_state',
+            '/left/body_poses',
+            {'rotor': '/left/rotor_state', 'output': '/output_state'},
+            Topics('/left/rotor_state', '/output_state', '/left/body_poses'),
+        ),
+    ],
+)
+def test_topics_are_found_by_name_then_by_type(joint_states, pose_arrays, given, found):
+    assert find_topics(bag_with(joint_states, pose_arrays), given) == found
+    if not given:
+        assert find_topics(bag_with(joint_states, pose_arrays)) == found
+
+
+@pytest.mark.parametrize(
+    ('joint_states', 'pose_arrays', 'given', 'error'),
+    [
+        (
+            '/rotor_state /output_state',
+            '',
+            {},
+            (
+                f'no topic body_poses of type {POSE_ARRAY} in it; '
+                'there are: /output_state, /rosout, /rotor_state'
+            ),
+        ),
+        (
+            '/rotor_state',
+            '/p',
+            {},
+            (
+                f'no topic output_state of type {JOINT_STATE} in it; '
+                'there are: /rotor_state, /p, /rosout'
+            ),
+        ),
+        (
+            '/output_state',
+            '/p',
+            {},
+            (
+                f'no topic rotor_state of type {JOINT_STATE} in it; '
+                'there are: /output_state, /p, /rosout'
+            ),
+        ),
+        (
+            '/left/rotor_state /right/rotor_state /output_state',
+            '/p',
+            {},
+            'which topic is rotor_state? /left/rotor_state, /right/rotor_state',
+        ),
+        ('/b /a', '/p', {}, 'which topic is output_state? /a, /b'),
+        (
+            '/rotor_state /output_state',
+            '/body_poses',
+            {'rotor': '/motor'},
+            (
+                f'no topic /motor of type {JOINT_STATE} in it; '
+                'there are: /output_state, /rotor_state, /body_poses, /rosout'
+            ),
+        ),
+        (
+            '/rotor_state /output_state',
+            '/body_poses',
+            {'poses': '/output_state'},
+            (
+                f'no topic /output_state of type {POSE_ARRAY} in it, it is of type {JOINT_STATE}; '
+                'there are: /body_poses, /output_state, /rosout, /rotor_state'
+            ),
+        ),
+        (
+            '/rotor_state /output_state',
+            '/body_poses',
+            {'rotor': '/rotor_stat'},
+            (
+                f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean /rotor_state? '
+                'there are: /output_state, /rotor_state, /body_poses, /rosout'
+            ),
+        ),
+    ],
+)
+def test_a_topic_that_is_not_found_is_named_with_its_bag(joint_states, pose_arrays, given, error):
+    with pytest.raises(BagError) as raised:
+        find_topics(bag_with(joint_states, pose_arrays), given)
+    assert str(raised.value) == f'some.mcap: {error}'
+
+
+def test_outputs_are_no_rotor_where_only_that_is_wanted():
+    names = '/output_state /motor /mechanism_joint_states'
+    assert find_topics(bag_with(names), outputs=False).rotor == '/motor'
+
+
+class Described:
+    """What a bag says about its topics."""
+
+    path = Path('some.mcap')
+    type_of = Bag.type_of
+
+    def __init__(self, topics: dict[str, str]) -> None:
+        self.topics = topics
+
+
+@pytest.mark.parametrize(
+    ('topics', 'name', 'kind', 'error'),
+    [
+        ([], '/a', '', 'no topic /a in it; there are no topics'),
+        (['/ab', '/c'], '/a', '', 'no topic /a in it; did you mean /ab? there are: /ab, /c'),
+        (['/grip', '/nod'], '/motor', '', 'no topic /motor in it; there are: /grip, /nod'),
+        # Without the slash, and with another letter.
+        (
+            ['/motor', '/moto/r'],
+            'motor',
+            '',
+            'no topic motor in it; did you mean /motor? there are: /moto/r, /motor',
+        ),
+        (
+            [f'/{k:02}' for k in range(12)],
+            '/motor',
+            'a/msg/A',
+            'no topic /motor of type a/msg/A in it; there are: '
+            + ', '.join(f'/{k:02}' for k in range(10))
+            + ' and 2 more',
+        ),
+    ],
+)
+def test_a_missing_topic_is_told_with_what_is_there(topics, name, kind, error):
+    bag = Described(dict.fromkeys(topics, 'std_msgs/msg/String'))
+    with pytest.raises(BagError) as raised:
+        bag.type_of(name, kind)
+    assert str(raised.value) == f'some.mcap: {error}'
+
+
+def test_topics_of_the_wanted_type_are_named_first():
+    bag = Described({'/a': 'x/msg/X', '/wheel': JOINT_STATE, '/moto': 'x/msg/X'})
+    with pytest.raises(BagError, match=r'in it; there are: /wheel, /a, /moto$'):
+        bag.type_of('/motor', JOINT_STATE)
+    assert bag.type_of('/wheel', JOINT_STATE) == bag.type_of('/wheel') == JOINT_STATE
+
+
+def test_many_long_names_take_no_time():
+    bag = Described(dict.fromkeys((f'/{"motor" * 50}{k}' for k in range(100_000)), 'x/msg/X'))
+    started = time.process_time()
+    with pytest.raises(BagError, match=r'and 99990 more$'):
+        bag.type_of('/' + 'motor' * 50)
+    assert time.process_time() - started < 5.0
+
+
+@pytest.mark.parametrize(
+    ('joint_states', 'given', 'found'),
+    [
+        ('/rotor_state', None, None),
+        ('/rotor_state /arm/output_encoder', None, '/arm/output_encoder'),
+        ('/rotor_state /shaft', '/shaft', '/shaft'),
+    ],
+)
+def test_the_encoder_at_the_output_is_found_by_name(joint_states, given, found):
+    bag = Described(dict.fromkeys(joint_states.split(), JOINT_STATE))
+    assert find_encoder_topic(bag, given) == found
+
+
+def test_which_encoder_is_meant_is_asked():
+    bag = Described(dict.fromkeys(['/b/output_encoder', '/a/output_encoder'], JOINT_STATE))
+    with pytest.raises(BagError, match='which topic is output_encoder'):
+        find_encoder_topic(bag)
