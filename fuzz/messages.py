@@ -6,9 +6,10 @@ other.
 
 import math
 import os
+import struct
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from typing import Any
+from typing import Any, NamedTuple
 
 import geometry_msgs.msg
 import sensor_msgs.msg
@@ -21,11 +22,11 @@ from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
 from gear_kinematics.wire.cdr import (
     SECOND,
-    JointState,
+    STAMP_OFFSET,
+    Layout,
     MalformedMessageError,
-    PoseArray,
-    decode_joint_state,
-    decode_pose_array,
+    joint_state_layout,
+    pose_array_layout,
 )
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
@@ -41,6 +42,51 @@ _STATES = StateMessages(
     output_joint='output_shaft',
     frame_prefix='',
 )
+
+
+class JointState(NamedTuple):
+    """A decoded sensor_msgs/JointState."""
+
+    stamp: int
+    names: tuple[bytes, ...]
+    position: tuple[float, ...]
+    velocity: tuple[float, ...]
+    effort: tuple[float, ...]
+
+
+class PoseArray(NamedTuple):
+    """A decoded geometry_msgs/PoseArray; the numbers are x y z, x y z w, pose after pose."""
+
+    stamp: int
+    frame_id: bytes
+    numbers: tuple[float, ...]
+
+
+def decode_joint_state(data: bytes) -> JointState:
+    """Take out of a message all that its layout says is in it.
+
+    Raises:
+        MalformedMessageError: if it has none.
+    """
+    layout = joint_state_layout(data)
+    stamp, arrays = _content(data, layout)
+    return JointState(stamp, layout.texts[1:], *arrays)
+
+
+def decode_pose_array(data: bytes) -> PoseArray:
+    """As `decode_joint_state`, for the other type."""
+    layout = pose_array_layout(data)
+    stamp, [numbers] = _content(data, layout)
+    return PoseArray(stamp, layout.texts[0], numbers)
+
+
+def _content(data: bytes, layout: Layout) -> tuple[int, list[tuple[float, ...]]]:
+    seconds, nanoseconds = struct.unpack_from(f'{layout.order}iI', data, STAMP_OFFSET)
+    arrays = [
+        struct.unpack_from(f'{layout.order}{count}d', data, offset)
+        for offset, count in layout.arrays
+    ]
+    return seconds * SECOND + nanoseconds, arrays
 
 
 def check(data: bytes) -> None:

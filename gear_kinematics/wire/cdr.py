@@ -14,7 +14,6 @@ import struct
 from collections.abc import Sequence
 from typing import NamedTuple
 
-JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # behind the encapsulation
 STAMP = struct.Struct('<iI')
@@ -33,27 +32,6 @@ class MalformedMessageError(ValueError):
     """Bytes that are no such message."""
 
 
-class JointState(NamedTuple):
-    """A decoded sensor_msgs/JointState. Names stay bytes: they are only compared."""
-
-    stamp: int
-    """ns."""
-    names: tuple[bytes, ...]
-    position: tuple[float, ...]
-    velocity: tuple[float, ...]
-    effort: tuple[float, ...]
-
-
-class PoseArray(NamedTuple):
-    """A decoded geometry_msgs/PoseArray."""
-
-    stamp: int
-    """ns."""
-    frame_id: bytes
-    numbers: tuple[float, ...]
-    """x y z and quaternion x y z w, pose after pose."""
-
-
 class Layout(NamedTuple):
     """Where things are in a message; what is in no array is the same in all that share it."""
 
@@ -67,27 +45,6 @@ class Layout(NamedTuple):
     """Offset and count of the float64 of each array."""
     fixed: tuple[tuple[int, int], ...]
     """Spans (start, end) of the bytes that make the layout: encapsulation, lengths, strings."""
-
-    def stamp(self, data: bytes) -> int:
-        """Give the header's stamp, ns."""
-        seconds, nanoseconds = struct.unpack_from(self.order + 'iI', data, STAMP_OFFSET)
-        return int(seconds) * SECOND + int(nanoseconds)
-
-    def numbers(self, data: bytes, array: int) -> tuple[float, ...]:
-        """Give the numbers of one array."""
-        offset, count = self.arrays[array]
-        return struct.unpack_from(f'{self.order}{count}d', data, offset)
-
-
-def decode_joint_state(data: bytes) -> JointState:
-    """Decode a sensor_msgs/JointState of either byte order.
-
-    Raises:
-        MalformedMessageError: if the bytes are anything else.
-    """
-    layout = joint_state_layout(data)
-    arrays = (layout.numbers(data, array) for array in range(3))
-    return JointState(layout.stamp(data), layout.texts[1:], *arrays)
 
 
 def joint_index(layout: Layout, joint: bytes) -> int | None:
@@ -105,16 +62,6 @@ def joint_index(layout: Layout, joint: bytes) -> int | None:
     if joint:
         return names.index(joint) if joint in names else None
     return 0 if len(names) == 1 else None
-
-
-def decode_pose_array(data: bytes) -> PoseArray:
-    """Decode a geometry_msgs/PoseArray of either byte order.
-
-    Raises:
-        MalformedMessageError: if the bytes are anything else.
-    """
-    layout = pose_array_layout(data)
-    return PoseArray(layout.stamp(data), layout.texts[0], layout.numbers(data, 0))
 
 
 def joint_state_layout(data: bytes) -> Layout:

@@ -5,6 +5,7 @@ import struct
 
 import numpy as np
 import replaying
+from harnesses import harness
 from hypothesis import given
 from hypothesis import strategies as st
 from live import rotor_bytes
@@ -12,14 +13,11 @@ from wire import micro_ros_bytes
 
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
-from gear_kinematics.wire.cdr import (
-    MalformedMessageError,
-    PoseArrayTemplate,
-    decode_joint_state,
-    decode_pose_array,
-)
+from gear_kinematics.wire.cdr import MalformedMessageError, PoseArrayTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
+decode_joint_state = harness('messages').decode_joint_state
+decode_pose_array = harness('messages').decode_pose_array
 SECOND = 1_000_000_000
 LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
 bounds = st.sampled_from([LARGEST, math.nextafter(LARGEST, math.inf), -1e300])

@@ -19,8 +19,6 @@ from gear_kinematics.wire.cdr import (
     JointStateTemplate,
     MalformedMessageError,
     PoseArrayTemplate,
-    decode_joint_state,
-    decode_pose_array,
 )
 
 texts = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=12)
@@ -41,6 +39,8 @@ FULL = rotor_bytes(
 # Where FULL has the length of its frame id, its names, each name, and of each array.
 LENGTHS = (12, 24, 28, 36, 48, 68, 92)
 
+decode_joint_state = harness('messages').decode_joint_state
+decode_pose_array = harness('messages').decode_pose_array
 assert_as_rclpy = harness('messages').check
 """Holds what is decoded, if anything is, against `deserialize_message`, for both types."""
 

@@ -4,14 +4,16 @@ import math
 import struct
 
 import pytest
+from harnesses import harness
 from hypothesis import given
 from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 from wire import micro_ros_bytes
 
-from gear_kinematics.wire.cdr import MalformedMessageError, decode_joint_state
+from gear_kinematics.wire.cdr import MalformedMessageError
 from gear_kinematics.wire.joint_reader import GREATEST, JointReader, RejectedInputError
 
+decode_joint_state = harness('messages').decode_joint_state
 LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
 
 names = st.sampled_from(['rotor', 'wheel', 'm1', '', '0', '1'])
