@@ -32,7 +32,7 @@ def gear_state_publisher() -> int:
     def load() -> Callable[[], int]:
         if warning := check_shared_memory():
             print(f'gear_state_publisher: {warning}', file=sys.stderr)
-        from gear_kinematics.ros.node import main  # noqa: PLC0415, slow
+        from gear_kinematics.ros.process import main  # noqa: PLC0415, slow
 
         return main
 

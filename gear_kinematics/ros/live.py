@@ -31,7 +31,7 @@ from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.ros.leaving import leave
-from gear_kinematics.ros.node import make_executor
+from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError

@@ -1,17 +1,11 @@
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
-import os
 import re
-import signal
-import sys
 import time
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
-from threading import Event, Thread
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable
+from typing import Any
 
-import rclpy
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
 from rcl_interfaces.msg import (
     FloatingPointRange,
@@ -20,34 +14,25 @@ from rcl_interfaces.msg import (
     SetParametersResult,
 )
 from rclpy.clock import Clock, ClockType
-from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.event_handler import (
     PublisherEventCallbacks,
     QoSPublisherMatchedInfo,
-    QoSRequestedIncompatibleQoSInfo,
-    QoSSubscriptionEventType,
-    SubscriptionEventCallbacks,
 )
-from rclpy.exceptions import ParameterException
-from rclpy.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
-from rclpy.signals import SignalHandlerOptions
-from rclpy.subscription import Subscription
-from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.ros.graph import find_faults
-from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
+from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import joint_names, urdf
 from gear_kinematics.state import parameters
@@ -56,29 +41,14 @@ from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.state.transmission_error import ErrorSample
+from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
-from gear_kinematics.wire.topics import (
-    DIAGNOSTICS,
-    JOINT_STATE,
-    MARKERS,
-    OUTPUT_ENCODER,
-    POSE_ARRAY,
-    ROBOT_DESCRIPTION,
-    ROTOR_STATE,
-    STATE_TOPICS,
-    TRANSMISSION_ERROR,
-)
 
-_MESSAGE_TYPES = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
-_DEPTH = 2000  # messages: what a driver at several kHz sends while the node is held up
+_MESSAGE_TYPES = {topics.JOINT_STATE: JointState, topics.POSE_ARRAY: PoseArray}
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
-_SPIN_TIMEOUT = 3600.0  # s; without any, the EventsExecutor of some releases does nothing
-_STOP_TIMEOUT = 1.0  # s, to answer what was received
-_DELIVERY_TIMEOUT = 0.1  # s, for listeners to get it; those behind Fast DDS tell every 3 s only
-_UNUSABLE = 2  # exit code: parameters or arguments that cannot be used
 
 
 class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
@@ -112,16 +82,20 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._description = String()
 
         self._all_outputs: list[Publisher] = []
-        self._description_publisher = self._create_output(String, ROBOT_DESCRIPTION, _latched())
+        self._description_publisher = self._create_output(
+            String, topics.ROBOT_DESCRIPTION, _latched()
+        )
         self._outputs = {
-            topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=_DEPTH))
-            for topic, name in STATE_TOPICS.items()
+            topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=DEPTH))
+            for topic, name in topics.STATE_TOPICS.items()
         }
         self._listened_to: list[str] = []  # what nobody listens to is not computed
         self._transmission_error = self._create_output(
-            JointState, TRANSMISSION_ERROR, QoSProfile(depth=_DEPTH)
+            JointState, topics.TRANSMISSION_ERROR, QoSProfile(depth=DEPTH)
         )
-        self._diagnostics = self._create_output(DiagnosticArray, DIAGNOSTICS, QoSProfile(depth=10))
+        self._diagnostics = self._create_output(
+            DiagnosticArray, topics.DIAGNOSTICS, QoSProfile(depth=10)
+        )
         self._configure()
         self.add_post_set_parameters_callback(lambda _: self._configure())
         self.create_service(Trigger, '~/home', self._home)
@@ -135,17 +109,21 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 1.0 / rate, self._publish_markers, clock=steady, autostart=False
             )
             self._marker_publisher = self._create_output(
-                MarkerArray, MARKERS, _latched(), matched=self._on_viewers
+                MarkerArray, topics.MARKERS, _latched(), matched=self._on_viewers
             )
-        self._unheard: set[str] = set()  # inputs of which the first message is still to come
-        self._inputs = {topic: self._listen(topic) for topic in (ROTOR_STATE, OUTPUT_ENCODER)}
+        self._drivers = self._rotor_driver, self._encoder_driver = (
+            DriverInput(self, topics.ROTOR_STATE, self._on_rotor_state, self._monitor),
+            DriverInput(
+                self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
+            ),
+        )
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
             f'gear ratio {self._mechanism.gear_ratio} '
             f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
             f'teeth), listening for {listening_for} on '
-            f'{self._inputs[ROTOR_STATE].subscription.topic_name}'
+            f'{self._rotor_driver.subscription.topic_name}'
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
@@ -199,33 +177,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def destroy_node(self) -> None:
         """Let go of what the middleware holds for this node."""
-        for topic_input in self._inputs.values():
-            topic_input.losses.destroy_when_not_in_use()
+        for driver in self._drivers:
+            driver.losses.destroy_when_not_in_use()
         super().destroy_node()
-
-    def _listen(self, topic: str) -> '_Input':
-        """Subscribe to a driver: reliably, unless there is a driver that only does best effort.
-
-        That is what best available means; it is decided when the subscription is made.
-        """
-        self._unheard.add(topic)
-        on_message = {ROTOR_STATE: self._on_rotor_state, OUTPUT_ENCODER: self._on_output_encoder}
-        subscription = self.create_subscription(
-            JointState,
-            topic,
-            on_message[topic],
-            QoSProfile(depth=_DEPTH, reliability=ReliabilityPolicy.BEST_AVAILABLE),
-            raw=True,
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=SubscriptionEventCallbacks(
-                incompatible_qos=lambda event: self._on_incompatible_driver(topic, event),
-            ),
-        )
-        with subscription.handle:
-            losses = rclpy_implementation.EventHandle(
-                subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
-            )
-        return _Input(subscription, losses)
 
     def _value(self, name: str) -> Any:
         return self.get_parameter(name).value
@@ -274,12 +228,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
-        if ROTOR_STATE in self._unheard:
-            self._begin_to_count_losses(ROTOR_STATE)
+        if self._rotor_driver.unheard:
+            self._rotor_driver.begin_to_count_losses()
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
-            self._warn(f'{ROTOR_STATE} rejected: {rejection}')
+            self._warn(f'{topics.ROTOR_STATE} rejected: {rejection}')
             return
         for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
@@ -290,12 +244,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
-        if OUTPUT_ENCODER in self._unheard:
-            self._begin_to_count_losses(OUTPUT_ENCODER)
+        if self._encoder_driver.unheard:
+            self._encoder_driver.begin_to_count_losses()
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
-            self._warn(f'{OUTPUT_ENCODER} rejected: {rejection}')
+            self._warn(f'{topics.OUTPUT_ENCODER} rejected: {rejection}')
 
     def _publish_errors(self, samples: Iterable[ErrorSample]) -> None:
         for sample in samples:
@@ -331,39 +285,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self.get_logger().warning(text)
             self._next_warning = time.monotonic() + _WARNING_PERIOD  # from its stamp in the log on
 
-    def _on_incompatible_driver(self, topic: str, event: QoSRequestedIncompatibleQoSInfo) -> None:
-        subscription, losses = self._inputs[topic]
-        name = subscription.topic_name
-        asked_for = self._value(f'qos_overrides.{name}.subscription.reliability')
-        best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
-        if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
-            self.get_logger().info(f'a driver on {name} is best effort: listening likewise')
-            self._count_losses(topic)
-            losses.destroy_when_not_in_use()
-            self.destroy_subscription(subscription)
-            self._inputs[topic] = self._listen(topic)
-
-    def _begin_to_count_losses(self, topic: str) -> None:
-        """Forget what the middleware calls lost before the first message came.
-
-        It was sent before driver and node had found each other, or while they did.
-        """
-        self._count_losses(topic)
-        self._unheard.remove(topic)
-
-    def _count_losses(self, topic: str) -> None:
-        """Ask the middleware what it has lost since the last time.
-
-        Were it told of each loss, as of other events, it could come to a deadlock between the
-        thread that takes the event and the one that receives: ros2/rmw_fastrtps#890.
-        """
-        losses = self._inputs[topic].losses
-        with losses:
-            status = losses.take_event()
-        if topic not in self._unheard:
-            monitor = self._monitor if topic == ROTOR_STATE else self._encoder_monitor
-            monitor.lost += status.total_count_change
-
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until the reliable listeners have what was published; `timeout` is in s."""
         deadline = time.monotonic() + timeout
@@ -376,7 +297,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         try:
             zero = self._input.home(self._mechanism.rotor_angle(home_angle))
         except RuntimeError:
-            response.message = f'there was no valid {ROTOR_STATE} yet'
+            response.message = f'there was no valid {topics.ROTOR_STATE} yet'
             return response
         result = self.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
         response.success = result.successful
@@ -386,11 +307,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return response
 
     def _report(self) -> None:
-        for topic, topic_input in self._inputs.items():
-            self._count_losses(topic)
-            if not topic_input.subscription.get_publisher_count():
-                self._unheard.add(topic)
-        self._monitor.drivers = self._inputs[ROTOR_STATE].subscription.get_publisher_count()
+        for driver in self._drivers:
+            driver.count_losses()
+            if not driver.subscription.get_publisher_count():
+                driver.unheard = True
+        self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
         self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {
@@ -399,129 +320,20 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self._encoder, self._value('transmission_error_limit'), timeout, now
             ),
         }
-        message = DiagnosticArray()
-        message.header.stamp = self.get_clock().now().to_msg()
-        message.status = [
-            DiagnosticStatus(
-                level=bytes([report.level]),
-                name=f'{self.get_fully_qualified_name().removeprefix("/")}: {subject}',
-                hardware_id=self.get_fully_qualified_name(),
-                message=report.message,
-                values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
-            )
-            for subject, report in reports.items()
-            if report
-        ]
-        self._publish(self._diagnostics, message)
+        self._publish(self._diagnostics, diagnostic_array(self, reports))
 
     def _look_at_graph(self) -> None:
         """Note what is wrong between this node and others, and log what was not before."""
         known = self._monitor.graph
-        inputs = (topic_input.subscription for topic_input in self._inputs.values())
+        inputs = (driver.subscription for driver in self._drivers)
         found = self._monitor.graph = find_faults(
-            self, inputs, self._all_outputs, exclusive=STATE_TOPICS
+            self, inputs, self._all_outputs, exclusive=topics.STATE_TOPICS
         )
         for fault in (*found.errors, *found.warnings):
             if fault not in (*known.errors, *known.warnings):
                 self.get_logger().warning(fault)
 
 
-class _Input(NamedTuple):
-    """How the node hears a driver."""
-
-    subscription: Subscription
-    losses: Any
-    """What the middleware knows of messages that it did not deliver."""
-
-
 def _latched() -> QoSProfile:
     """A profile of its own for each topic, since overrides of QoS change it."""
     return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-
-
-def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:
-    """The executor that the parameter `executor` asks for.
-
-    Raises:
-        ValueError: if this rclpy does not have it.
-    """
-    if kind != 'single_threaded':
-        try:
-            # Not in every release of Jazzy.
-            from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415
-        except ImportError:
-            if kind == 'events':
-                raise ValueError(
-                    'this rclpy has no EventsExecutor: executor must not be events'
-                ) from None
-        else:
-            return EventsExecutor(context=context)
-    return SingleThreadedExecutor(context=context)
-
-
-def main(args: list[str] | None = None) -> int:
-    """Run the node until SIGINT or SIGTERM; returns the exit code."""
-    signals = _caught_signals()
-    try:
-        rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        node = GearStatePublisher()
-        executor = make_executor(node.get_parameter('executor').value)
-    except (ParameterException, ValueError, RuntimeError) as error:
-        unknown = (
-            'unknown arguments '
-            if isinstance(error, rclpy_implementation.UnknownROSArgsError)
-            else ''
-        )
-        print(f'gear_state_publisher: {unknown}{error}', file=sys.stderr)
-        rclpy.try_shutdown()
-        return _UNUSABLE
-    executor.add_node(node)
-    # What ends in another way is that somebody else in this process has shut rclpy down.
-    with suppress(ExternalShutdownException), _stopped(executor, signals) as stopped:
-        while not stopped.done():
-            executor.spin_until_future_complete(stopped, timeout_sec=_SPIN_TIMEOUT)
-        node.wait_for_delivery(_DELIVERY_TIMEOUT)
-    executor.shutdown()
-    leave(node)
-    return 0
-
-
-class _Pipe(NamedTuple):
-    """Its file descriptors."""
-
-    reader: int
-    writer: int
-
-
-def _caught_signals() -> _Pipe:
-    """A pipe from which SIGINT and SIGTERM, which do nothing else, can be read."""
-    pipe = _Pipe(*os.pipe())
-    os.set_blocking(pipe.writer, False)
-    signal.set_wakeup_fd(pipe.writer)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, lambda *_: None)
-    return pipe
-
-
-@contextmanager
-def _stopped(executor: Executor, signals: _Pipe) -> Iterator[Future]:
-    """A future that is done after the first signal: when what was received before is answered.
-
-    A thread waits for it, since the main thread is not in Python while it waits for messages.
-    """
-    stopped, ended = Future(), Event()
-
-    def wait() -> None:
-        os.read(signals.reader, 1)
-        executor.create_task(stopped.set_result, None)
-        if not ended.wait(_STOP_TIMEOUT):
-            stopped.set_result(None)
-
-    thread = Thread(target=wait)
-    thread.start()
-    try:
-        yield stopped
-    finally:
-        ended.set()
-        os.write(signals.writer, b'\0')  # in case that there was no signal
-        thread.join()

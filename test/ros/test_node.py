@@ -17,7 +17,8 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
 
 from gear_kinematics.kinematics import MechanismError
-from gear_kinematics.ros.node import GearStatePublisher, make_executor
+from gear_kinematics.ros.node import GearStatePublisher
+from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state import parameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 
@@ -351,7 +352,7 @@ class Losses:
 def test_what_is_lost_before_the_first_message_of_a_driver_is_not_counted(context, monkeypatch):
     node = GearStatePublisher(context=context, namespace='unheard')
     losses = Losses()
-    node._inputs['rotor_state'] = node._inputs['rotor_state']._replace(losses=losses)
+    node._rotor_driver.losses = losses
     drivers = 1
     monkeypatch.setattr(Subscription, 'get_publisher_count', lambda _: drivers)
     monkeypatch.setattr(Publisher, 'publish', lambda *_: None)

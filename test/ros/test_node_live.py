@@ -988,7 +988,7 @@ def test_file_that_gearkin_must_take_too_is_taken(start, tmp_path, text):
 
 
 def test_node_imports_nothing_heavy():
-    code = 'import sys, gear_kinematics.ros.node; print(*sorted(sys.modules))'
+    code = 'import sys, gear_kinematics.ros.process; print(*sorted(sys.modules))'
     done = subprocess.run(
         [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=30.0
     )

@@ -17,7 +17,7 @@ from rclpy.qos import (
 from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.ros.graph import find_faults
+from gear_kinematics.ros.diagnostics import find_faults
 
 BEST_EFFORT = {'reliability': ReliabilityPolicy.BEST_EFFORT}
 LATCHED = {'durability': DurabilityPolicy.TRANSIENT_LOCAL}

@@ -1,18 +1,38 @@
-"""The other ends of a node's topics, as the ROS graph has them at the moment of asking."""
+"""What a node reports of itself, and of the other ends of its topics in the ROS graph."""
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check_compatible
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from gear_kinematics.state.diagnostics import GraphFaults
+from gear_kinematics.state.diagnostics import GraphFaults, Report
 
 _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
 """Those in which a subscription can ask for more than a publisher offers."""
+
+
+def diagnostic_array(node: Node, reports: Mapping[str, Report | None]) -> DiagnosticArray:
+    """Give the message for reports, by their subjects, as far as there are any."""
+    name = node.get_fully_qualified_name()
+    message = DiagnosticArray()
+    message.header.stamp = node.get_clock().now().to_msg()
+    message.status = [
+        DiagnosticStatus(
+            level=bytes([report.level]),
+            name=f'{name.removeprefix("/")}: {subject}',
+            hardware_id=name,
+            message=report.message,
+            values=[KeyValue(key=key, value=value) for key, value in report.values.items()],
+        )
+        for subject, report in reports.items()
+        if report
+    ]
+    return message
 
 
 def find_faults(
