@@ -4,12 +4,23 @@ A node answers its inputs in order, so that nearly all messages match in long ru
 run breaks is a single message looked up. Memory is bounded by a window of samples.
 """
 
-from typing import Any
+from collections import Counter
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.kinematics import Mechanism, MotionState
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.validation.diagnosis import UnseenTurns
+from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
+from gear_kinematics.validation.report import FieldReport, TopicReport
+
 Array = NDArray[Any]
+Columns = dict[str, Array]
+"""Of samples (n,): stamp, turns, angle, velocity, effort, stretch; as in `RotorSamples`."""
+Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
 """Samples that are kept for messages that come late; what comes later still is extra."""
@@ -21,7 +32,7 @@ class Window:
 
     def __init__(self) -> None:
         """Start empty."""
-        self.columns: dict[str, Array] = {}
+        self.columns: Columns = {}
 
     def __len__(self) -> int:
         return len(self.columns['stamp']) if self.columns else 0
@@ -34,7 +45,7 @@ class Window:
             for name, column in columns.items()
         }
 
-    def rows(self, index: Array | slice) -> dict[str, Array]:
+    def rows(self, index: Array | slice) -> Columns:
         """Give some of the samples."""
         return {name: column[index] for name, column in self.columns.items()}
 
@@ -127,3 +138,120 @@ class Matcher:
         self.matched[index] = True
         self._next = max(self._next, index + 1)
         return index
+
+
+class Recomputed(NamedTuple):
+    """What samples call for."""
+
+    state: MotionState
+    rotor_angle: Array
+    """(n,), rad."""
+
+
+class Faults:
+    """What is wrong with messages as such: how many have each fault, and which was the first."""
+
+    def __init__(self) -> None:
+        self._found: dict[str, tuple[int, str]] = {}
+
+    def add(self, fault: str, times: Array, moment: str = 'at stamp') -> None:
+        """Take the stamps, or times of another kind, of messages that have a fault, ns."""
+        if len(times):
+            count, first = self._found.get(fault, (0, f'{moment} {times[0]}'))
+            self._found[fault] = count + len(times), first
+
+    def sentences(self) -> tuple[str, ...]:
+        """Tell of each fault."""
+        return tuple(
+            f'{fault}: {count} message{"s" * (count > 1)}, the first {first}'
+            for fault, (count, first) in self._found.items()
+        )
+
+
+class OutputTopic:
+    """One output topic: matching, what is wrong with its messages as such, and late ones."""
+
+    def __init__(self, mechanism: Mechanism, solver: Solver, unseen: UnseenTurns | None) -> None:
+        """Start with no message.
+
+        Args:
+            mechanism: whose outputs they are.
+            solver: what recomputes them.
+            unseen: of the encoder, if it is a single-turn one.
+        """
+        self.matcher = Matcher()
+        self.compared: dict[str, Array] = {}
+        """What the last batch compared, for the series."""
+        self._mechanism = mechanism
+        self._solver = solver
+        self._unseen = unseen
+        self._unrecorded = 0  # messages whose input was not recorded
+        self._faults = Faults()
+        self._late: tuple[list[bytes], list[int]] = [], []
+
+    def take(
+        self, messages: list[bytes], received: list[int], window: Window, inputs: RecordedInputs
+    ) -> None:
+        """Compare new messages with the samples of the window.
+
+        Args:
+            messages: serialised.
+            received: when, ns.
+            window: the latest samples.
+            inputs: the latest inputs, valid or not.
+        """
+        late = len(self._late[0])
+        messages, received = self._late[0] + messages, self._late[1] + received
+        stamps, malformed = self._decode(messages)
+        self.matcher.see(stamps[late:])
+        times = np.array(received, np.int64)
+        self._faults.add('malformed', times[malformed], 'received at')
+        usable = np.flatnonzero(~malformed)
+        index = self.matcher.match(stamps[usable], window.columns['stamp'])
+        found = index >= 0
+        # A message can be recorded before the input that it answers: it waits for one batch.
+        unmatched = usable[~found]
+        given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late].tolist()
+        self._late = [messages[row] for row in waiting], [received[row] for row in waiting]
+        lacking = inputs.lack(times[given_up], stamps[given_up])
+        self._unrecorded += int(np.count_nonzero(lacking))
+        self.matcher.give_up(stamps[given_up[~lacking]])
+        self._compare(usable[found], window.rows(index[found]))
+
+    def _recompute(self, samples: Columns, unseen_turns: Array | float) -> Recomputed:
+        turns = samples['turns'] + unseen_turns
+        state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
+        return Recomputed(state, TURN * turns + samples['angle'])
+
+    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        raise NotImplementedError
+
+    def _compare(self, rows: Array, samples: Columns) -> None:
+        raise NotImplementedError
+
+    def _fields(self) -> tuple[FieldReport, ...]:
+        raise NotImplementedError
+
+    def report(self, topic: str, missing: Missing) -> TopicReport:
+        """Report on everything so far.
+
+        Args:
+            topic: its name.
+            missing: what it lacks.
+        """
+        matcher = self.matcher
+        return TopicReport(
+            topic,
+            messages=matcher.messages,
+            compared=matcher.compared,
+            missing=missing.count,
+            extra=matcher.extra,
+            duplicates=matcher.duplicates,
+            out_of_order=matcher.out_of_order,
+            fields=self._fields(),
+            first_missing=missing.first,
+            first_extra=matcher.first_extra,
+            first_out_of_order=matcher.first_out_of_order,
+            faults=self._faults.sentences(),
+            left_out=dict(missing.left_out + Counter({NO_INPUT: self._unrecorded})),
+        )

@@ -1,22 +1,17 @@
-"""The output topics of a recording, compared with what was recomputed, batch by batch."""
+"""What is compared of each output topic: its fields, sample by sample, and their errors."""
 
 import math
-from collections import Counter
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism, MotionState
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.motion import closed_form
-from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder
-from gear_kinematics.validation.matching import Matcher, Window
-from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
-from gear_kinematics.validation.report import FieldReport, TopicReport
-from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder, UnseenTurns
+from gear_kinematics.validation.matching import Columns, Faults, OutputTopic, Solver
+from gear_kinematics.validation.report import FieldReport
 from gear_kinematics.wire.batches import (
     FIELDS,
     PoseArrays,
@@ -25,9 +20,6 @@ from gear_kinematics.wire.batches import (
 )
 
 Array = NDArray[Any]
-Columns = dict[str, Array]
-"""Of samples (n,): stamp, turns, angle, velocity, effort, stretch; as in `RotorSamples`."""
-Solver = Callable[..., MotionState]
 
 _NONE = np.zeros(0, np.int64)
 
@@ -40,14 +32,6 @@ class Tolerances:
     """rad, of angles; rad/s of the velocity and N·m of the effort."""
     position: float = 1e-9
     """m."""
-
-
-class Recomputed(NamedTuple):
-    """What samples call for."""
-
-    state: MotionState
-    rotor_angle: Array
-    """(n,), rad."""
 
 
 class FieldErrors:
@@ -108,115 +92,6 @@ def _first(known: int | None, stamps: Array) -> int | None:
     return int(stamps[0]) if known is None and len(stamps) else known
 
 
-class Faults:
-    """What is wrong with messages as such: how many have each fault, and which was the first."""
-
-    def __init__(self) -> None:
-        self._found: dict[str, tuple[int, str]] = {}
-
-    def add(self, fault: str, times: Array, moment: str = 'at stamp') -> None:
-        """Take the stamps, or times of another kind, of messages that have a fault, ns."""
-        if len(times):
-            count, first = self._found.get(fault, (0, f'{moment} {times[0]}'))
-            self._found[fault] = count + len(times), first
-
-    def sentences(self) -> tuple[str, ...]:
-        """Tell of each fault."""
-        return tuple(
-            f'{fault}: {count} message{"s" * (count > 1)}, the first {first}'
-            for fault, (count, first) in self._found.items()
-        )
-
-
-class OutputTopic:
-    """One output topic: matching, what is wrong with its messages as such, and late ones."""
-
-    def __init__(self, mechanism: Mechanism, solver: Solver, unseen: UnseenTurns | None) -> None:
-        """Start with no message.
-
-        Args:
-            mechanism: whose outputs they are.
-            solver: what recomputes them.
-            unseen: of the encoder, if it is a single-turn one.
-        """
-        self.matcher = Matcher()
-        self.compared: dict[str, Array] = {}
-        """What the last batch compared, for the series."""
-        self._mechanism = mechanism
-        self._solver = solver
-        self._unseen = unseen
-        self._unrecorded = 0  # messages whose input was not recorded
-        self._faults = Faults()
-        self._late: tuple[list[bytes], list[int]] = [], []
-
-    def take(
-        self, messages: list[bytes], received: list[int], window: Window, inputs: RecordedInputs
-    ) -> None:
-        """Compare new messages with the samples of the window.
-
-        Args:
-            messages: serialised.
-            received: when, ns.
-            window: the latest samples.
-            inputs: the latest inputs, valid or not.
-        """
-        late = len(self._late[0])
-        messages, received = self._late[0] + messages, self._late[1] + received
-        stamps, malformed = self._decode(messages)
-        self.matcher.see(stamps[late:])
-        times = np.array(received, np.int64)
-        self._faults.add('malformed', times[malformed], 'received at')
-        usable = np.flatnonzero(~malformed)
-        index = self.matcher.match(stamps[usable], window.columns['stamp'])
-        found = index >= 0
-        # A message can be recorded before the input that it answers: it waits for one batch.
-        unmatched = usable[~found]
-        given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late].tolist()
-        self._late = [messages[row] for row in waiting], [received[row] for row in waiting]
-        lacking = inputs.lack(times[given_up], stamps[given_up])
-        self._unrecorded += int(np.count_nonzero(lacking))
-        self.matcher.give_up(stamps[given_up[~lacking]])
-        self._compare(usable[found], window.rows(index[found]))
-
-    def _recompute(self, samples: Columns, unseen_turns: Array | float) -> Recomputed:
-        turns = samples['turns'] + unseen_turns
-        state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
-        return Recomputed(state, TURN * turns + samples['angle'])
-
-    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        raise NotImplementedError
-
-    def _compare(self, rows: Array, samples: Columns) -> None:
-        raise NotImplementedError
-
-    def _fields(self) -> tuple[FieldErrors, ...]:
-        raise NotImplementedError
-
-    def report(self, topic: str, missing: Missing) -> TopicReport:
-        """Report on everything so far.
-
-        Args:
-            topic: its name.
-            missing: what it lacks.
-        """
-        matcher = self.matcher
-        return TopicReport(
-            topic,
-            messages=matcher.messages,
-            compared=matcher.compared,
-            missing=missing.count,
-            extra=matcher.extra,
-            duplicates=matcher.duplicates,
-            out_of_order=matcher.out_of_order,
-            fields=tuple(errors.report() for errors in self._fields()),
-            first_missing=missing.first,
-            first_extra=matcher.first_extra,
-            first_out_of_order=matcher.first_out_of_order,
-            faults=self._faults.sentences(),
-            left_out=dict(missing.left_out + Counter({NO_INPUT: self._unrecorded})),
-        )
-
-
 class OutputState(OutputTopic):
     """output_state."""
 
@@ -239,8 +114,8 @@ class OutputState(OutputTopic):
         )
         self.position = self._errors[0]
 
-    def _fields(self) -> tuple[FieldErrors, ...]:
-        return self._errors
+    def _fields(self) -> tuple[FieldReport, ...]:
+        return tuple(errors.report() for errors in self._errors)
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._states = decode_joint_states(messages, self.joint)
@@ -312,8 +187,8 @@ class BodyPoses(OutputTopic):
         """Say what is remarkable about the poses, in sentences."""
         return (*self._order.findings(self.matcher.compared), *self._turned_round.sentences())
 
-    def _fields(self) -> tuple[FieldErrors, ...]:
-        return self._position, self._orientation
+    def _fields(self) -> tuple[FieldReport, ...]:
+        return self._position.report(), self._orientation.report()
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))

@@ -14,14 +14,12 @@ from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.validation.diagnosis import diagnose
-from gear_kinematics.validation.input_health import InputHealth
-from gear_kinematics.validation.matching import WINDOW, Window
-from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Solver, Tolerances
+from gear_kinematics.validation.diagnosis import UnseenTurns, diagnose
+from gear_kinematics.validation.matching import WINDOW, Solver, Window
+from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Tolerances
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
 from gear_kinematics.validation.report import BagReport, InputReport
-from gear_kinematics.validation.series import SeriesRecorder
-from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.validation.timeline import InputHealth, SeriesRecorder
 from gear_kinematics.wire.cdr import (
     MalformedMessageError,
     joint_state_layout,
