@@ -7,7 +7,6 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ import yaml
 
 from gear_kinematics.kinematics import Branch
 from gear_kinematics.state.share import share_directory
+from gear_kinematics.wire.nearest import nearest
 
 NODE = 'gear_state_publisher'
 """The node's name, unless it is started under another one."""
@@ -161,8 +161,7 @@ def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[st
         if branch and field in BRANCH_PARAMETERS:
             hint = f'; `{branch}` is not in `branches`'
         else:
-            nearest = get_close_matches(name, known, n=1)
-            hint = f'; did you mean `{nearest[0]}`?' if nearest else ''
+            hint = nearest(name, known)
         faults.append(f'unknown parameter `{name}`{hint}')
     return faults
 
