@@ -2,7 +2,8 @@
 
 import re
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
+from pathlib import Path
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
@@ -54,14 +55,20 @@ _REPORT_PERIOD = 1.0  # s
 class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     """Publishes the state of the mechanism for every valid message on rotor_state."""
 
-    def __init__(self, **options: Any) -> None:
+    def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
         """Declare the parameters and open the topics.
+
+        Args:
+            parameter_files: those of the arguments, to check that they are of use to this node.
+            options: of every node.
 
         Raises:
             ParameterException: if a parameter is refused.
-            ValueError: if the parameters describe no mechanism, or one is unknown.
+            ValueError: if the parameters describe no mechanism, one is unknown, or the files have
+                none of this node.
         """
         super().__init__(parameters.NODE, **options)
+        parameters.require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
         for name, parameter in parameters.PARAMETERS.items():
             self._declare(name, parameter, parameters.defaults()[name])

@@ -5,6 +5,8 @@ import signal
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import pairwise
+from pathlib import Path
 from threading import Event, Thread
 from typing import NamedTuple
 
@@ -50,7 +52,9 @@ def main(args: list[str] | None = None) -> int:
     signals = _caught_signals()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-        node = GearStatePublisher()
+        arguments = sys.argv if args is None else args
+        files = [Path(file) for option, file in pairwise(arguments) if option == '--params-file']
+        node = GearStatePublisher(parameter_files=files)
         executor = make_executor(node.get_parameter('executor').value)
     except (ParameterException, ValueError, RuntimeError) as error:
         unknown = (

@@ -5,7 +5,7 @@ The default values stand in config/actuator.yaml and nowhere else.
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -29,6 +29,10 @@ _MAX_LENGTH = 2**18  # characters of a parameter file, which takes seconds to pa
 
 class ConfigError(ValueError):
     """A parameter file that cannot be used; the text names the file and the cause."""
+
+
+class _OtherNodesError(ConfigError):
+    """A parameter file that has parameters, but none of the node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,6 +196,28 @@ def load(path: Path, node: str = NODE) -> dict[str, Any]:
     return {name: given.get(name, default) for name, (_, default) in known.items()}
 
 
+def require_any(paths: Collection[Path], node: str) -> None:
+    """Check that parameter files are of use to a node: one of them is enough, none may be empty.
+
+    ROS passes over the others in silence, and the node would run with its default values.
+
+    Args:
+        paths: parameter files of ROS, as many as the node is started with.
+        node: the node's fully qualified name.
+
+    Raises:
+        ConfigError: if a file cannot be read or has no parameters, or none has any for the node.
+    """
+    useless = []
+    for path in paths:
+        try:
+            _given(path, node)
+        except _OtherNodesError as error:
+            useless.append(str(error))
+    if useless and len(useless) == len(paths):
+        raise ConfigError('; '.join(useless))
+
+
 def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]) -> list[str]:
     checked = (
         parameter.fault(name, given[name], default)
@@ -214,7 +240,7 @@ def _given(path: Path, node: str) -> dict[str, Any]:
     applying = [parameters for pattern, parameters in blocks if _applies(pattern, name)]
     if not applying:
         there = ', '.join(pattern for pattern, _ in blocks)
-        raise ConfigError(f'{path}: no parameters of {name} in it, only of {there}')
+        raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
     given: dict[str, Any] = {}
     for parameters in applying:
         given |= parameters

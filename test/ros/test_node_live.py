@@ -916,6 +916,7 @@ BAD_STARTS = [
     (['frame_prefix:=5'], ['frame_prefix', 'STRING']),
     (['executor:=multi_threaded'], ['executor', 'auto', 'events', 'single_threaded']),
     (['rotor_jiont:=m1'], ['unknown parameter `rotor_jiont`; did you mean `rotor_joint`?']),
+    (['rotor_joints:=m1'], ['unknown parameter `rotor_joints`; did you mean `rotor_joint`?']),
     (['ring_tooth:=90', 'nothing_like_it:=1'], ['`ring_tooth`', '`nothing_like_it`']),
     (['branches:=[a]', 'b.cam_phase:=1.0'], ['`b.cam_phase`', '`b` is not in `branches`']),
     *(
@@ -944,6 +945,57 @@ def test_unknown_parameter_of_a_file_is_refused_at_the_start(tmp_path):
     assert line == (
         'gear_state_publisher: unknown parameter `rotor_jiont`; did you mean `rotor_joint`?'
     )
+
+
+EMPTY = {
+    'nothing': '',
+    'a comment': '# ring_teeth: 90\n',
+    'no nodes': '{}\n',
+    'no parameters': '/**: {}\n',
+}
+
+
+@pytest.mark.parametrize('text', EMPTY.values(), ids=EMPTY)
+def test_empty_file_is_refused_at_the_start(tmp_path, text):
+    used, empty = tmp_path / 'used.yaml', tmp_path / 'empty.yaml'
+    used.write_text('/**:\n  ros__parameters: {}\n')
+    empty.write_text(text)
+    [line] = refusal(
+        tmp_path, '--ros-args', '--params-file', str(used), '--params-file', str(empty)
+    )
+    assert line == f'gear_state_publisher: {empty}: no ros__parameters in it'
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'node'),
+    [
+        ([], '/gear_state_publisher'),
+        (['-r', '__ns:=/left'], '/left/gear_state_publisher'),
+        (['-r', '__node:=gear'], '/gear'),
+    ],
+    ids=['as it is', 'namespace', 'renamed'],
+)
+def test_files_of_other_nodes_only_are_refused_at_the_start(tmp_path, arguments, node):
+    files = [tmp_path / 'left.yaml', tmp_path / 'other.yaml']
+    for file, name in zip(files, ('left/gear_state', 'other'), strict=True):
+        file.write_text(f'/{name}:\n  ros__parameters: {{ring_teeth: 90}}\n')
+    options = [part for file in files for part in ('--params-file', str(file))]
+    [line] = refusal(tmp_path, '--ros-args', *options, *arguments)
+    assert line == (
+        f'gear_state_publisher: {files[0]}: no parameters of {node} in it, only of '
+        f'/left/gear_state; {files[1]}: no parameters of {node} in it, only of /other'
+    )
+
+
+def test_file_of_other_nodes_is_passed_over_beside_one_of_this_node(start, tmp_path):
+    options = []
+    for name in ('other', 'named/gear_state_publisher'):
+        file = tmp_path / f'{name.partition("/")[0]}.yaml'
+        file.write_text(f'/{name}:\n  ros__parameters: {{ring_teeth: 90}}\n')
+        options += ['--params-file', str(file)]
+    peer = start(*options, namespace='/named', connect=False).peer
+    peer.connect(probes=False)
+    assert peer.get('ring_teeth') == [90]
 
 
 @pytest.mark.parametrize(

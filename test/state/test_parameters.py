@@ -8,7 +8,13 @@ import yaml
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.state import parameters
-from gear_kinematics.state.parameters import BRANCH_PARAMETERS, PARAMETERS, ConfigError, load
+from gear_kinematics.state.parameters import (
+    BRANCH_PARAMETERS,
+    PARAMETERS,
+    ConfigError,
+    load,
+    require_any,
+)
 
 CONTRACT = {
     'ring_teeth': 80,
@@ -319,6 +325,30 @@ def test_file_that_has_nothing_for_the_node_is_refused(tmp_path, node):
     name = node if node.startswith('/') else f'/{node}'
     text = f'{path}: no parameters of {name} in it, only of {LEFT}, {RIGHT}'
     assert str(caught.value) == text
+
+
+def test_one_of_several_files_has_something_for_the_node(tmp_path):
+    files = []
+    for k, names in enumerate([['/other'], [LEFT], ['/**/x', '/y']]):
+        (tmp_path / f'{k}').mkdir()
+        files.append(blocks(tmp_path / f'{k}', *names))
+    require_any((), LEFT)
+    require_any(files, LEFT)
+    with pytest.raises(ConfigError) as caught:
+        require_any(files, RIGHT)
+    assert str(caught.value) == (
+        f'{files[0]}: no parameters of {RIGHT} in it, only of /other; '
+        f'{files[1]}: no parameters of {RIGHT} in it, only of {LEFT}; '
+        f'{files[2]}: no parameters of {RIGHT} in it, only of /**/x, /y'
+    )
+
+
+def test_none_of_several_files_is_empty(tmp_path):
+    files = [config(tmp_path, ring_teeth=90), tmp_path / 'empty.yaml']
+    files[1].write_text('')
+    with pytest.raises(ConfigError) as caught:
+        require_any(files, LEFT)
+    assert str(caught.value) == f'{files[1]}: no ros__parameters in it'
 
 
 @pytest.mark.parametrize(
