@@ -52,6 +52,8 @@ hypothesis.settings.load_profile('ci' if 'CI' in os.environ else 'default')
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Keep a line on what was skipped, for the end of `make test`."""
+    if not terminalreporter.config.pluginmanager.has_plugin('cacheprovider'):
+        return
     skipped = terminalreporter.stats.get('skipped', [])
     reasons = sorted({report.longrepr[2].removeprefix('Skipped: ') for report in skipped})
     line = f'{len(skipped)} tests skipped' + ''.join(f'; {reason}' for reason in reasons)
