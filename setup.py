@@ -1,11 +1,13 @@
 """Package metadata, and what goes into the install space."""
 
 import sys
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 from setuptools import find_packages, setup
 
-PACKAGE = 'gear_kinematics'
+MANIFEST = ET.parse('package.xml').getroot()  # noqa: S314, the project's own file
+PACKAGE = MANIFEST.findtext('name')
 
 
 def shared(folder: str, pattern: str) -> list[tuple[str, list[str]]]:
@@ -23,14 +25,11 @@ ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
 
 setup(
     name=PACKAGE,
-    version='0.1.0',
-    description=(
-        'Exact kinematics of an anti-backlash planetary servo actuator: rotor angle in, '
-        'output-shaft angle and satellite and Oldham coupling poses out'
-    ),
-    maintainer='gear_kinematics maintainers',
-    maintainer_email='maintainers@gear-kinematics.invalid',
-    license='Apache-2.0',
+    version=MANIFEST.findtext('version'),
+    description=MANIFEST.findtext('description'),
+    maintainer=MANIFEST.findtext('maintainer'),
+    maintainer_email=MANIFEST.find('maintainer').get('email'),
+    license=MANIFEST.findtext('license'),
     packages=find_packages(exclude=['test', 'test.*']),
     package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.report': ['*.css', '*.js']},
     data_files=[

@@ -9,6 +9,7 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Collection
+from itertools import takewhile
 from math import inf
 from types import FrameType
 
@@ -18,6 +19,20 @@ _INTERRUPTED = 130
 """Exit code, as shells have it."""
 _UNUSABLE = 2
 """Exit code: something that the program needs is missing."""
+_NODE_HELP = """\
+usage: gear_state_publisher [--help] [--version] [--ros-args ...]
+
+Publish the output angle and the body poses for every message on rotor_state.
+
+options:
+  -h, --help       show this help and exit
+  --version        show the version and exit
+  --ros-args ...   parameters, remappings and the rest of what every ROS 2 node takes, as in
+                   --ros-args -p rotor_joint:=m1 -r rotor_state:=/motor/joint_states
+                   --ros-args --params-file my_actuator.yaml
+
+Exit codes: 0 ended by SIGINT or SIGTERM, 2 unusable parameters or arguments.
+"""
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _PATIENCE = 2.0
 """s in which an import may end, and in which another signal is a repetition: launchers signal a
@@ -30,6 +45,13 @@ def gear_state_publisher() -> int:
     """Run the node; returns the exit code, which is 0 after a signal."""
 
     def load() -> Callable[[], int]:
+        own = list(takewhile('--ros-args'.__ne__, sys.argv[1:]))
+        if '-h' in own or '--help' in own:
+            return lambda: _answer(_NODE_HELP)
+        if '--version' in own:
+            from gear_kinematics.state.share import version  # noqa: PLC0415, imports pathlib
+
+            return lambda: _answer(f'gear_state_publisher {version()}\n')
         if warning := check_shared_memory():
             print(f'gear_state_publisher: {warning}', file=sys.stderr)
         from gear_kinematics.ros.process import main  # noqa: PLC0415, slow
@@ -81,6 +103,11 @@ def _run(
     finally:
         # Before it ends, Python restores the default, which kills, in place of other handlers.
         _handle(stop_signals, signal.SIG_IGN)
+
+
+def _answer(text: str) -> int:
+    sys.stdout.write(text)
+    return 0
 
 
 def _handle(

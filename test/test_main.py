@@ -23,6 +23,45 @@ PIPES = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE}
 READY = 'gear ratio'
 
 
+# What needs no ROS.
+
+
+@pytest.mark.parametrize(
+    ('option', 'first'),
+    [
+        ('--version', 'gear_state_publisher 0.'),
+        ('--help', 'usage: gear_state_publisher '),
+        ('-h', 'usage: gear_state_publisher '),
+    ],
+)
+def test_the_node_answers_without_ros(option, first, tmp_path):
+    (tmp_path / 'rclpy.py').write_text('raise SystemExit("rclpy was imported")')
+    done = subprocess.run(
+        [*NODE, option, '--ros-args', '-p', 'rotor_joint:=m1'],
+        env=os.environ | {'PYTHONPATH': str(tmp_path)},
+        check=True,
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE,
+    )
+    assert done.stdout.startswith(first)
+    assert done.stderr == ''
+
+
+@pytest.mark.parametrize('option', ['--version', '--help'])
+def test_what_follows_ros_args_is_for_ros(option, tmp_path):
+    done = subprocess.run(
+        [*NODE, '--ros-args', option],
+        env=os.environ | {'ROS_LOG_DIR': str(tmp_path)},
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=DEADLINE,
+    )
+    assert (done.returncode, done.stdout) == (2, '')
+    assert option in done.stderr
+
+
 # Signals.
 
 

@@ -26,6 +26,7 @@ from gear_kinematics.commands import (
 )
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
+from gear_kinematics.state.share import version
 
 COMMANDS: dict[str, Command] = {
     'validate': validate,
@@ -75,6 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(prog='gearkin', description=__doc__)
+    parser.add_argument('--version', action='version', version=f'gearkin {version()}')
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
     for name, command in COMMANDS.items():
         added = commands.add_parser(name, help=command.HELP, description=command.HELP)

@@ -1,5 +1,6 @@
-"""Where the files are that are installed beside the package: config, launch files, bags."""
+"""The files that are installed beside the package: config, launch files, bags, package.xml."""
 
+import re
 from pathlib import Path
 
 _PACKAGE = 'gear_kinematics'
@@ -20,3 +21,9 @@ def share_directory() -> Path:
             if (candidate / 'package.xml').is_file() and (candidate / 'config').is_dir():
                 return candidate
     raise FileNotFoundError(f'the files installed with {_PACKAGE} are missing')
+
+
+def version() -> str:
+    """Read the version of the package, which package.xml alone states."""
+    manifest = (share_directory() / 'package.xml').read_text('utf-8')
+    return str(re.findall(r'<version>(.+)</version>', manifest)[0])

@@ -177,10 +177,10 @@ def imported_names(*folders: str) -> set[str]:
     return names - set(sys.stdlib_module_names) - {'gear_kinematics'}
 
 
-def test_wheel_holds_types_and_share(tree, wheel):
+def test_wheel_holds_types_and_share(tree, wheel, manifest):
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
-    data = 'gear_kinematics-0.1.0.data/data'
+    data = f'gear_kinematics-{manifest.findtext("version")}.data/data'
     assert 'gear_kinematics/py.typed' in names
     assert 'gear_kinematics/kinematics/__init__.py' in names
     assert f'{data}/share/ament_index/resource_index/packages/gear_kinematics' in names
@@ -318,6 +318,19 @@ def test_gearkin_is_on_the_path_of_a_sourced_workspace(workspace, tmp_path):
     found, _, urdf = run('sh', '-c', source_and_run, cwd=tmp_path).partition('\n')
     assert Path(found).is_relative_to(workspace)
     assert ET.fromstring(urdf).tag == 'robot'  # noqa: S314, the project's own words
+
+
+def test_every_installation_states_the_version_of_the_manifest(manifest, prefix, workspace):
+    version = manifest.findtext('version')
+    colcon = workspace / 'install/gear_kinematics/lib/gear_kinematics'
+    sourced = ['sh', '-c', f'. {workspace}/install/setup.sh && exec "$@"', 'sh']
+    for program in ('gearkin', 'gear_state_publisher'):
+        for command in ([prefix / 'bin' / program], [*sourced, colcon / program]):
+            output = run(*command, '--version', cwd=prefix, env=isolated())
+            assert output == f'{program} {version}\n'
+    assert run(sys.executable, '-m', 'gear_kinematics', '--version', cwd=ROOT) == (
+        f'gearkin {version}\n'
+    )
 
 
 def test_manifest_agrees_with_metadata(manifest, metadata):
