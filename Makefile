@@ -45,14 +45,15 @@ types: $(VENV)/test.stamp ## Check types
 
 docs: $(VENV)/test.stamp ## Build the documentation into build/docs
 	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going --conf-dir docs . build/docs
+	@echo '<meta http-equiv="refresh" content="0; url=docs/index.html">' > build/docs/index.html
+	@echo 'build/docs/index.html'
 
 format: $(VENV)/test.stamp ## Rewrite the sources in the house format
 	$(BIN)/ruff format
 	$(BIN)/ruff check --fix
 
-pictures: $(VENV)/test.stamp ## Draw the pictures of README and documentation anew
-	$(BIN)/gearkin animate docs/mechanism.gif
-	for figure in scheme roses slides; do $(BIN)/gearkin plot $$figure docs/$$figure.svg || exit; done
+pictures: $(VENV)/test.stamp ## Redraw the pictures of README and documentation (needs Chromium)
+	$(BIN)/python docs/pictures.py > /dev/null
 
 soak: $(VENV)/demo.stamp ## Run the node at 1 kHz for MINUTES (30)
 	$(BIN)/python benchmark/soak.py --minutes $(MINUTES)

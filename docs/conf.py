@@ -4,16 +4,25 @@ The sources are the whole project, so that links lead to the same place here and
 Markdown is read as it is.
 """
 
+import os
 import re
+import shlex
+import subprocess
+import sysconfig
+from pathlib import Path
 from typing import Any
 
 from docutils import nodes
+from docutils.parsers.rst import Directive
 from numpy.typing import ArrayLike
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import Config as NapoleonConfig
 from sphinx.ext.napoleon import GoogleDocstring
 from sphinx.util.typing import stringify_annotation
+from sphinxarg.ext import ArgParseDirective
+
+from gear_kinematics.commands import cli
 
 _ALIASES = {
     r'ndarray\[tuple\[Any, \.\.\.\], dtype\[(\w+)\]\]': r'NDArray[\1]',
@@ -21,10 +30,18 @@ _ALIASES = {
 }
 """What numpy's aliases are spelled out as, and what stands in the sources."""
 
+_ROOT = Path(__file__).parents[1]
+_PROGRAMS = sysconfig.get_path('scripts')
+_STYLES = re.compile(r'\x1b\[[\d;]*m')
+_WIDTH = 92  # characters
+_UNUSABLE = 2  # exit code
+
+_FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference')
+
 project = 'gear_kinematics'
 root_doc = 'docs/index'
-include_patterns = ['*.md', '*.rst', 'bags/*.md', 'benchmark/*.md', 'docs/*.md']
-extensions = ['myst_parser', 'sphinx.ext.autodoc']
+include_patterns = ['*.md', '*.rst', *(f'{folder}/*.md' for folder in _FOLDERS)]
+extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinxarg.ext']
 default_role = 'code'
 highlight_language = 'none'
 smartquotes_action = 'D'
@@ -43,8 +60,48 @@ html_copy_source = False
 html_show_copyright = False
 
 
+class _Run(Directive):
+    """Show a command and what it prints on a terminal: `{run}`, with the command below."""
+
+    has_content = True
+
+    def run(self) -> list[nodes.Node]:
+        """Run it in the folder of the project."""
+        command = ' '.join(line.rstrip('\\').strip() for line in self.content)
+        done = subprocess.run(  # noqa: S603, from these pages
+            shlex.split(command),
+            cwd=_ROOT,
+            env=os.environ
+            | {'PATH': f'{_PROGRAMS}:{os.environ["PATH"]}'}
+            | {'FORCE_COLOR': '1', 'TERM': 'xterm', 'COLUMNS': str(_WIDTH)},
+            check=False,
+            capture_output=True,
+            text=True,
+        )
+        if done.returncode == _UNUSABLE:
+            raise self.error(done.stderr)
+        lines = (line.rstrip() for line in _STYLES.sub('', done.stdout).splitlines())
+        text = '\n'.join([f'$ {self.content[0]}', *self.content[1:], *lines])
+        return [nodes.literal_block(text, text)]
+
+
+class _Arguments(ArgParseDirective):
+    """List the arguments of a command: `{arguments} validate`."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Take them from the parser that the program uses."""
+        self.options |= {'module': cli.__name__, 'func': cli.make_parser.__name__}
+        self.options |= {'prog': 'gearkin', 'path': self.arguments[0]}
+        self.options |= dict.fromkeys(('nodescription', 'nodefaultconst'), True)
+        return super().run()
+
+
 def setup(app: Sphinx) -> None:
-    """Have docstrings read as they are written in this project."""
+    """Have docstrings read as they are written in this project, and commands run."""
+    app.add_directive('run', _Run)
+    app.add_directive('arguments', _Arguments)
     app.connect('autodoc-process-docstring', _read_sections)
     app.connect('doctree-resolved', _name_arrays)
 

@@ -204,7 +204,7 @@ def _check_joint_batch(
 
 
 def _index(state: JointState, joint: str) -> int | None:
-    """Apply the README's rule of `rotor_joint`."""
+    """Apply the node's rule of `rotor_joint`."""
     if any(state.names):
         names = [name.decode() for name in state.names]
     else:

@@ -56,7 +56,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every pipe has a ″
-    options = _parser().parse_args(arguments)
+    options = make_parser().parse_args(arguments)
     code = ExitCode.DONE
     try:
         # What overflows shows in the results.
@@ -74,7 +74,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return code
 
 
-def _parser() -> argparse.ArgumentParser:
+def make_parser() -> argparse.ArgumentParser:
+    """Build the parser of the program, with those of its subcommands."""
     parser = _Parser(prog='gearkin', description=__doc__)
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')

@@ -73,7 +73,7 @@ class Answer(NamedTuple):
 
 
 class Contract:
-    """The README's table of bad input, applied to messages as rclpy decodes them."""
+    """The node's table of bad input, applied to messages as rclpy decodes them."""
 
     def __init__(self) -> None:
         self.counts = Counter()

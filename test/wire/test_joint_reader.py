@@ -42,7 +42,7 @@ def read(reader, data):
 
 
 def expected(data, joint):
-    """Apply the README's table of bad input to the decoded message."""
+    """Apply the node's table of bad input to the decoded message."""
     try:
         message = decode_joint_state(data)
     except MalformedMessageError:
