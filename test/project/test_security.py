@@ -460,7 +460,7 @@ def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, tmp_path):
 # What the documents claim.
 
 
-@pytest.mark.parametrize('name', ['docs/security.md', 'QUALITY_DECLARATION.md'])
+@pytest.mark.parametrize('name', ['docs/security.md', 'docs/paper.md', 'QUALITY_DECLARATION.md'])
 def test_evidence_is_there(name):
     """Every test and file that a document cites is there."""
     text = (ROOT / name).read_text('utf-8')

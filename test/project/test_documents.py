@@ -1,0 +1,93 @@
+"""What README and documentation say: commands that run, and every name of the node."""
+
+import re
+import shlex
+import shutil
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+import yaml
+
+from gear_kinematics.commands.cli import COMMANDS, main, make_parser
+from gear_kinematics.state.parameters import BRANCH_PARAMETERS, PARAMETERS, defaults
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / 'README.md').read_text('utf-8')
+NODE = (ROOT / 'docs/reference/node.md').read_text('utf-8')
+PAGES = [ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md'))]
+
+
+def commands(text: str) -> list[list[str]]:
+    """Give the words of every gearkin command in a page's blocks, without `gearkin`."""
+    lines = re.sub(r'\\\n\s*', '', text).splitlines()
+    return [
+        words[1:]
+        for line in lines
+        if re.match(r'( {4})?gearkin [a-z]', line)
+        for words in [shlex.split(line.partition(' | ')[0], comments=True)]
+        if words[1] in COMMANDS
+    ]
+
+
+def rows(section: str) -> list[list[str]]:
+    """Give the cells of the tables in a section of the page on the node."""
+    [text] = re.findall(rf'^## {section}\n(.*?)(?=^## |\Z)', NODE, re.MULTILINE | re.DOTALL)
+    lines = re.findall(r'^\| (`.*) \|$', text, re.MULTILINE)
+    return [line.split(' | ') for line in lines]
+
+
+def names(cell: str) -> list[str]:
+    return re.findall('`([^`]+)`', cell)
+
+
+def test_readme_is_one_screen():
+    assert len(README.splitlines()) <= 120
+
+
+@pytest.mark.parametrize('page', PAGES, ids=lambda path: path.name)
+def test_every_command_in_the_documentation_has_arguments_that_exist(page):
+    for words in commands(page.read_text('utf-8')):
+        make_parser().parse_args(words)
+
+
+def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
+    shutil.copytree(ROOT / 'bags/servo_point_to_point', tmp_path / 'logs/monday')
+    shutil.copy(ROOT / 'docs/examples/ramps.csv', tmp_path)
+    monkeypatch.chdir(tmp_path)
+    told = {}
+    for words in commands(README):
+        assert main(words) == 0, capsys.readouterr().err
+        told[words[0]] = capsys.readouterr().out
+    assert list(told) == ['validate', 'preload', 'index', 'lost-motion']
+    assert 'while |load| < 1 N·m' in told['preload']
+    assert 'ring hole 60 in chassis hole 10, tooth 11' in told['index']
+    assert 'backlash (play model)' in told['lost-motion']
+    written = {'monday.html', 'report.xml', 'pin.svg', 'ramps.html'}
+    assert written <= {path.name for path in tmp_path.iterdir()}
+
+
+def test_every_topic_is_in_the_reference():
+    policy = ET.parse(ROOT / 'policies/gear_state_publisher.policy.xml')  # noqa: S314, our own
+    topics = {
+        topic.text.removeprefix('/')
+        for topic in policy.iterfind('.//topics/topic')
+        if topic.text not in {'/rosout', '/parameter_events'}
+    }
+    documented = {name.removeprefix('/') for row in rows('Topics') for name in names(row[0])}
+    assert documented == {name.rpartition('/')[2] for name in topics}
+
+
+def test_every_parameter_is_in_the_reference_with_its_default():
+    documented = {
+        name: default
+        for cell, given, _ in rows('Parameters')
+        for name, default in zip(
+            names(cell), given.split(', ', len(names(cell)) - 1), strict=False
+        )
+    }
+    documented.pop('qos_overrides.<topic>.<policy>')
+    of_branches = {f'<branch>.{name}' for name in BRANCH_PARAMETERS}
+    assert set(documented) == {*PARAMETERS, *of_branches}
+    shown = {name: yaml.safe_load(documented[name].removesuffix(' (1°)')) for name in PARAMETERS}
+    assert shown == {name: defaults()[name] for name in PARAMETERS}
