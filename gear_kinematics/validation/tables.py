@@ -34,7 +34,7 @@ def tables(report: BagReport) -> tuple[Table, ...]:
         ),
         *([_input_table(report.rotor)] if report.rotor else []),
         Table.of_items(_GAP, [_Gap(report, k, gap) for k, gap in enumerate(gaps, 1)]),
-        Table.of_items(_TOPIC, report.topics),
+        Table.of_items(TOPIC, report.topics),
         Table.of_items(_FIELD, fields),
         Table.of_items(_WORST, worst),
     )
@@ -128,7 +128,7 @@ _GAP: Mapping[str, Callable[[_Gap], Cell]] = {
     'silence': lambda row: Cell(number(row.gap.seconds, 6), unit='s'),
     'rotor turned': lambda row: Cell(number(row.gap.turned, 6), unit='rad'),
 }
-_TOPIC: Mapping[str, Callable[[TopicReport], Cell]] = {
+TOPIC: Mapping[str, Callable[[TopicReport], Cell]] = {
     'topic': lambda topic: Cell(printable(topic.topic)),
     'messages': lambda topic: Cell(str(topic.messages)),
     'compared': lambda topic: Cell(str(topic.compared), _tone(bad=not topic.compared)),

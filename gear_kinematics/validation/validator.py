@@ -14,11 +14,12 @@ from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.validation import checks
 from gear_kinematics.validation.diagnosis import UnseenTurns, diagnose
 from gear_kinematics.validation.matching import WINDOW, Solver, Window
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Tolerances
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
-from gear_kinematics.validation.report import BagReport, InputReport
+from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.timeline import InputHealth, SeriesRecorder
 from gear_kinematics.wire.cdr import (
     MalformedMessageError,
@@ -98,6 +99,7 @@ class Validator:
         self.output = OutputState(prefix + parameters['output_joint'], *common)
         self.poses = BodyPoses(prefix + _FRAME, *common)
         self._series = SeriesRecorder()
+        self._checks = [make(parameters) for make in checks.CHECKS]
         self._findings: list[str] = []
 
     def feed(
@@ -139,7 +141,9 @@ class Validator:
             error = 'no usable rotor states in it'
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
-        passed = all(topic.passed for topic in topics) and not self._input.mostly_rejected
+        judgements = [found for check in self._checks for found in check.judge(rotor)]
+        failed = any(judgement.fails for judgement in judgements)
+        passed = all(topic.passed for topic in topics) and not failed
         return BagReport(
             bag=bag,
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
@@ -148,7 +152,7 @@ class Validator:
             messages=rotor.messages + sum(topic.messages for topic in topics),
             rotor=rotor,
             topics=topics,
-            findings=(*self._findings, *self._diagnoses(), *_health_findings(rotor)),
+            findings=(*self._findings, *self._diagnoses(), *(found.text for found in judgements)),
             series=self._series.series(),
             mechanism=self._mechanism,
             module=self._parameters['module'],
@@ -169,6 +173,8 @@ class Validator:
         for output, messages in ((self.output, batch.output), (self.poses, batch.poses)):
             output.take(messages.data, messages.received, self._window, self._inputs)
         self._series.update(self.output.compared, self.poses.compared)
+        for check in self._checks:
+            check.update(self.output.compared, self.poses.compared)
         done = self.output.matcher.matched & self.poses.matcher.matched
         settled = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(settled, len(done) - WINDOW))
@@ -261,13 +267,6 @@ class Validator:
         return trial
 
     def _diagnoses(self) -> Iterable[str]:
-        if self._input.mostly_rejected:
-            rejected = self._input.rejected
-            causes = ', '.join(f'{cause} {count}' for cause, count in rejected.items())
-            yield (
-                f'{rejected.total()} of {self._input.received} messages of {self._topics.rotor} '
-                f'were rejected ({causes}): the rest is too little to pass'
-            )
         if not self.output.position.passed:
             found = diagnose(self._mechanism, self.output.fit, self._tolerances.angle)
             if found:
@@ -281,26 +280,3 @@ class Validator:
                     f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '
                     'the node may have ended'
                 )
-
-
-def _health_findings(rotor: InputReport) -> Iterable[str]:
-    if rotor.jumps:
-        yield (
-            f'{rotor.jumps} gaps of {rotor.topic} could hide a turn of the single-turn encoder: '
-            'after each, its turns are those that the outputs tell'
-        )
-    if rotor.overspeed:
-        yield (
-            f'{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at most '
-            f'{rotor.max_speed:.4g} rad/s'
-        )
-    if rotor.zero_stamps:
-        yield (
-            f'{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped their '
-            'outputs itself, and they cannot be matched'
-        )
-    if rotor.unnormalised_stamps:
-        yield (
-            f'{rotor.unnormalised_stamps} stamps of {rotor.topic} have a second or more of '
-            'nanoseconds: the node stamps outputs with the same time, normalised'
-        )

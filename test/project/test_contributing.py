@@ -1,0 +1,64 @@
+"""The examples of CONTRIBUTING.md, put where it says and run."""
+
+import json
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from gear_kinematics.commands import cli
+from gear_kinematics.validation import checks, tables
+
+ROOT = Path(__file__).resolve().parents[2]
+BAG = ROOT / 'bags' / 'driver_faults'
+CHECK, FIELD, COMMAND = re.findall(
+    r'```python\n(.*?)```', (ROOT / 'CONTRIBUTING.md').read_text('utf-8'), re.DOTALL
+)
+
+
+def module(source: str) -> ModuleType:
+    made = ModuleType('example')
+    exec(compile(source, 'CONTRIBUTING.md', 'exec'), vars(made))  # noqa: S102, our own
+    return made
+
+
+def test_a_check_fails_a_bag_and_says_why(monkeypatch, capsys):
+    monkeypatch.setattr(checks, 'CHECKS', (*checks.CHECKS, module(CHECK).OutputTravel))
+    assert cli.main(['validate', str(BAG), '--json']) == 1
+    [bag] = json.loads(capsys.readouterr().out)['bags']
+    assert bag['verdict'] == 'fail'
+    assert any(finding.endswith('beyond the end stops') for finding in bag['findings'])
+
+
+def test_a_check_that_finds_nothing_changes_nothing(monkeypatch, capsys):
+    class Unlimited(module(CHECK).OutputTravel):
+        stops = (-100.0, 100.0)
+
+    monkeypatch.setattr(checks, 'CHECKS', (*checks.CHECKS, Unlimited))
+    assert cli.main(['validate', str(BAG)]) == 0
+    assert 'end stops' not in capsys.readouterr().out
+
+
+def test_a_field_of_the_report_is_in_every_form(monkeypatch, capsys, tmp_path):
+    pytest.importorskip('plotly')
+    added = eval(FIELD, vars(tables))  # noqa: S307, our own
+    monkeypatch.setattr(tables, 'TOPIC', {**tables.TOPIC, **added})
+    files = {form: tmp_path / form for form in ('html', 'junit')}
+    written = [word for form, path in files.items() for word in (f'--{form}', str(path))]
+    assert cli.main(['validate', str(BAG), *written]) == 0
+    assert f'{BAG}: /output_state: answered: 100 %\n' in capsys.readouterr().out
+    assert 'answered' in files['html'].read_text('utf-8')
+    assert '/output_state: answered: 100 %' in files['junit'].read_text('utf-8')
+
+
+def test_a_subcommand_reports_in_every_form(monkeypatch, capsys):
+    pytest.importorskip('plotly')
+    monkeypatch.setitem(cli.COMMANDS, 'ratio', module(COMMAND))
+    outputs = {}
+    for form in ('', '--json', '--html'):
+        assert cli.main(['ratio', *filter(None, [form])]) == 0
+        outputs[form] = capsys.readouterr().out
+    assert outputs[''] == 'gear ratio: -19\n'
+    assert json.loads(outputs['--json']) == {'gear_ratio': '-19'}
+    assert '<dt>gear ratio</dt><dd class="">-19</dd>' in outputs['--html']
