@@ -9,7 +9,7 @@ from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
 from gear_kinematics.lost_motion.ramps import HalfLoop, Ramps
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.transmission import Order
-from gear_kinematics.lost_motion.wording import ARC_MINUTES, plus_minus, torque
+from gear_kinematics.lost_motion.wording import ARC_MINUTES, arc_minutes, torque
 from gear_kinematics.report.document import Array, Line, Panel, Pen
 
 _MOST = 2000  # points of a line
@@ -42,7 +42,7 @@ def _ramp_panel(found: HysteresisReport, index: int) -> Panel:
         load, angle = model.loop(ramps.amplitude)
         lines.append(Line('play model', Pen.MODEL, load, (angle - centre) * ARC_MINUTES))
     at = LOST_MOTION_SHARE * found.settings.rated_torque
-    width = plus_minus(figures.hysteresis, ARC_MINUTES)
+    width = arc_minutes(figures.hysteresis)
     return Panel(
         f'ramps to {torque(ramps.amplitude)} N·m: hysteresis {width} arcmin',
         f'torque at the output [N·m]; dashed: 0 and ±{100.0 * LOST_MOTION_SHARE:g} % of rated',

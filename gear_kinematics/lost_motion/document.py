@@ -11,10 +11,12 @@ import numpy as np
 from gear_kinematics.lost_motion.curves import panels
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
+from gear_kinematics.lost_motion.transmission import TransmissionFigures
 from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
 from gear_kinematics.lost_motion.wording import (
     ARC_MINUTES,
     PERCENT,
+    arc_minutes,
     plus_minus,
     remarks,
     rounded,
@@ -126,19 +128,19 @@ def _head(report: LostMotionReport) -> Table:
 
 
 def _tables(report: LostMotionReport) -> Iterator[Table]:
-    """Give all tables that have something in them."""
+    """Yield the tables that have something in them."""
     if found := report.hysteresis:
         yield _figure_table(found)
         if len(found.figures) > 1:
             yield _amplitude_table(found)
         yield _stiffness_table(found)
     if report.transmission:
-        yield _transmission_table(report)
-        yield _order_table(report)
+        yield _transmission_table(report.transmission)
+        yield _order_table(report.transmission)
 
 
 def _figure_table(found: HysteresisReport) -> Table:
-    """Give the figures: those of the play from the smallest ramps, the others from the largest."""
+    """Return the figures, those of the play from the smallest ramps, others from the largest."""
     smallest, largest = found.smallest, found.largest
     small, large = (f'{_loops(f)} to {torque(f.amplitude)} N·m' for f in (smallest, largest))
     at = torque(LOST_MOTION_SHARE * found.settings.rated_torque)
@@ -157,53 +159,39 @@ def _figure_table(found: HysteresisReport) -> Table:
 
 def _amplitude_table(found: HysteresisReport) -> Table:
     """Compare the ramps of different amplitude."""
-    return Table(
-        (
-            'ramps',
-            'loops',
-            'hysteresis [arcmin]',
-            'lost motion [arcmin]',
-            'backlash [arcmin]',
-            'friction [N·m]',
-            'model residual [arcmin]',
-        ),
-        tuple(_amplitude_row(figures) for figures in found.figures),
-    )
-
-
-def _amplitude_row(figures: Figures) -> tuple[Cell, ...]:
-    model = figures.play_model
-    return (
-        Cell(f'to {torque(figures.amplitude)} N·m'),
-        Cell(str(figures.loops)),
-        Cell(plus_minus(figures.hysteresis, ARC_MINUTES)),
-        Cell(plus_minus(figures.lost_motion, ARC_MINUTES)),
-        Cell(plus_minus(figures.play, ARC_MINUTES)),
-        Cell(plus_minus(figures.friction)),
-        Cell(number(model.residual * ARC_MINUTES) if model else ''),
+    return Table.of_items(
+        {
+            'ramps': lambda f: f'to {torque(f.amplitude)} N·m',
+            'loops': lambda f: str(f.loops),
+            'hysteresis [arcmin]': lambda f: arc_minutes(f.hysteresis),
+            'lost motion [arcmin]': lambda f: arc_minutes(f.lost_motion),
+            'backlash [arcmin]': lambda f: arc_minutes(f.play),
+            'friction [N·m]': lambda f: plus_minus(f.friction),
+            'model residual [arcmin]': lambda f: (
+                number(f.play_model.residual * ARC_MINUTES) if f.play_model else ''
+            ),
+        },
+        found.figures,
     )
 
 
 def _stiffness_table(found: HysteresisReport) -> Table:
-    """Give the stiffness under torque of either sign."""
-    return Table(
-        ('stiffness [N·m/rad]', 'both', 'positive', 'negative'),
-        tuple(
-            (
-                Cell(f'{_range(s.low, s.high)}, ramps to {torque(figures.amplitude)} N·m'),
-                *(Cell(plus_minus(estimate)) for estimate in (s.both, s.positive, s.negative)),
-            )
-            for figures in found.figures
-            for s in figures.stiffness
-        ),
+    """Return the stiffness under torque of either sign."""
+    return Table.of_items(
+        {
+            'stiffness [N·m/rad]': lambda row: (
+                f'{_range(row[1].low, row[1].high)}, ramps to {torque(row[0].amplitude)} N·m'
+            ),
+            'both': lambda row: plus_minus(row[1].both),
+            'positive': lambda row: plus_minus(row[1].positive),
+            'negative': lambda row: plus_minus(row[1].negative),
+        },
+        [(figures, stiffness) for figures in found.figures for stiffness in figures.stiffness],
     )
 
 
-def _transmission_table(report: LostMotionReport) -> Table:
-    """Give the figures of the transmission error."""
-    found = report.transmission
-    if not found:
-        return Table(('transmission',), ())
+def _transmission_table(found: TransmissionFigures) -> Table:
+    """Return the figures of the transmission error."""
     rows = (
         _angle('transmission accuracy forward', found.forward),
         _angle('transmission accuracy backward', found.backward),
@@ -221,37 +209,24 @@ def _transmission_table(report: LostMotionReport) -> Table:
     return Table(_FIGURES, (*(row for row in rows if row), offset), _WORDS)
 
 
-def _order_table(report: LostMotionReport) -> Table:
-    """Give the amplitudes of the marked orders."""
-    orders = report.transmission.orders if report.transmission else ()
-    return Table(
-        ('order', 'cycles per output turn', 'forward [arcmin]', 'backward [arcmin]'),
-        tuple(
-            (
-                Cell(order.name),
-                Cell(str(order.cycles)),
-                Cell(plus_minus(order.forward, ARC_MINUTES)),
-                Cell(plus_minus(order.backward, ARC_MINUTES)),
-            )
-            for order in orders
-            if order.forward or order.backward
-        ),
+def _order_table(found: TransmissionFigures) -> Table:
+    """Return the amplitudes of the marked orders."""
+    return Table.of_items(
+        {
+            'order': lambda order: order.name,
+            'cycles per output turn': lambda order: str(order.cycles),
+            'forward [arcmin]': lambda order: arc_minutes(order.forward),
+            'backward [arcmin]': lambda order: arc_minutes(order.backward),
+        },
+        [order for order in found.orders if order.forward or order.backward],
     )
 
 
 def _summary(reports: Sequence[LostMotionReport]) -> Table:
-    """Give a line for each recording."""
-    return Table(
-        (
-            'recording',
-            'hysteresis [arcmin]',
-            'backlash [arcmin]',
-            'lost motion [arcmin]',
-            'stiffness [N·m/rad]',
-            'transmission accuracy [arcmin]',
-        ),
-        tuple(map(_summary_row, reports)),
-    )
+    """Return a row for each recording."""
+    angles = ('hysteresis [arcmin]', 'backlash [arcmin]', 'lost motion [arcmin]')
+    others = ('stiffness [N·m/rad]', 'transmission accuracy [arcmin]')
+    return Table(('recording', *angles, *others), tuple(map(_summary_row, reports)))
 
 
 def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
@@ -262,14 +237,9 @@ def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
         hysteresis, play = found.smallest.hysteresis, found.smallest.play
         lost_motion = found.largest.lost_motion
         spring = found.largest.stiffness[-1].both if found.largest.stiffness else None
-    return (
-        Cell(printable(report.recording.name)),
-        Cell(plus_minus(hysteresis, ARC_MINUTES)),
-        Cell(plus_minus(play, ARC_MINUTES)),
-        Cell(plus_minus(lost_motion, ARC_MINUTES)),
-        Cell(plus_minus(spring)),
-        Cell(plus_minus(accuracy, ARC_MINUTES)),
-    )
+    angles = (arc_minutes(value) for value in (hysteresis, play, lost_motion))
+    values = (*angles, plus_minus(spring), arc_minutes(accuracy))
+    return tuple(map(Cell, (printable(report.recording.name), *values)))
 
 
 def _angle(label: str, estimate: Estimate | None, source: str = '') -> tuple[Cell, ...] | None:

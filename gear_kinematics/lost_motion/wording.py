@@ -97,6 +97,11 @@ def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
     return f'{value} ± {spread}' if spread else value
 
 
+def arc_minutes(estimate: Estimate | None) -> str:
+    """Write an angle in arc minutes with its uncertainty."""
+    return plus_minus(estimate, ARC_MINUTES)
+
+
 def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
     """Write a value and its uncertainty, which is empty where it is not known."""
     value, spread = estimate.value * scale, estimate.uncertainty

@@ -56,6 +56,10 @@ class Cell:
         return self.text if self.unit == subject.unit else self.with_unit()
 
 
+def _cell(value: str | Cell) -> Cell:
+    return value if isinstance(value, Cell) else Cell(value)
+
+
 class Layout(StrEnum):
     """How a table is set where there is room."""
 
@@ -80,13 +84,13 @@ class Table:
     @classmethod
     def of_items(
         cls,
-        columns: Mapping[str, Callable[[Any], Cell]],
+        columns: Mapping[str, Callable[[Any], str | Cell]],
         items: Iterable[Any],
         words: tuple[str, ...] = ('',),
     ) -> Self:
-        """Return a table with a row for each item, from functions that give a column's cell."""
-        rows = tuple(tuple(cell(item) for cell in columns.values()) for item in items)
-        return cls(tuple(columns), rows, words)
+        """Return a table with a row for each item, from functions that return a column's cell."""
+        rows = (tuple(_cell(value(item)) for value in columns.values()) for item in items)
+        return cls(tuple(columns), tuple(rows), words)
 
     @classmethod
     def of_values(
@@ -100,7 +104,7 @@ class Table:
             about: heading and text of the first cell.
         """
         heading, subject = about
-        cells = (value if isinstance(value, Cell) else Cell(value) for _, value in values)
+        cells = (_cell(value) for _, value in values)
         labels = (label for label, _ in values)
         return cls((heading, *labels), ((Cell(subject), *cells),), layout=layout)
 

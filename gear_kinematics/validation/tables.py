@@ -121,16 +121,16 @@ def _first_finding(report: BagReport) -> str:
     return next((finding.text for finding in findings(report)), '')
 
 
-_GAP: Mapping[str, Callable[[_Gap], Cell]] = {
-    'longest gaps': lambda row: Cell(row.name),
+_GAP: Mapping[str, Callable[[_Gap], str | Cell]] = {
+    'longest gaps': lambda row: row.name,
     'until stamp': lambda row: moment(row.gap.stamp, row.report)[0],
     'from start': lambda row: moment(row.gap.stamp, row.report)[1],
     'silence': lambda row: Cell(number(row.gap.seconds, 6), unit='s'),
     'rotor turned': lambda row: Cell(number(row.gap.turned, 6), unit='rad'),
 }
-TOPIC: Mapping[str, Callable[[TopicReport], Cell]] = {
-    'topic': lambda topic: Cell(printable(topic.topic)),
-    'messages': lambda topic: Cell(str(topic.messages)),
+TOPIC: Mapping[str, Callable[[TopicReport], str | Cell]] = {
+    'topic': lambda topic: printable(topic.topic),
+    'messages': lambda topic: str(topic.messages),
     'compared': lambda topic: Cell(str(topic.compared), _tone(bad=not topic.compared)),
     'missing': lambda topic: _bad(topic.missing),
     'extra': lambda topic: _bad(topic.extra),
@@ -138,9 +138,9 @@ TOPIC: Mapping[str, Callable[[TopicReport], Cell]] = {
     'out of order': lambda topic: _bad(topic.out_of_order),
     'left out': lambda topic: Cell(str(sum(topic.left_out.values()) or ''), Tone.NOTABLE),
 }
-_FIELD: Mapping[str, Callable[[_Field], Cell]] = {
+_FIELD: Mapping[str, Callable[[_Field], str | Cell]] = {
     'field': lambda row: Cell(row.name, unit=printable(row.field.unit)),
-    'compared': lambda row: Cell(str(row.field.compared)),
+    'compared': lambda row: str(row.field.compared),
     'absent': lambda row: _bad(row.field.absent),
     'not finite': lambda row: _bad(row.field.non_finite),
     'max error': lambda row: row.measured(row.field.max_error, row.tone),
@@ -148,18 +148,18 @@ _FIELD: Mapping[str, Callable[[_Field], Cell]] = {
     'tolerance': lambda row: row.measured(row.field.tolerance),
     'budget used': lambda row: Cell(_budget([row.field]), row.tone, '%'),
 }
-_WORST: Mapping[str, Callable[[_Field], Cell]] = {
-    'field': lambda row: Cell(row.name),
+_WORST: Mapping[str, Callable[[_Field], str | Cell]] = {
+    'field': lambda row: row.name,
     'worst at stamp': lambda row: moment(row.field.worst_stamp, row.report)[0],
     'worst from start': lambda row: moment(row.field.worst_stamp, row.report)[1],
     'worst at rotor angle': lambda row: Cell(angle(row.field.worst_rotor_angle), unit='rad'),
 }
-_SUMMARY: Mapping[str, Callable[[BagReport], Cell]] = {
-    'bag': lambda report: Cell(bag_name(report)),
+_SUMMARY: Mapping[str, Callable[[BagReport], str | Cell]] = {
+    'bag': bag_name,
     'verdict': lambda report: Cell(OUTCOME[report.verdict], _tone(bad=not report.passed)),
-    'compared': lambda report: Cell(str(sum(topic.compared for topic in report.topics))),
+    'compared': lambda report: str(sum(topic.compared for topic in report.topics)),
     'budget used': lambda report: Cell(
         _budget([field for topic in report.topics for field in topic.fields]), unit='%'
     ),
-    'first finding': lambda report: Cell(_first_finding(report)),
+    'first finding': _first_finding,
 }
