@@ -2,7 +2,9 @@
 
 import argparse
 import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode
@@ -12,12 +14,12 @@ from gear_kinematics.commands.arguments import (
     add_recording,
     add_sizes,
     branch,
-    mechanism,
-    module,
+    node_parameters,
     positive,
     recording,
 )
 from gear_kinematics.commands.output import progress, tell_of_circles, write_file
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.trajectory import Trajectory
 
@@ -56,11 +58,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the frames, write the file and say how long it is."""
-    pair, of_teeth = mechanism(options), module(options)
+    config = node_parameters(options)
+    pair, of_teeth = Mechanism.from_mapping(config), config['module']
     for name, (low, high) in _BOUNDS.items():
         if not low <= (given := getattr(options, name)) <= high:
             raise ValueError(f'--{name} must be between {low} and {high}, not {given}')
-    frames = _frames(options, pair.cycle_turns)
+    frames = _frames(options, config, pair.cycle_turns)
     count = len(frames.time)
     with progress('frames') as bars:
         task = bars.add_task(options.out, total=count)
@@ -84,9 +87,11 @@ def run(options: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE
 
 
-def _frames(options: argparse.Namespace, cycle_turns: int) -> Trajectory:
+def _frames(
+    options: argparse.Namespace, config: Mapping[str, Any], cycle_turns: int
+) -> Trajectory:
     closed = not (options.bag or options.duration)
-    moved = recording(options) or Trajectory.at_constant_speed(
+    moved = recording(options, config) or Trajectory.at_constant_speed(
         options.speed, turns=cycle_turns, duration=options.duration
     )
     interval = options.rate / options.fps

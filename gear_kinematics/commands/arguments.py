@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -142,11 +143,14 @@ def add_recording(
         parser.add_argument('--duration', type=positive, metavar='S', help='(default: all of it)')
 
 
-def recording(options: argparse.Namespace, *of_it: str) -> Trajectory | None:
+def recording(
+    options: argparse.Namespace, config: Mapping[str, Any], *of_it: str
+) -> Trajectory | None:
     """The rotor's motion in the bag from the offset on; None without a bag.
 
     Args:
         options: as given.
+        config: the parameters of the node.
         of_it: names of further options that are of use for a bag only.
 
     Raises:
@@ -160,7 +164,7 @@ def recording(options: argparse.Namespace, *of_it: str) -> Trajectory | None:
     start = options.start_offset or 0.0
     duration = getattr(options, 'duration', None) or math.inf
     with message_progress(options.bag.name) as told:
-        whole = read_trajectory(options.bag, node_parameters(options), options.rotor_topic, told)
+        whole = read_trajectory(options.bag, config, options.rotor_topic, told)
     return whole.between(start, start + duration)
 
 

@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -14,13 +14,14 @@ from gear_kinematics.commands.arguments import (
     add_recording,
     add_sizes,
     branch,
-    mechanism,
-    module,
+    node_parameters,
     recording,
 )
 from gear_kinematics.commands.output import tell_of_circles, write_file
 from gear_kinematics.kinematics import Mechanism, RotorPosition, split_turns
 from gear_kinematics.state.trajectory import Trajectory
+
+Config = Mapping[str, Any]
 
 HELP = 'figures: kinematic scheme, roses, slides, output over time'
 _DEGREES = 40.0  # where every part of the scheme can be seen
@@ -60,19 +61,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the figure and write its file."""
-    pair = mechanism(options)
-    write_file(options.out, options.draw(options, pair, Path(options.out)))
+    config = node_parameters(options)
+    pair = Mechanism.from_mapping(config)
+    write_file(options.out, options.draw(options, config, pair, Path(options.out)))
     if options.draw is _scheme:
-        tell_of_circles(pair, module(options))
+        tell_of_circles(pair, config['module'])
     return ExitCode.DONE
 
 
-def _scheme(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
-    return plotting.scheme(pair, module(options), path, _rotor(options), branch(options, pair))
+def _scheme(options: argparse.Namespace, config: Config, pair: Mechanism, path: Path) -> bytes:
+    rotor = _rotor(options, config)
+    return plotting.scheme(pair, config['module'], path, rotor, branch(options, pair))
 
 
-def _rotor(options: argparse.Namespace) -> RotorPosition:
-    if moved := recording(options):
+def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
+    if moved := recording(options, config):
         return RotorPosition(int(moved.turns[0]), float(moved.angle[0]))
     degrees = _DEGREES if options.degrees is None else options.degrees
     angle = float(math.radians(degrees) if options.angle is None else options.angle)
@@ -81,20 +84,20 @@ def _rotor(options: argparse.Namespace) -> RotorPosition:
     return split_turns(angle)
 
 
-def _roses(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
-    return plotting.roses(pair, path, recording(options, 'duration'))
+def _roses(options: argparse.Namespace, config: Config, pair: Mechanism, path: Path) -> bytes:
+    return plotting.roses(pair, path, recording(options, config, 'duration'))
 
 
-def _slides(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
-    return plotting.slides(pair, path, _moved(options, turns=1), by_angle=not options.bag)
+def _slides(options: argparse.Namespace, config: Config, pair: Mechanism, path: Path) -> bytes:
+    return plotting.slides(pair, path, _moved(options, config, turns=1), by_angle=not options.bag)
 
 
-def _output(options: argparse.Namespace, pair: Mechanism, path: Path) -> bytes:
-    return plotting.output(pair, path, _moved(options, turns=pair.cycle_turns))
+def _output(options: argparse.Namespace, config: Config, pair: Mechanism, path: Path) -> bytes:
+    return plotting.output(pair, path, _moved(options, config, turns=pair.cycle_turns))
 
 
-def _moved(options: argparse.Namespace, turns: int) -> Trajectory:
-    if moved := recording(options):
+def _moved(options: argparse.Namespace, config: Config, turns: int) -> Trajectory:
+    if moved := recording(options, config):
         return moved
     speed = _SPEED if options.speed is None else options.speed
     return Trajectory.at_constant_speed(speed, turns=turns, duration=options.duration)

@@ -45,8 +45,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_config(parser)
     add_topics(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
-    parser.add_argument('--tolerance-angle', type=float, default=1e-9, metavar='RAD')
-    parser.add_argument('--tolerance-position', type=float, default=1e-9, metavar='M')
+    angle, position = Tolerances()
+    parser.add_argument('--tolerance-angle', type=float, default=angle, metavar='RAD')
+    parser.add_argument('--tolerance-position', type=float, default=position, metavar='M')
     parser.add_argument(
         '--allow-offset', action='store_true', help='accept a constant offset, as homing leaves it'
     )

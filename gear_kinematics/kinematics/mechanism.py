@@ -25,6 +25,11 @@ class Branch:
     axial_position: float = 0.0
     """m, along the motor axis; the planar motion leaves it unchanged."""
 
+    @property
+    def cam_direction(self) -> tuple[float, float]:
+        """u(α_k) in the frame of the rotor: from its axis to the centre of the cam."""
+        return -math.sin(self.cam_phase), math.cos(self.cam_phase)
+
 
 @dataclass(frozen=True)
 class Mechanism:

@@ -7,7 +7,6 @@ Symbols: φ2 rotor angle, φ5 output angle, α_k cam phase, θ_k = φ2 + α_k, e
 u(q) = (-sin q, cos q), i gear ratio, p/q = (zk - zs)/zs = -1/i in lowest terms.
 """
 
-import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
 from functools import lru_cache
@@ -141,9 +140,7 @@ class ClosedForm:
         # p is a float so that its product with many turns is rounded as in an array.
         self._p, self._q = float(ratio.numerator), ratio.denominator
         self._eccentricity = mechanism.eccentricity
-        self._cams = tuple(  # u(α)
-            (-math.sin(b.cam_phase), math.cos(b.cam_phase)) for b in mechanism.branches
-        )
+        self._cams = tuple(branch.cam_direction for branch in mechanism.branches)
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
         self._kappa = -2.0 * float(ratio) - 1.0
 

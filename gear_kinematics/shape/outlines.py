@@ -69,8 +69,9 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
     ring, satellite = teeth.outlines(mechanism, module)
     ring = turned(ring, teeth.ring_phase(mechanism, of_branch))
     root = float(np.min(np.hypot(*satellite.T)))
-    e, alpha = mechanism.eccentricity, of_branch.cam_phase
-    cam = -e * math.sin(alpha), e * math.cos(alpha)  # e u(α)
+    e = mechanism.eccentricity
+    x, y = of_branch.cam_direction
+    cam = e * x, e * y
     shapes = {'stator': _pierced(_circle(_RING_BORDER * float(np.max(np.hypot(*ring.T)))), ring)}
     sizes = _Sizes.within(root, e)
     if not sizes:

@@ -95,9 +95,8 @@ def urdf(mechanism: Mechanism, *, module: float, output_joint: str, frame_prefix
 
 
 def _cam_centre(branch: Branch, eccentricity: float) -> str:
-    x = -eccentricity * math.sin(branch.cam_phase)
-    y = eccentricity * math.cos(branch.cam_phase)
-    return f'{x!r} {y!r} {branch.axial_position!r}'
+    x, y = branch.cam_direction
+    return f'{eccentricity * x!r} {eccentricity * y!r} {branch.axial_position!r}'
 
 
 def _colour(link: str) -> str:

@@ -1,8 +1,8 @@
 """What is compared of each output topic: its fields, sample by sample, and their errors."""
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +24,7 @@ Array = NDArray[Any]
 _NONE = np.zeros(0, np.int64)
 
 
-@dataclass(frozen=True, slots=True)
-class Tolerances:
+class Tolerances(NamedTuple):
     """Greatest errors that pass."""
 
     angle: float = 1e-9
