@@ -11,8 +11,8 @@ try:
 except ImportError:  # PyYAML was built without libyaml
     from yaml import SafeLoader  # type: ignore[assignment]
 
-from gear_kinematics.bag.compression import DECOMPRESSORS
 from gear_kinematics.bag.errors import bag_errors
+from gear_kinematics.bag.storage import DECOMPRESSORS
 from gear_kinematics.bag.topics import Topic
 
 _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')

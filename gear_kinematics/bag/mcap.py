@@ -8,16 +8,18 @@ from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
-from gear_kinematics.bag.compression import DECOMPRESSORS
-from gear_kinematics.bag.limits import (
+from gear_kinematics.bag.storage import (
     CHUNK_EXPANSION,
+    DECOMPRESSORS,
     MAX_RECORD,
     Budget,
     Descriptions,
+    Message,
+    Storage,
+    check_encoding,
     expanded_size,
 )
-from gear_kinematics.bag.storage import Message, Storage
-from gear_kinematics.bag.topics import Topic, check_encoding
+from gear_kinematics.bag.topics import Topic
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
 _FOOTER, _SCHEMA, _CHANNEL, MESSAGE, _CHUNK, _STATISTICS, _DATA_END = 2, 3, 4, 5, 6, 11, 15

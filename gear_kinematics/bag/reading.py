@@ -9,18 +9,20 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Self
 
-from gear_kinematics.bag.compression import (
-    FILE_OPENERS,
-    MESSAGE_DECOMPRESSORS,
-    decompress_file,
-)
 from gear_kinematics.bag.contents import find_contents
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
-from gear_kinematics.bag.limits import Budget, Descriptions
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
 from gear_kinematics.bag.ros1 import Ros1
 from gear_kinematics.bag.sqlite import Sqlite
-from gear_kinematics.bag.storage import Message, Storage
+from gear_kinematics.bag.storage import (
+    FILE_OPENERS,
+    MESSAGE_DECOMPRESSORS,
+    Budget,
+    Descriptions,
+    Message,
+    Storage,
+    decompress_file,
+)
 from gear_kinematics.bag.topics import Topic, missing_topic
 
 ReportProgress = Callable[[int, int | None], None]

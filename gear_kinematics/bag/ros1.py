@@ -11,10 +11,17 @@ from rosbags import rosbag1
 from rosbags.interfaces import Connection
 from rosbags.rosbag1.reader import IndexData
 
-from gear_kinematics.bag.compression import DECOMPRESSORS, Decompressor, expanded
-from gear_kinematics.bag.limits import MAX_DEFINITIONS, Budget, Descriptions
 from gear_kinematics.bag.ros1_types import MAX_PARTS, ros1_types
-from gear_kinematics.bag.storage import Message, Storage
+from gear_kinematics.bag.storage import (
+    DECOMPRESSORS,
+    MAX_DEFINITIONS,
+    Budget,
+    Decompressor,
+    Descriptions,
+    Message,
+    Storage,
+    expanded,
+)
 from gear_kinematics.bag.topics import Topic
 
 

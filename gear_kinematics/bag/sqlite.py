@@ -10,9 +10,8 @@ from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag.limits import Budget
-from gear_kinematics.bag.storage import Message, Storage
-from gear_kinematics.bag.topics import Topic, check_encoding
+from gear_kinematics.bag.storage import Budget, Message, Storage, check_encoding
+from gear_kinematics.bag.topics import Topic
 
 _STEPS = 1000
 _REASONS = {

@@ -65,16 +65,6 @@ def missing_topic(
     return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')
 
 
-def check_encoding(topic: Topic) -> None:
-    """Make sure that the messages on a topic are CDR.
-
-    Raises:
-        ValueError: if they are not.
-    """
-    if topic.encoding != 'cdr':
-        raise ValueError(f'messages on {topic.name} are {topic.encoding!r}, not CDR')
-
-
 def jazzy_definition(message_type: str) -> tuple[str, str]:
     """Give the definition and the hash of a type of ROS 2 Jazzy."""
     store = get_typestore(Stores.ROS2_JAZZY)

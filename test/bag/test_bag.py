@@ -787,7 +787,7 @@ def test_a_checksum_that_does_not_match_is_damage(recorded, tmp_path):
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_a_message_that_grows_is_damage(recorded, tmp_path, storage, monkeypatch):
-    monkeypatch.setattr('gear_kinematics.bag.limits._SPARE_SIZE', 2**20)
+    monkeypatch.setattr('gear_kinematics.bag.storage._SPARE_SIZE', 2**20)
     packed = [(topic, received, zstd.compress(data)) for topic, received, data in recorded]
     packed[700] = (*packed[700][:2], zstd.compress(bytes(2**21)))
     path = rosbags_bag(tmp_path / 'bag', packed, storage)

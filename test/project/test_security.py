@@ -296,7 +296,7 @@ def test_a_chunk_of_ros1_that_grows_is_refused(compression, tmp_path, monkeypatc
         )
         writer.write(connection, 1, size.to_bytes(4, 'little') + bytes(size))
     assert path.stat().st_size < size / 100
-    monkeypatch.setattr('gear_kinematics.bag.limits._SPARE_SIZE', size // 2)
+    monkeypatch.setattr('gear_kinematics.bag.storage._SPARE_SIZE', size // 2)
     with pytest.raises(BagError, match='a chunk is cut off or too large'), Bag(path) as bag:
         list(bag.messages(bag.topics))
 
