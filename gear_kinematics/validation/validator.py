@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,25 +30,9 @@ from gear_kinematics.wire.cdr import (
 Array = NDArray[Any]
 
 _FRAME = 'stator'
-
-
 _TOPICS, _TOLERANCES = Topics(), Tolerances()
-
-
-@dataclass(slots=True)
-class _Batch:
-    """Messages by topic."""
-
-    rotor: TopicMessages = field(default_factory=TopicMessages)
-    output: TopicMessages = field(default_factory=TopicMessages)
-    poses: TopicMessages = field(default_factory=TopicMessages)
-
-    def topics(self) -> tuple[TopicMessages, TopicMessages, TopicMessages]:
-        """All three, in the order of `Topics`."""
-        return self.rotor, self.output, self.poses
-
-    def __len__(self) -> int:
-        return sum(len(topic.data) for topic in self.topics())
+_Batch = tuple[TopicMessages, ...]
+"""Messages in the order of `Topics`."""
 
 
 class Validator:
@@ -91,7 +75,7 @@ class Validator:
         self._window = Window()
         self._inputs = RecordedInputs(strict=strict)
         self._absences = Completeness(2, strict=strict)
-        self._begun: dict[int, int] = {}  # when the first message of each topic was received, ns
+        self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         single_turn = self._input.settings.single_turn
         self._unseen = UnseenTurns(mechanism, tolerances.angle) if single_turn else None
         prefix = parameters['frame_prefix']
@@ -118,8 +102,8 @@ class Validator:
             total: of the messages, if that is known.
         """
         for recorded in in_batches(messages, progress=progress, total=total):
-            batch = _Batch()
-            sort_by_topic(recorded, dict(zip(self._topics, batch.topics(), strict=True)))
+            batch = _empty_batch()
+            sort_by_topic(recorded, dict(zip(self._topics, batch, strict=True)))
             self._take(batch)
 
     @np.errstate(all='ignore')  # recorded numbers can be anything; what overflows fails
@@ -160,17 +144,19 @@ class Validator:
 
     @np.errstate(all='ignore')
     def _take(self, batch: _Batch) -> None:
-        if self._prefix_open and len(batch):
+        there = any(messages.data for messages in batch)
+        if self._prefix_open and there:
             self._settle_prefix(batch)
-        if self._offset_open and len(batch):
+        if self._offset_open and there:
             self._settle_offset(batch)
-        for k, topic in enumerate(batch.topics()):
-            if topic.received:
-                self._begun.setdefault(k, topic.received[0])
-        if len(self._begun) == len(batch.topics()):
+        for topic, messages in zip(self._topics, batch, strict=True):
+            if messages.received:
+                self._begun.setdefault(topic, messages.received[0])
+        if len(self._begun) == len(self._topics):
             self._absences.begin(max(self._begun.values()))
-        self._add_samples(batch.rotor)
-        for output, messages in ((self.output, batch.output), (self.poses, batch.poses)):
+        rotor, *outputs = batch
+        self._add_samples(rotor)
+        for output, messages in zip((self.output, self.poses), outputs, strict=True):
             output.take(messages.data, messages.received, self._window, self._inputs)
         self._series.update(self.output.compared, self.poses.compared)
         for check in self._checks:
@@ -207,16 +193,17 @@ class Validator:
     def _close(self) -> None:
         """Nothing comes any more: what waits is missing or extra."""
         for _ in range(2):  # what was late waits for one batch more
-            self._take(_Batch())
+            self._take(_empty_batch())
         self._drop(len(self._window))
         self._absences.close()
 
     def _settle_prefix(self, batch: _Batch) -> None:
         """Take the frame prefix from the first output, if that has one."""
         joint = self._parameters['output_joint']
+        _, output, poses = batch
         for (data, *_), layout_of, name in (
-            (batch.poses.data or [b''], pose_array_layout, _FRAME),
-            (batch.output.data or [b''], joint_state_layout, joint),
+            (poses.data or [b''], pose_array_layout, _FRAME),
+            (output.data or [b''], joint_state_layout, joint),
         ):
             with suppress(MalformedMessageError):
                 recorded = layout_of(data).texts[-1].decode(errors='replace')
@@ -280,3 +267,7 @@ class Validator:
                     f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '
                     'the node may have ended'
                 )
+
+
+def _empty_batch() -> _Batch:
+    return tuple(TopicMessages() for _ in Topics._fields)
