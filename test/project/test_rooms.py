@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from gear_kinematics.wire.topics import TOPICS
+
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / 'gear_kinematics'
 ROS = ('ament_index_python', 'builtin_interfaces', 'launch', 'launch_ros', 'rclpy', 'rosidl')
@@ -190,6 +192,18 @@ def test_libraries_stay_in_their_rooms(imports, library):
 def test_messages_and_ros_are_imported_in_one_room(imports):
     users = {path.split('/')[0] for path, names in imports.items() if any(map(is_ros, names))}
     assert users == {'ros'}
+
+
+def test_topics_are_named_in_one_module():
+    # Plotly has markers too.
+    names = {name for name in TOPICS if '_' in name}
+    found = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in PACKAGE.rglob('*.py')
+        for node in ast.walk(ast.parse(path.read_text(encoding='utf-8')))
+        if isinstance(node, ast.Constant) and str(node.value).removeprefix('/') in names
+    }
+    assert found == {'wire/topics.py'}
 
 
 def test_nothing_imports_the_entry_points(imports):
