@@ -1,4 +1,4 @@
-"""The outputs that the node gives for a recorded rotor topic, written to a new bag without ROS."""
+"""Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
@@ -25,21 +25,21 @@ class ComputeResult:
     """Numbers of messages."""
 
     received: int
-    """On the rotor topic."""
+    """Messages on the rotor topic."""
     computed: int
-    """Written on each output topic."""
+    """Messages written on each output topic."""
     rejected: Mapping[str, int]
-    """Rotor messages that call for no output, by cause."""
+    """Rotor messages without an output, by cause."""
     mostly_rejected: bool
     """Whether more rotor messages were rejected than accepted."""
     zero_stamps: int
-    """Rotor messages without a stamp: their outputs have the time of their reception."""
+    """Rotor messages without a stamp, whose outputs have their time of reception."""
     copied: int
-    """On other topics."""
+    """Messages copied from other topics."""
     left_out: tuple[str, ...]
-    """Topics that were not to be copied."""
+    """Topics that were not copied."""
     undefined: tuple[str, ...]
-    """Topics that were copied without a definition of their type, because the bag has none."""
+    """Topics that were copied without a type definition, which the bag lacks."""
 
 
 def compute(
@@ -55,35 +55,35 @@ def compute(
     compression: Literal['none', 'zstd'] = 'none',
     progress: ReportProgress | None = None,
 ) -> ComputeResult:
-    """Copy a bag and add the output topics to it, or replace them.
+    """Copy a bag and add or replace the output topics.
 
-    Each output comes right after its rotor message and has its time of reception. The same input
-    gives the same bytes. Whatever ends this early leaves no target behind.
+    Each output directly follows its rotor message and has its time of reception. The same input
+    gives the same bytes. If this fails or is interrupted, no target is left.
 
     Args:
         source: an open bag.
-        target: the folder to make.
+        target: the folder to create.
         parameters: of the node, as `parameters.load` gives them.
         rotor_topic: name of the input in the bag.
         output_topic: name of the node's output_state in the bag.
         poses_topic: name of the node's body_poses in the bag.
-        topics: others to copy; None copies all.
+        topics: other topics to copy; None copies all.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
         progress: told after each batch, with the messages of the bag if all are read.
 
     Raises:
-        BagError: if the source has no such topics, is damaged, or no rotor message of it gives
-            an output; and if the target cannot be written.
-        ValueError: if the parameters describe no mechanism, or two topics have the same name.
+        BagError: if the source lacks a topic, is damaged or has no valid rotor message, or if the
+            target cannot be written.
+        ValueError: if the parameters are invalid, or two topics have the same name.
     """
     mechanism = Mechanism.from_mapping(parameters)
     names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
-    urdf(mechanism, module=parameters['module'], **names)  # refuses the names that the node does
+    urdf(mechanism, module=parameters['module'], **names)  # to refuse the same names as the node
     state_messages = StateMessages(mechanism, **names)
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     if len({rotor_topic, output_topic, poses_topic}) < 3:  # noqa: PLR2004
-        raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: a name is there twice')
+        raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: the names must differ')
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
     outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
     chosen = {rotor_topic, *(source.topics if topics is None else topics)}
@@ -105,7 +105,7 @@ def compute(
             answered = [rotor[row] for row in samples.row.tolist()]
             computed += len(answered)
             copied += len(messages) - len(rotor)
-            # A stable sort by these puts each output right behind its rotor message.
+            # A stable sort by these puts each output directly behind its rotor message.
             places = [*range(len(messages)), *answered, *answered]
             received = [messages[place][1] for place in answered]
             for state, encoded in state_messages.encode_outputs(samples).items():
@@ -132,7 +132,7 @@ def _check_topics(
     for topic in sorted(needed):
         source.type_of(topic)
     for topic, message_type in outputs.items():
-        # A topic of another type is somebody else's, not an output of old.
+        # A topic of another type is not an earlier output, and must not be replaced.
         found = source.topics.get(topic, message_type)
         if found != message_type:
             raise BagError(f'{source.path}: {topic} is of type {found}, not {message_type}')
@@ -143,4 +143,4 @@ def _nothing_computed(source: Bag, topic: str, rotor_input: RotorInput) -> str:
         return f'{source.path}: no messages on {topic}'
     causes = ', '.join(f'{cause} {count}' for cause, count in rotor_input.rejected.items())
     joint = rotor_input.settings.rotor_joint
-    return f'{source.path}: nothing on {topic} is a state of the joint {joint!r}: {causes}'
+    return f'{source.path}: no valid state of the joint {joint!r} on {topic}: {causes}'

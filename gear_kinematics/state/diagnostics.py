@@ -1,4 +1,4 @@
-"""What the node says of its inputs once a second, without ROS."""
+"""The node's diagnostics of its inputs, without ROS."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ OK, WARN, ERROR = 0, 1, 2
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """One status: its level, its message, and values by name."""
+    """One status: level, message, and values by name."""
 
     level: int
     message: str
@@ -25,7 +25,7 @@ class Report:
 
 
 class GraphFaults(NamedTuple):
-    """What is wrong between the node and others, each in words."""
+    """Faults in the connections with other nodes, one text each."""
 
     errors: Sequence[str] = ()
     warnings: Sequence[str] = ()
@@ -33,20 +33,20 @@ class GraphFaults(NamedTuple):
 
 @dataclass(slots=True)
 class InputMonitor:
-    """Watches the rotor input; times are of a steady clock, s."""
+    """Monitors the rotor input; times are of a steady clock, s."""
 
     started: float
     published: int = 0
     drivers: int = 0
     """Publishers on rotor_state."""
     lost: int = 0
-    """Inputs that the middleware knows it did not deliver."""
+    """Inputs that the middleware reported as lost."""
     unsent: int = 0
-    """Messages that the middleware did not take."""
+    """Messages that the middleware failed to send."""
     last_input: float | None = None
-    """When the last message came, valid or not."""
+    """Time of the last message, valid or not."""
     graph: GraphFaults = field(default_factory=GraphFaults)
-    """As of the last look at the graph."""
+    """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
     _received: int = 0
     _lost: int = 0
@@ -60,8 +60,8 @@ class InputMonitor:
 
         Args:
             rotor_input: the input to report on.
-            mechanism: for the loop-closure residual at the last sample.
-            timeout: s without input, after which it is an error.
+            mechanism: gives the loop-closure residual at the last sample.
+            timeout: s without input after which it is an error.
             now: s.
         """
         elapsed = now - max(self._reported, self.started)
@@ -110,12 +110,12 @@ class InputMonitor:
 
 @dataclass(slots=True)
 class EncoderMonitor:
-    """Watches the encoder at the output and the transmission error."""
+    """Monitors the encoder at the output, and the transmission error."""
 
     lost: int = 0
-    """Inputs that the middleware knows it did not deliver."""
+    """Inputs that the middleware reported as lost."""
     last_input: float | None = None
-    """When the last message came, valid or not; s of a steady clock."""
+    """Time of the last message, valid or not; s of a steady clock."""
     _compared: int = 0
     _lost: int = 0
     _rejected: Counter[str] = field(default_factory=Counter)
@@ -123,12 +123,12 @@ class EncoderMonitor:
     def report(
         self, encoder: OutputEncoder, limit: float, timeout: float, now: float
     ) -> Report | None:
-        """Report on the time since the last report; None as long as there is no encoder.
+        """Report on the time since the last report; None until the encoder has sent a message.
 
         Args:
             encoder: the encoder to report on.
-            limit: of the transmission error, peak to peak, above which there is a warning, rad.
-            timeout: s without input, after which there is a warning.
+            limit: peak-to-peak transmission error above which there is a warning, rad.
+            timeout: s without input after which there is a warning.
             now: s.
         """
         if self.last_input is None:
@@ -148,7 +148,7 @@ class EncoderMonitor:
             warnings.append(_rejections(newly_rejected))
         if newly_lost:
             warnings.append(f'lost {newly_lost}')
-        # What is not fed any more is of another time.
+        # Without new samples, the statistics are out of date.
         window = encoder.window if compared and not silent else ErrorWindow(0)
         peak_to_peak = window.both.peak_to_peak
         if peak_to_peak is not None and peak_to_peak > limit:
@@ -185,7 +185,7 @@ def _residual(rotor_input: RotorInput, mechanism: Mechanism) -> str:
     if rotor_input.last is None:
         return 'none'
     turns, angle = rotor_input.last.position
-    # The poses repeat after the numerator's number of rotor turns, a small and exact angle.
+    # Poses repeat after as many rotor turns as the numerator; the rest is a small, exact angle.
     rotor_angle = TURN * (turns % mechanism.gear_ratio.numerator) + angle
     state = solve(mechanism, rotor_angle)
     return f'{loop_closure.residual(mechanism, rotor_angle, state).max():.3g}'

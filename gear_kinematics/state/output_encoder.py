@@ -1,4 +1,4 @@
-"""The encoder at the output shaft, beside the rotor's: the transmission error while it runs."""
+"""The encoder at the output shaft, and the transmission error during operation."""
 
 import math
 from collections import Counter
@@ -16,7 +16,7 @@ from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, S
 
 @dataclass(frozen=True, slots=True)
 class EncoderSettings(Settings):
-    """How to read the encoder and what to compare."""
+    """Settings of the encoder and of the comparison."""
 
     output_encoder_joint: str
     output_encoder_direction: int
@@ -26,11 +26,11 @@ class EncoderSettings(Settings):
     transmission_error_travel: float
 
     def output_angle(self, position: Any) -> Any:
-        """The measured output angle at a position of the encoder, rad; or arrays of them."""
+        """The measured output angle at a position of the encoder, rad; floats or arrays."""
         return self.output_encoder_direction * (position - self.output_encoder_zero)
 
     def comparison(self) -> TransmissionError:
-        """A comparison by these settings, without samples."""
+        """Create a comparison with these settings, without samples."""
         return TransmissionError(
             max_gap=round(self.transmission_error_max_gap * SECOND),
             travel=self.transmission_error_travel,
@@ -38,7 +38,7 @@ class EncoderSettings(Settings):
 
 
 class OutputEncoder:
-    """Takes output_encoder messages one by one and compares them with the ideal output angle."""
+    """Compares the angles of output_encoder messages with the ideal output angle."""
 
     def __init__(self, mechanism: Mechanism, settings: EncoderSettings) -> None:
         """Start with no samples."""
@@ -53,26 +53,26 @@ class OutputEncoder:
 
     @property
     def compared(self) -> int:
-        """Measured angles that gave an error."""
+        """Number of measured angles that were compared."""
         return self._comparison.matched
 
     @property
     def not_compared(self) -> Mapping[str, int]:
-        """Measured angles that gave none, by cause."""
+        """Numbers of measured angles that were not compared, by cause."""
         return self._comparison.unmatched
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
-        """Take the next message.
+        """Process the next message.
 
         Args:
             data: a serialised sensor_msgs/JointState.
-            now: the clock, ns, for messages that have no stamp.
+            now: the clock, ns, for messages without a stamp.
 
         Returns:
             The errors that are known now, in the order of their stamps.
 
         Raises:
-            RejectedInputError: if the message has no angle. It is counted.
+            RejectedInputError: if the message has no valid angle. It is counted.
         """
         self.received += 1
         try:
@@ -84,7 +84,7 @@ class OutputEncoder:
         return self._note(self._comparison.add_measured(stamp or now(), angle))
 
     def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:
-        """Take the rotor's next sample, whose turns are known; returns what `accept` does."""
+        """Process the rotor's next sample, with known turns; returns the same as `accept`."""
         turns, angle = self._form.output_angle(*sample.position, math)
         return self._note(self._comparison.add_ideal(sample.stamp, turns, angle))
 

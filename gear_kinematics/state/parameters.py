@@ -1,6 +1,6 @@
 """The parameters of the node and of `gearkin --config`: meaning, bounds and default values.
 
-The default values stand in config/actuator.yaml and nowhere else.
+The default values are in config/actuator.yaml alone.
 """
 
 import math
@@ -18,13 +18,13 @@ from gear_kinematics.state.share import share_directory
 from gear_kinematics.wire.nearest import nearest
 
 NODE = 'gear_state_publisher'
-"""The node's name, unless it is started under another one."""
+"""The default name of the node."""
 
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
-"""Parameters that every node has, which mean nothing here."""
+"""Parameters that every node has and that are ignored here."""
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
-"""What rcl takes as a node's name in a parameter file; `*` is one token of it, `**` any number."""
-_MAX_LENGTH = 2**18  # characters of a parameter file, which takes seconds to parse
+"""A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
+_MAX_LENGTH = 2**18  # characters of a parameter file; such a file takes seconds to parse
 
 
 class ConfigError(ValueError):
@@ -37,7 +37,7 @@ class _OtherNodesError(ConfigError):
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """What a parameter means and which values it takes. Its type is that of its default."""
+    """Meaning and bounds of a parameter, whose type is that of its default."""
 
     description: str
     minimum: float | None = None
@@ -72,53 +72,53 @@ PARAMETERS: Mapping[str, Parameter] = {
     'ring_teeth': Parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True),
     'satellite_teeth': Parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True),
     'eccentricity': Parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True),
-    'module': Parameter('Module of the teeth, m; no kinematics', 1e-6, 0.1, read_only=True),
-    'branches': Parameter('Names of the branches of transmission', read_only=True),
+    'module': Parameter('Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True),
+    'branches': Parameter('Names of the branches', read_only=True),
     'rotor_joint': Parameter(
-        "Joint to look up in rotor_state, or its index where no joint has a name; '' takes the "
-        'only one'
+        "Joint to look up in rotor_state, or its index if joints have no names; '' takes the "
+        'only joint'
     ),
-    'rotor_direction': Parameter('1, or -1 where the encoder counts backwards', -1, 1, step=2),
+    'rotor_direction': Parameter('1, or -1 if the encoder counts backwards', -1, 1, step=2),
     'rotor_zero': Parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15),
     'rotor_encoder': Parameter(
         'Whether the position wraps once a turn', choices=('multi_turn', 'single_turn')
     ),
-    'max_rotor_speed': Parameter('Fastest that the rotor turns, rad/s', 1e-3, 1e6),
+    'max_rotor_speed': Parameter('Greatest speed of the rotor, rad/s', 1e-3, 1e6),
     'max_rotor_acceleration': Parameter(
-        'Fastest that the rotor changes its speed, rad/s²; with the velocities of the messages '
-        'it bounds what a single-turn encoder can have turned in a gap',
+        'Greatest acceleration of the rotor, rad/s²; with the velocities of the messages, it '
+        'bounds the turn of a single-turn encoder in a gap',
         1e-3,
         1e9,
     ),
-    'input_timeout': Parameter('Silence after which diagnostics say ERROR, s', 1e-3, 1e6),
+    'input_timeout': Parameter('Time without input that is an ERROR, s', 1e-3, 1e6),
     'output_joint': Parameter('Name of the output shaft in output_state and the URDF'),
     'output_encoder_joint': Parameter(
-        "Joint to look up in output_encoder, or its index where no joint has a name; '' takes the "
-        'only one'
+        "Joint to look up in output_encoder, or its index if joints have no names; '' takes the "
+        'only joint'
     ),
     'output_encoder_direction': Parameter(
-        '1, or -1 where the encoder at the output counts backwards', -1, 1, step=2
+        '1, or -1 if the encoder at the output counts backwards', -1, 1, step=2
     ),
     'output_encoder_zero': Parameter(
         "Position of the output's encoder at output angle 0, rad", -1e15, 1e15
     ),
     'transmission_error_window': Parameter(
-        'The last while, of which diagnostics give the transmission error, s', 0.1, 60.0
+        'Sliding window of the transmission error in diagnostics, s', 0.1, 60.0
     ),
     'transmission_error_limit': Parameter(
-        'Transmission error, peak to peak, above which diagnostics say WARN, rad', 1e-9, 10.0
+        'Peak-to-peak transmission error above which diagnostics report WARN, rad', 1e-9, 10.0
     ),
     'transmission_error_max_gap': Parameter(
-        'Time between rotor states, beyond which nothing is interpolated, s', 1e-6, 10.0
+        'Gap between rotor states beyond which nothing is interpolated, s', 1e-6, 10.0
     ),
     'transmission_error_travel': Parameter(
-        'How far the output moves after a reversal until its direction counts, rad', 1e-9, 10.0
+        'Travel of the output after a reversal until its direction counts, rad', 1e-9, 10.0
     ),
-    'home_angle': Parameter('Output angle that ~/home declares, rad', -1e9, 1e9),
-    'frame_prefix': Parameter('Put before every frame id and joint name'),
+    'home_angle': Parameter('Output angle that ~/home sets, rad', -1e9, 1e9),
+    'frame_prefix': Parameter('Prefix of every frame id and joint name'),
     'markers_rate': Parameter('Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True),
     'executor': Parameter(
-        'rclpy executor; auto: events where this ROS has it',
+        'rclpy executor; auto: events if this ROS has it',
         choices=('auto', 'events', 'single_threaded'),
         read_only=True,
     ),
@@ -230,8 +230,8 @@ def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]
 def _given(path: Path, node: str) -> dict[str, Any]:
     """The parameters that a file has for a node, by dotted names.
 
-    Those of every block that applies to the node, in the order in which the blocks begin: of two
-    values of a parameter the later one holds, whether its block has a wildcard or not.
+    All blocks that apply to the node count, in the order in which they begin: a later value of a
+    parameter replaces an earlier one, whether its block has a wildcard or not.
     """
     blocks = _read(path)
     if not blocks:
@@ -248,14 +248,14 @@ def _given(path: Path, node: str) -> dict[str, Any]:
 
 
 def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
-    """The fully qualified name of the node of a name that a file is for."""
+    """The fully qualified name of the node of this name in a file."""
     patterns = [
         pattern for pattern, _ in blocks if pattern.rpartition('/')[2] in {node, '*', '**'}
     ]
-    # A node that is named there is meant rather than what wildcards may apply to.
+    # A node that is named takes precedence over wildcards.
     patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
     for pattern in patterns:
-        # A namespace that it applies to: any token will do for `*`.
+        # A namespace that matches the pattern, with an arbitrary token for `*`.
         namespace = pattern.rpartition('/')[0].replace('/**', '').replace('/*', '/_')
         name = f'{namespace}/{node}'
         if all(_applies(other, name) for other in patterns):
@@ -300,13 +300,13 @@ def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
 
 
 class _Pairs(tuple[tuple[Any, Any], ...]):
-    """A mapping, in which a key can be there twice: ROS takes both."""
+    """A mapping with possibly repeated keys, which ROS merges."""
 
     __slots__ = ()
 
 
 class _RosLoader(yaml.SafeLoader):
-    """Reads as ROS does: 15e-4 is a number, and aliases, which could go on and on, are refused."""
+    """Reads YAML as ROS does: 15e-4 is a number, and aliases are refused."""
 
     def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
         """Compose the next node."""

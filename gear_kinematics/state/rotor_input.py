@@ -1,4 +1,4 @@
-"""From the bytes of a rotor_state message to the rotor's position, and what bad input gets."""
+"""Reads the rotor's position from serialised rotor_state messages, and rejects bad ones."""
 
 import math
 from collections import Counter
@@ -30,12 +30,12 @@ from gear_kinematics.wire.joint_reader import (
 
 Array = NDArray[Any]
 
-CLOCK_RESET = 1_000_000_000  # ns: a stamp older by more means a new beginning
+CLOCK_RESET = 1_000_000_000  # ns: a stamp that is older by more resets the state
 
 
 @dataclass(frozen=True, slots=True)
 class InputSettings(Settings):
-    """How to read the rotor's encoder."""
+    """Settings of the rotor's encoder."""
 
     rotor_joint: str
     rotor_direction: int
@@ -46,7 +46,7 @@ class InputSettings(Settings):
 
     @property
     def encoder(self) -> tuple[str, str]:
-        """What tells one encoder from another: its joint and its kind."""
+        """Identifies the encoder: its joint and its kind."""
         return self.rotor_joint, self.rotor_encoder
 
     @property
@@ -56,19 +56,19 @@ class InputSettings(Settings):
 
 
 class RotorSample(NamedTuple):
-    """A valid rotor state: the mechanism's angle φ2, its rate and torque."""
+    """A valid rotor state: the rotor angle φ2, its rate and torque."""
 
     stamp: int
     """ns."""
     position: RotorPosition
     velocity: float | None
-    """rad/s; None where the message has none."""
+    """rad/s; None if the message has none."""
     effort: float | None
-    """N·m; None where the message has none."""
+    """N·m; None if the message has none."""
 
 
 class RotorSamples(NamedTuple):
-    """Valid rotor states as arrays (n,), and the stamps of the others."""
+    """Valid rotor states as arrays (n,), and the stamps of rejected ones."""
 
     stamp: Array
     """ns."""
@@ -76,21 +76,21 @@ class RotorSamples(NamedTuple):
     angle: Array
     """rad: the rotor angle φ2 is 2π turns + angle."""
     velocity: Array
-    """rad/s; NaN where the message has none."""
+    """rad/s; NaN if the message has none."""
     effort: Array
-    """N·m; NaN where the message has none."""
+    """N·m; NaN if the message has none."""
     row: Array
-    """Which of the messages."""
+    """Index of the message."""
     received: Array
-    """ns."""
+    """Time of reception, ns."""
     stretch: Array
-    """Goes up where the count of a single-turn encoder's turns begins anew or is in doubt."""
+    """Number that rises where the turn count of a single-turn encoder restarts or is uncertain."""
     rejected: Array
     """(m,), ns: the stamps of rejected messages that have one."""
 
 
 class RotorInput:
-    """Takes rotor_state messages one by one and keeps account of them."""
+    """Processes rotor_state messages and counts what is wrong with them."""
 
     def __init__(self, settings: InputSettings) -> None:
         """Start with no position."""
@@ -99,7 +99,7 @@ class RotorInput:
         self.duplicates = 0
         self.zero_stamps = 0
         self.unnormalised_stamps = 0
-        """Stamps with a second or more of nanoseconds; samples have the time that they mean."""
+        """Stamps with 10⁹ or more nanoseconds, which are carried over to the seconds."""
         self.resets = 0
         self.last: RotorSample | None = None
         self._settings = settings
@@ -112,7 +112,7 @@ class RotorInput:
 
     @property
     def settings(self) -> InputSettings:
-        """How the encoder is read; set it at any time. For another encoder it starts anew."""
+        """Settings of the encoder, which can change any time; another encoder resets the state."""
         return self._settings
 
     @settings.setter
@@ -127,7 +127,7 @@ class RotorInput:
 
     @property
     def referenced(self) -> bool:
-        """Whether the number of the rotor's turns is known."""
+        """Whether the rotor's turn count is known."""
         return self._turns.referenced
 
     @property
@@ -145,11 +145,11 @@ class RotorInput:
         return self._turns.unknown_gaps + self.resets
 
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
-        """Take the next message.
+        """Process the next message.
 
         Args:
             data: a serialised sensor_msgs/JointState.
-            now: the clock, ns, for messages that have no stamp.
+            now: the clock, ns, for messages without a stamp.
 
         Raises:
             RejectedInputError: if the message gives no output. It is counted.
@@ -172,16 +172,16 @@ class RotorInput:
         return self._turns.home(rotor_angle, self._settings.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
-        """Take many messages at once, with the same outcome as one by one.
+        """Process many messages at once, with the same result as one by one.
 
         Args:
             messages: serialised sensor_msgs/JointState.
-            received: the clock at each, ns, for messages that have no stamp.
+            received: times of reception, ns; they replace missing stamps.
         """
         self.received += len(messages)
         states = decode_joint_states(messages, self._settings.rotor_joint)
         usable = np.ones(len(messages), bool)
-        # In the order in which `accept` comes upon them.
+        # In the order of the checks in `accept`.
         for faulty, cause in (
             (states.malformed, MALFORMED),
             (states.stamp > LATEST, STAMP_OUT_OF_RANGE),
@@ -228,7 +228,7 @@ class RotorInput:
         if len(stamps):
             before = stamps[0] - 1 if self.last is None else self.last.stamp
             self.duplicates += int(np.count_nonzero(np.diff(stamps, prepend=before) == 0))
-            # The last goes the ordinary way as well, for what comes after it.
+            # The last one is also processed singly, to update the state for the next messages.
             self.last = None
             self._take_row(int(stamps[-1]), values[-1].tolist())
         return samples
@@ -272,7 +272,7 @@ class RotorInput:
         return self._take(stamp, position, _number_or_none(velocity), _number_or_none(effort))
 
     def _clock(self, now: Callable[[], int]) -> int:
-        """The stamp of a message that has none."""
+        """The stamp for a message without one."""
         self.zero_stamps += 1
         stamp = now()
         if stamp > LATEST:

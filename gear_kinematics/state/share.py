@@ -1,4 +1,4 @@
-"""The files that are installed beside the package: config, launch files, bags, package.xml."""
+"""Location of the files that are installed with the package: config, launch files, bags."""
 
 import re
 from pathlib import Path
@@ -7,14 +7,14 @@ _PACKAGE = 'gear_kinematics'
 
 
 def share_directory() -> Path:
-    """Find the share directory of this very installation, or the source tree it runs from.
+    """Find the share directory of this installation, or the source tree it runs from.
 
     pip, colcon and Debian put the Python package at <prefix>/lib/python3.x/... and the files at
-    <prefix>/share; looking upwards from here finds the ones that belong together, also where no
-    ament index is set up or where it names another installation.
+    <prefix>/share; searching upwards from here finds those of the same installation, also if
+    there is no ament index or it names another installation.
 
     Raises:
-        FileNotFoundError: if the package was taken out of its installation.
+        FileNotFoundError: if the package was moved out of its installation.
     """
     for ancestor in Path(__file__).resolve().parents:
         for candidate in (ancestor / 'share' / _PACKAGE, ancestor):

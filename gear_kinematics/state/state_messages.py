@@ -1,4 +1,4 @@
-"""The messages that the node publishes for its samples, as bytes ready to be sent."""
+"""The messages that the node publishes for its samples, serialised."""
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,10 +19,10 @@ from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE, STATE_TOPICS
 
 
 class StateMessages:
-    """Computes the state at a sample and encodes it."""
+    """Computes the state at a sample and encodes its messages."""
 
     def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
-        """Lay the messages out."""
+        """Prepare the templates of the messages."""
         self._form = closed_form(mechanism)
         self._ratio = float(mechanism.gear_ratio)
         self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
@@ -43,7 +43,7 @@ class StateMessages:
     def encode(
         self, sample: RotorSample, topics: Iterable[str] = STATE_TOPICS
     ) -> Iterator[tuple[str, bytes]]:
-        """Yield the messages for a sample by topic: all, or those of some of STATE_TOPICS."""
+        """Yield topic and message for a sample, for all or some of STATE_TOPICS."""
         turns, angle = sample.position
         output_turns, output_rest = self._form.output_angle(turns, angle, math)
         output_angle = TURN * output_turns + output_rest
@@ -58,9 +58,9 @@ class StateMessages:
             else:
                 yield topic, self._joint_state(sample, output_angle, branches)
 
-    @np.errstate(over='ignore')  # an effort can exceed all floats, as that of a single sample
+    @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
-        """Give the messages of OUTPUT_STATE and BODY_POSES for many samples, as `encode` does."""
+        """Encode OUTPUT_STATE and BODY_POSES for many samples, as `encode` does."""
         output_turns, output_rest = self._form.output_angle(samples.turns, samples.angle, np)
         output_angle = TURN * output_turns + output_rest
         output_states = len(samples.stamp) * [b'']
@@ -80,7 +80,7 @@ class StateMessages:
         return {OUTPUT_STATE: output_states, BODY_POSES: poses}
 
     def transmission_error(self, sample: ErrorSample) -> bytes:
-        """Give the message for a transmission error: the position of the output's joint."""
+        """Encode a transmission error, as the position of the output joint."""
         return self._output_states[False, False].encode(sample.stamp, (sample.error,))
 
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
@@ -92,7 +92,7 @@ class StateMessages:
     def _output_numbers(
         self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any
     ) -> list[Any]:
-        """The numbers of an output_state: floats or arrays of them."""
+        """The numbers of an output_state: floats or arrays."""
         numbers = [output_angle]
         if present[0]:
             numbers.append(self._form.output_rate(velocity))
@@ -109,8 +109,8 @@ class StateMessages:
     def _pose_numbers(
         self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
     ) -> list[Any]:
-        """The numbers of body_poses: floats or arrays of them."""
-        # Every body but the rotor has the angle φ5; within the turn its quaternion has w >= 0.
+        """The numbers of body_poses: floats or arrays."""
+        # These bodies all have the angle φ5; within the turn, its quaternion has w >= 0.
         sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
         centres = [branch.satellite for branch in branches]
         centres += [branch.oldham for branch in branches]
@@ -122,7 +122,7 @@ class StateMessages:
     def _joint_state(
         self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
     ) -> bytes:
-        """In the order of `joint_names`."""
+        """Encode the joint states, in the order of `joint_names`."""
         rotor_angle = TURN * sample.position.turns + sample.position.angle
         on_cam = output_angle - rotor_angle
         positions = [rotor_angle, *(on_cam for _ in branches)]

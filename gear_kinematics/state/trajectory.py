@@ -1,4 +1,4 @@
-"""The rotor's motion over time, as recorded or at a constant speed."""
+"""The rotor's motion over time: recorded, or at a constant speed."""
 
 import math
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ from gear_kinematics.wire.cdr import SECOND
 Array = NDArray[np.float64]
 
 MOST_TURNS = 1000
-"""Of the rotor at a constant speed; more are a blur."""
+"""Of the rotor at a constant speed; figures cannot show more."""
 _PER_TURN = 360  # samples
 _ROUNDING = 1e-9  # by which intervals may miss the end
 
@@ -27,7 +27,7 @@ class Trajectory(NamedTuple):
     """The rotor angle φ2 over time; arrays (n,)."""
 
     time: Array
-    """s from the start, increasing."""
+    """s from the start, ascending."""
     turns: Array
     """Whole turns of the rotor."""
     angle: Array
@@ -39,18 +39,18 @@ class Trajectory(NamedTuple):
     def at_constant_speed(
         cls, speed: float, *, turns: int = 1, duration: float | None = None
     ) -> Self:
-        """Turn from φ2 = 0, with samples close enough for smooth curves.
+        """Create a motion from φ2 = 0 on, with samples close enough for smooth curves.
 
         Args:
             speed: rad/s.
-            turns: of the rotor, for as long as they take.
-            duration: s, instead.
+            turns: of the rotor.
+            duration: s, instead of a number of turns.
 
         Raises:
             ValueError: if the rotor stands still, or turns more often than `MOST_TURNS`.
         """
         if not (speed and math.isfinite(speed)):
-            raise ValueError(f'a speed is finite and not 0, not {speed:g} rad/s')
+            raise ValueError(f'the speed must be finite and not 0, but is {speed:g} rad/s')
         if duration is None:
             duration = turns * TURN / abs(speed)
         length = abs(speed) * duration / TURN
@@ -66,28 +66,28 @@ class Trajectory(NamedTuple):
 
     @property
     def longest_step(self) -> float:
-        """The most that the rotor turns from sample to sample, turns."""
+        """The greatest turn of the rotor between samples, turns."""
         position = self.turns + self.angle / TURN
         return float(np.max(np.abs(np.diff(position)), initial=0.0))
 
     def between(self, start: float, end: float) -> Self:
-        """The samples in a part of the time, s.
+        """Select the samples between two times, s.
 
         Raises:
-            ValueError: if there is none.
+            ValueError: if there are none.
         """
         inside = (self.time >= start) & (self.time <= end)
         if not inside.any():
             there = f'they are from 0 s to {self.time[-1]:g} s'
-            raise ValueError(f'no states of the rotor from {start:g} s to {end:g} s; {there}')
+            raise ValueError(f'no rotor states from {start:g} s to {end:g} s; {there}')
         return type(self)(*(column[inside] for column in self))
 
     def every(self, interval: float, *, closed: bool = False) -> Self:
         """Interpolate at even intervals.
 
         Args:
-            interval: s, or a little more or less if it has to go into the whole time.
-            closed: leave out the end, because it is the beginning again.
+            interval: s; adjusted to divide the duration if `closed`.
+            closed: whether the motion is periodic, so that its end is left out.
         """
         duration = self.time[-1] - self.time[0]
         if closed:
@@ -107,7 +107,7 @@ def read_trajectory(
     rotor_topic: str | None = None,
     progress: ReportProgress | None = None,
 ) -> Trajectory:
-    """Read the rotor's topic of a bag, up to where its stamps begin anew, if they do.
+    """Read the rotor's motion from a bag, up to the first stamp that jumps back.
 
     Args:
         path: of the bag.
@@ -116,10 +116,10 @@ def read_trajectory(
         progress: told after each batch, with the messages on all topics of the bag.
 
     Returns:
-        Where messages have no velocity, it is that of the differences of positions.
+        The motion; missing velocities are derived from the positions.
 
     Raises:
-        BagError: if the bag cannot be read, or has no states of the rotor at two times.
+        BagError: if the bag cannot be read, or has fewer than two rotor states of different times.
     """
     rotor = TopicMessages()
     with Bag(path) as bag:

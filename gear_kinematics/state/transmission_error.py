@@ -1,7 +1,7 @@
-"""The transmission error, sample by sample: measured less ideal output angle, for node and files.
+"""The transmission error, sample by sample: measured minus ideal output angle.
 
-Encoder and rotor are sampled each in its own time. A measured angle is compared with the ideal
-one that is interpolated to its stamp, once the ideal samples on both sides of it are there.
+Encoder and rotor are sampled at different times. A measured angle is compared with the ideal one
+interpolated to its stamp, once ideal samples on both sides of it are known.
 """
 
 import math
@@ -12,9 +12,9 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_tu
 from gear_kinematics.state.rotor_input import CLOCK_RESET
 
 _DEPTH = 8192
-"""Samples of either kind that are kept to wait for the other."""
+"""Samples of each kind that are kept."""
 _UNIT = 2.0**52
-"""Parts of a radian in which a sum counts: integers that are added and taken off leave nothing."""
+"""Units of a sum per radian: integers can be added and subtracted without rounding."""
 
 
 class ErrorSample(NamedTuple):
@@ -23,36 +23,36 @@ class ErrorSample(NamedTuple):
     stamp: int
     """ns."""
     error: float
-    """Measured less ideal, rad."""
+    """Measured minus ideal, rad."""
     turns: int
     ideal: float
     """rad: the ideal output angle is 2π `turns` + `ideal`."""
     direction: int
-    """Of the output: 1, -1, or 0 where it has not moved far enough since it last turned back."""
+    """Of the output: 1, -1, or 0 until it has moved far enough after a reversal."""
 
 
 class Direction:
-    """Which way something moves, once it has travelled far enough that way.
+    """Direction of a motion, once it has travelled far enough after a reversal.
 
-    A sensor's noise or a standstill thus changes no direction, and the way back across the lost
-    motion belongs to neither.
+    Noise or a standstill thus does not change the direction, and travel across the lost motion
+    belongs to neither direction.
     """
 
     def __init__(self, travel: float) -> None:
         """Start without a direction.
 
         Args:
-            travel: rad, after a reversal, until the new direction counts.
+            travel: rad after a reversal until the new direction counts.
         """
         self._travel = travel
         self.reset()
 
     def reset(self) -> None:
-        """Forget which way it moved."""
+        """Forget the direction."""
         self._risen = self._fallen = 0.0
 
     def move(self, step: float) -> int:
-        """Take a step, rad; returns 1, -1, or 0 where the direction is not known."""
+        """Add a step, rad; returns 1, -1, or 0 if the direction is unknown."""
         self._risen = min(max(self._risen + step, 0.0), self._travel)
         self._fallen = min(max(self._fallen - step, 0.0), self._travel)
         return int(self._risen >= self._travel) - int(self._fallen >= self._travel)
@@ -68,22 +68,22 @@ class _Ideal(NamedTuple):
 
 
 class TransmissionError:
-    """Compares measured with ideal output angles, as both come in.
+    """Compares measured with ideal output angles.
 
-    Angles are compared within the turn, so that the encoder may be of a single turn. Errors are
-    continuous: each is the nearest to the first one, whatever the offset of the encoder's zero.
+    Angles are compared within the turn, so the encoder may be a single-turn one. Each error is
+    within half a turn of the first one, whatever the offset of the encoder's zero.
     """
 
     def __init__(self, *, max_gap: int, travel: float) -> None:
         """Start with no samples.
 
         Args:
-            max_gap: ns between ideal samples, beyond which nothing is interpolated.
-            travel: rad of the output after a reversal, until the new direction counts.
+            max_gap: ns between ideal samples beyond which nothing is interpolated.
+            travel: rad of the output after a reversal until the new direction counts.
         """
         self.matched = 0
         self.unmatched: Counter[str] = Counter()
-        """Measured angles that gave no error, by cause."""
+        """Numbers of measured angles without an error, by cause."""
         self._max_gap = max_gap
         self._direction = Direction(travel)
         self._ideal: deque[_Ideal] = deque(maxlen=_DEPTH)
@@ -99,10 +99,10 @@ class TransmissionError:
         self._first_error: float | None = None
 
     def add_ideal(self, stamp: int, turns: int, angle: float) -> list[ErrorSample]:
-        """Take the ideal output angle 2π `turns` + `angle` at a stamp, ns.
+        """Add the ideal output angle 2π `turns` + `angle` at a stamp, ns.
 
-        One with the stamp of the last, or an older one, is passed over; one that is older by more
-        than a second is a new beginning.
+        A stamp that is not newer than the last is ignored; one that is older by more than a second
+        resets the comparison.
 
         Returns:
             The errors that are known now, in the order of their stamps.
@@ -122,7 +122,7 @@ class TransmissionError:
         return self._match()
 
     def add_measured(self, stamp: int, angle: float) -> list[ErrorSample]:
-        """Take a measured output angle, rad, at a stamp, ns.
+        """Add a measured output angle, rad, at a stamp, ns.
 
         Returns:
             The errors that are known now, in the order of their stamps.
@@ -143,7 +143,7 @@ class TransmissionError:
         return self._match()
 
     def _match(self) -> list[ErrorSample]:
-        """Go through both queues as far as the ideal samples reach."""
+        """Compare the measured angles up to the last ideal sample."""
         samples = []
         ideal, measured = self._ideal, self._measured
         while measured and len(ideal) > 1:
@@ -175,13 +175,13 @@ class TransmissionError:
 
 
 class SlidingStatistics:
-    """Mean and peak to peak of the last while; a value more takes constant time, amortised."""
+    """Mean and peak-to-peak value of a sliding window; adding takes amortised constant time."""
 
     def __init__(self) -> None:
         """Start empty."""
         self._values: deque[tuple[int, int]] = deque()
         self._sum = 0
-        # Values that are the greatest, or the least, of all that came since.
+        # Values that are greater, or less, than all later ones.
         self._greatest: deque[tuple[int, float]] = deque()
         self._least: deque[tuple[int, float]] = deque()
 
@@ -189,7 +189,7 @@ class SlidingStatistics:
         return len(self._values)
 
     def add(self, stamp: int, value: float) -> None:
-        """Take a value, rad, at a stamp, ns, not before the last."""
+        """Add a value, rad, at a stamp, ns, not before the last."""
         counted = round(value * _UNIT)
         self._values.append((stamp, counted))
         self._sum += counted
@@ -201,7 +201,7 @@ class SlidingStatistics:
         self._least.append((stamp, value))
 
     def drop(self, before: int) -> None:
-        """Forget what is older than a stamp, ns."""
+        """Drop values older than a stamp, ns."""
         while self._values and self._values[0][0] < before:
             self._sum -= self._values.popleft()[1]
         for extremes in (self._greatest, self._least):
@@ -210,17 +210,17 @@ class SlidingStatistics:
 
     @property
     def mean(self) -> float | None:
-        """rad; None of nothing."""
+        """rad; None without values."""
         return self._sum / len(self._values) / _UNIT if self._values else None
 
     @property
     def peak_to_peak(self) -> float | None:
-        """rad; None of nothing."""
+        """rad; None without values."""
         return self._greatest[0][1] - self._least[0][1] if self._values else None
 
 
 class ErrorWindow:
-    """What the transmission error was like in the last while, and how it differs by direction."""
+    """Statistics of the transmission error over a sliding window, by direction."""
 
     def __init__(self, length: int) -> None:
         """Start empty.
@@ -234,14 +234,14 @@ class ErrorWindow:
     def reset(self) -> None:
         """Forget all samples."""
         self.both = SlidingStatistics()
-        """Of all samples."""
+        """Statistics of all samples."""
         self.forward = SlidingStatistics()
-        """Of those on the way forward."""
+        """Statistics of forward motion."""
         self.backward = SlidingStatistics()
-        """Of those on the way backward."""
+        """Statistics of backward motion."""
 
     def add(self, sample: ErrorSample) -> None:
-        """Take an error that is not older than the last."""
+        """Add an error that is not older than the last."""
         self.both.add(sample.stamp, sample.error)
         if sample.direction:
             statistics = self.forward if sample.direction > 0 else self.backward
@@ -251,9 +251,9 @@ class ErrorWindow:
 
     @property
     def lost_motion(self) -> float | None:
-        """How far the output stays behind on reversals: mean error backward less forward, rad.
+        """Lost motion on reversals: mean error of backward minus forward motion, rad.
 
-        None unless it has moved both ways.
+        None unless the window has both.
         """
         backward, forward = self.backward.mean, self.forward.mean
         return None if backward is None or forward is None else backward - forward

@@ -1,4 +1,4 @@
-"""Computed bags: the bytes of the node, the rest of the bag untouched, all of it or nothing."""
+"""Computed bags: same bytes as the node's, other topics unchanged, complete or nothing."""
 
 import hashlib
 from collections import Counter
@@ -76,7 +76,7 @@ def digests(folder: Path) -> dict[str, str]:
 
 @pytest.fixture
 def rotor_only(tmp_path) -> Path:
-    """Make a bag as a driver alone leaves it, with a topic that nobody here knows."""
+    """Make a bag as recorded from a driver alone, with a topic of an unknown type."""
     path = tmp_path / 'rotor_only'
     joint_state = TYPES['/rotor_state']
     with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
@@ -149,7 +149,7 @@ def test_other_topics_survive_with_their_unknown_types(rotor_only, tmp_path):
             for reader in (one, two)
         ]
     assert descriptions[0] == descriptions[1]
-    # By another implementation.
+    # Read by another implementation.
     (path,) = (tmp_path / 'computed').glob('*.mcap')
     with path.open('rb') as stream:
         found = list(make_reader(stream).iter_messages(topics=['/grip']))
@@ -161,7 +161,7 @@ def test_other_topics_survive_with_their_unknown_types(rotor_only, tmp_path):
         assert (message.log_time, message.data) == (received, data)
 
 
-def test_topics_of_types_that_nobody_defines_are_copied_and_named(tmp_path):
+def test_topics_of_undefined_types_are_copied_and_named(tmp_path):
     """As in recordings of Humble and older, which have no definitions."""
     types = [*TYPES.items(), ('/grip', 'acme_msgs/msg/Grip')]
     stamps = range(SECOND, SECOND + 3)
@@ -234,7 +234,7 @@ def test_the_same_input_gives_the_same_bytes_in_every_storage(storage, compressi
         assert of_topic(computed, topic) == of_topic(read(BAGS / 'driver_faults'), topic)
 
 
-def test_a_computed_bag_is_computed_to_itself(tmp_path):
+def test_computing_a_computed_bag_changes_nothing(tmp_path):
     run(BAGS / 'driver_faults', tmp_path / 'one' / 'computed')
     run(tmp_path / 'one' / 'computed', tmp_path / 'two' / 'computed')
     assert digests(tmp_path / 'one') == digests(tmp_path / 'two')
@@ -251,7 +251,7 @@ def test_another_implementation_reads_the_result(tmp_path):
         assert [data for name, data in found if name == topic] == of_topic(recorded, topic)
 
 
-def test_progress_is_told_to_the_end(tmp_path):
+def test_progress_is_reported_to_the_end(tmp_path):
     seen = []
     run(
         BAGS / 'servo_point_to_point',
@@ -282,7 +282,7 @@ class Breaking:
 
 @pytest.mark.parametrize('error', [KeyboardInterrupt(), DamagedBagError('torn at 2500')])
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
-def test_what_does_not_reach_the_end_leaves_nothing(error, storage, tmp_path):
+def test_an_interruption_leaves_nothing(error, storage, tmp_path):
     with Bag(BAGS / 'servo_point_to_point') as bag, pytest.raises(type(error)):
         compute(Breaking(bag, error), tmp_path / 'computed', config(), storage=storage)
     assert list(tmp_path.iterdir()) == []

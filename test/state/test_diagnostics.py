@@ -1,4 +1,4 @@
-"""The report on the rotor input: levels, messages and values, at times of the test's own."""
+"""The report on the rotor input: levels, messages and values, with a simulated clock."""
 
 import math
 import struct
@@ -27,7 +27,7 @@ START = 1000.0
 
 
 class Bench:
-    """An input, its monitor and a mechanism, with a clock that the test turns."""
+    """An input, its monitor and a mechanism, with a clock that the test sets."""
 
     def __init__(self, mechanism, settings=SETTINGS) -> None:
         self.mechanism = mechanism
@@ -75,7 +75,7 @@ def test_valid_input_is_ok(bench):
     assert (report.level, report.message) == (OK, 'ok')
 
 
-def test_rejects_since_the_last_report_are_a_warning_and_then_over(bench):
+def test_rejects_are_a_warning_in_the_next_report_alone(bench):
     bench.feed(START + 0.5, good(), BAD, NO_JOINT, BAD)
     report = bench.report(START + 1.0)
     assert report.level == WARN
@@ -92,7 +92,7 @@ def test_rejects_since_the_last_report_are_a_warning_and_then_over(bench):
     assert 'joint missing' not in report.message
 
 
-def test_what_the_middleware_lost_since_the_last_report_is_a_warning_and_then_over(bench):
+def test_losses_are_a_warning_in_the_next_report_alone(bench):
     bench.feed(START + 0.5, good())
     bench.monitor.lost += 3
     bench.monitor.unsent += 2
@@ -164,7 +164,7 @@ def test_unreferenced_encoder_is_an_error_until_home(actuator):
         (GraphFaults(errors=['deaf'], warnings=['mute']), ERROR, 'deaf; mute'),
     ],
 )
-def test_fault_in_the_graph_is_told_as_long_as_it_lasts(bench, faults, level, message):
+def test_fault_in_the_graph_is_reported_as_long_as_it_lasts(bench, faults, level, message):
     bench.feed(START + 0.5, good())
     bench.monitor.graph = faults
     for _ in range(2):
@@ -175,7 +175,7 @@ def test_fault_in_the_graph_is_told_as_long_as_it_lasts(bench, faults, level, me
     assert (report.level, report.message) == (OK, 'ok')
 
 
-def test_error_outranks_warning_and_both_are_told(bench):
+def test_error_outranks_warning_and_both_are_reported(bench):
     bench.feed(START + 0.5, BAD)
     bench.monitor.graph = GraphFaults(warnings=['listener out of reach'])
     report = bench.report(START + 3.0)
@@ -228,7 +228,7 @@ def test_rate_is_that_since_the_last_report(bench):
     assert bench.report(START + 4.0).values['rate (Hz)'] == '0.0'
 
 
-def test_two_reports_at_the_same_moment_divide_by_nothing(bench):
+def test_two_reports_at_the_same_time_do_not_divide_by_zero(bench):
     bench.feed(START, good())
     bench.report(START + 1.0)
     assert bench.report(START + 1.0).values['rate (Hz)'] == '0.0'

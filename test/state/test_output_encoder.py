@@ -1,4 +1,4 @@
-"""The encoder at the output beside the rotor's: errors that are put in have to come out."""
+"""The encoder at the output: simulated transmission errors are recovered."""
 
 import math
 from dataclasses import replace
@@ -46,11 +46,11 @@ def bench(actuator) -> Bench:
 
 
 @pytest.mark.parametrize(('direction', 'zero'), [(1, 0.0), (-1, 0.0), (1, 2.5), (-1, -40.0)])
-def test_error_is_the_measured_angle_less_a_nineteenth_of_the_rotors(actuator, direction, zero):
+def test_error_is_the_measured_minus_the_ideal_angle(actuator, direction, zero):
     settings = replace(SETTINGS, output_encoder_direction=direction, output_encoder_zero=zero)
     bench = Bench(actuator, settings)
     found, put_in = [], []
-    bench.measure(START - MS, 0.0)  # there is an encoder, but no rotor yet
+    bench.measure(START - MS, 0.0)  # an encoder, but no rotor yet
     for k in range(2000):
         rotor = 0.3 * k
         found += bench.turn(START + k * MS, rotor)
@@ -59,7 +59,7 @@ def test_error_is_the_measured_angle_less_a_nineteenth_of_the_rotors(actuator, d
         angle = -(rotor + 0.1) / 19.0 + error
         found += bench.measure(START + k * MS + MS // 3, zero + direction * angle)
         put_in.append(error)
-    # What the third of a millisecond lacks is 0.3 rad / 19 / 3e6 of a nanosecond's third.
+    # A third of a millisecond is rounded by a third of a nanosecond: 0.3 rad / 19 / 3e6.
     assert [sample.stamp for sample in found] == [START + k * MS + MS // 3 for k in range(1999)]
     np.testing.assert_allclose([s.error for s in found], put_in[:-1], rtol=0, atol=1e-8)
     assert bench.encoder.compared == 1999
@@ -101,7 +101,7 @@ def test_message_without_a_stamp_has_that_of_the_clock(bench):
     assert (sample.stamp, sample.error) == (START + MS, 0.5)
 
 
-def test_window_starts_anew_where_the_clock_is_set_back(bench):
+def test_window_is_reset_when_the_clock_is_set_back(bench):
     for start in (START, START - 50 * SECOND):
         for k in range(5):
             bench.measure(start + k * MS, 0.125 if start == START else 0.375)
@@ -114,7 +114,7 @@ def test_window_starts_anew_where_the_clock_is_set_back(bench):
 
 
 def swing(bench, amplitude, *, samples=400):
-    """Go there and back, behind by half the play each way."""
+    """Move forward and backward, lagging by half the play in each direction."""
     for k in range(samples):
         angle = 0.2 * math.sin(k * math.tau / samples)
         behind = -amplitude if math.cos(k * math.tau / samples) > 0.0 else amplitude
@@ -122,7 +122,7 @@ def swing(bench, amplitude, *, samples=400):
         bench.turn(START + k * MS, -19.0 * angle)
 
 
-def test_report_gives_the_figures_of_the_window(bench):
+def test_report_has_the_figures_of_the_window(bench):
     swing(bench, 0.001)
     report = bench.report()
     assert (report.level, report.message) == (OK, 'ok')
@@ -164,7 +164,7 @@ def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
     assert report.values['not compared: no ideal angle before'] == '3'
 
 
-def test_rejects_and_losses_since_the_last_report_are_a_warning_and_then_over(bench):
+def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
     swing(bench, 0.001)
     with pytest.raises(RejectedInputError):
         bench.measure(START + 500 * MS, math.nan)

@@ -62,7 +62,7 @@ def write(folder: Path, text: str) -> Path:
 
 
 def config(folder: Path, **values) -> Path:
-    """Write a parameter file as people do."""
+    """Write a typical parameter file."""
     return write(folder, yaml.safe_dump({'/**': {'ros__parameters': values}}, allow_unicode=True))
 
 
@@ -93,7 +93,7 @@ def test_every_parameter_is_described():
     assert all(parameter.description for parameter in tables.values())
 
 
-def test_what_is_settled_at_the_start_is_read_only():
+def test_parameters_that_are_fixed_at_the_start_are_read_only():
     assert {name for name, parameter in PARAMETERS.items() if parameter.read_only} == READ_ONLY
     assert all(parameter.read_only for parameter in BRANCH_PARAMETERS.values())
     assert set(PARAMETERS) >= LIVE
@@ -184,7 +184,7 @@ def test_value_on_the_bound_is_taken(tmp_path, name, value):
     assert load(config(tmp_path, **{name: value}))[name] == value
 
 
-def test_every_fault_is_told_at_once(tmp_path):
+def test_every_fault_is_listed_at_once(tmp_path):
     text = fault(tmp_path, ring_teeth=1, rotor_encoder='x', module='thick')
     assert all(name in text for name in ('ring_teeth', 'rotor_encoder', 'module'))
 
@@ -209,7 +209,7 @@ def test_parameter_of_a_branch_that_is_left_out_is_refused(tmp_path):
     assert text.endswith(': unknown parameter `b.cam_phase`; `b` is not in `branches`')
 
 
-def test_every_unknown_parameter_is_told_at_once(tmp_path):
+def test_every_unknown_parameter_is_listed_at_once(tmp_path):
     text = fault(tmp_path, ring_tooth=80, rotor_jiont='m1')
     assert all(f'unknown parameter `{name}`' in text for name in ('ring_tooth', 'rotor_jiont'))
 
@@ -218,7 +218,7 @@ def test_shipped_file_loads_as_the_defaults():
     assert load(parameters.default_config()) == CONTRACT | OUR_OWN
 
 
-def test_what_a_file_leaves_out_has_its_default(tmp_path):
+def test_parameters_that_a_file_lacks_have_their_defaults(tmp_path):
     loaded = load(config(tmp_path, ring_teeth=90))
     assert loaded == CONTRACT | OUR_OWN | {'ring_teeth': 90}
 
@@ -253,7 +253,7 @@ def test_namespace_may_be_a_key_of_its_own(tmp_path):
     assert load(write(tmp_path, text))['ring_teeth'] == 90
 
 
-def test_sections_of_other_nodes_are_passed_over(tmp_path):
+def test_sections_of_other_nodes_are_ignored(tmp_path):
     # One file for all nodes of a robot is how ROS users keep their parameters.
     text = (
         'gear_state_publisher:\n  ros__parameters:\n    ring_teeth: 90\n'
@@ -361,8 +361,8 @@ def test_none_of_several_files_is_empty(tmp_path):
     ],
     ids=['use_sim_time', 'type description', 'nested', 'dotted'],
 )
-def test_parameters_of_every_ros_node_are_no_typos(tmp_path, values):
-    # gearkin takes the very file that the node takes.
+def test_parameters_of_every_ros_node_are_known(tmp_path, values):
+    # gearkin reads the same file as the node.
     assert load(config(tmp_path, ring_teeth=90, **values))['ring_teeth'] == 90
 
 

@@ -1,4 +1,4 @@
-"""What the rotor input makes of messages, row by row of the contract's table of bad input."""
+"""The rotor input, by the rows of the contract's table of bad input."""
 
 import math
 import struct
@@ -45,7 +45,7 @@ def accept(rotor_input, stamp, position, velocity=(), effort=()):
 
 
 def angle_error(sample, expected) -> float:
-    """Give the difference from an exact rotor angle, turns and all, rad."""
+    """Difference from an exact rotor angle, including its turns, rad."""
     turns, angle = sample.position
     assert isinstance(turns, int)
     return oracle.angle_error(angle, expected - 2 * oracle.mp.pi * turns)
@@ -82,7 +82,7 @@ def test_message_without_position_is_rejected_and_counted(rotor_input, cause, fi
         assert rotor_input.rejected == {cause: count}
     assert rotor_input.received == 3
     assert rotor_input.last is first
-    # Its stamp counts for nothing: the next message is not out of order.
+    # Its stamp is ignored: the next message is not out of order.
     assert accept(rotor_input, START + 1, 2.0).stamp == START + 1
 
 
@@ -98,7 +98,7 @@ def test_bytes_that_are_no_joint_state_are_rejected_and_counted(rotor_input, dat
     assert (rotor_input.received, rotor_input.last) == (1, None)
 
 
-def test_causes_are_counted_apart(rotor_input):
+def test_causes_are_counted_separately(rotor_input):
     messages = (
         rotor_bytes(1, names=['x'], position=[0.0]),
         rotor_bytes(1, position=[math.nan]),
@@ -159,7 +159,7 @@ def test_joint_without_a_name_is_looked_up_by_its_index(names):
     ],
 )
 @pytest.mark.parametrize('field', ['velocity', 'effort'])
-def test_velocity_or_effort_that_lacks_is_none(rotor_input, field, given_values, taken):
+def test_missing_velocity_or_effort_is_none(rotor_input, field, given_values, taken):
     data = rotor_bytes(START, ['other', 'rotor'], [9.0, 1.5], **{field: given_values})
     sample = rotor_input.accept(data, no_clock)
     assert sample.position == (0, 1.5)
@@ -235,15 +235,15 @@ def test_stamp_older_by_up_to_a_second_is_dropped_and_counted(rotor_input, age):
 
 
 @pytest.mark.parametrize('age', [SECOND + 1, 2 * SECOND, START - 1, START + 5])
-def test_stamp_older_by_more_than_a_second_starts_anew(rotor_input, age):
+def test_stamp_older_by_more_than_a_second_resets_the_state(rotor_input, age):
     accept(rotor_input, START, 1.0)
     assert accept(rotor_input, START - age, 2.0).stamp == START - age
     assert (rotor_input.resets, sum(rotor_input.rejected.values())) == (1, 0)
     assert accept(rotor_input, START - age + 1, 2.0).stamp == START - age + 1
 
 
-def test_age_counts_from_the_last_that_was_taken(rotor_input):
-    # Dropped ones must not wander backwards until they are a reset, or forwards from it.
+def test_age_counts_from_the_last_accepted_message(rotor_input):
+    # Dropped stamps must not shift the reference until they amount to a reset.
     accept(rotor_input, START, 1.0)
     for age in (SECOND, SECOND // 2, SECOND):
         with pytest.raises(RejectedInputError):
@@ -297,7 +297,7 @@ def test_home_before_any_input_is_refused(rotor_input):
 @pytest.mark.parametrize('settings', [SETTINGS, SINGLE_TURN], ids=['multi', 'single'])
 @pytest.mark.parametrize('direction', [1, -1])
 @pytest.mark.parametrize('declared', [0.0, 3.7, -250.0])
-def test_home_gives_the_zero_that_makes_the_angle_as_declared(settings, direction, declared):
+def test_home_gives_the_zero_for_the_declared_angle(settings, direction, declared):
     settings = replace(settings, rotor_direction=direction, rotor_zero=0.5)
     rotor_input = RotorInput(settings)
     accept(rotor_input, START, 2.25)
@@ -385,7 +385,7 @@ def test_single_turn_encoder_goes_on_from_the_nearest_turn(before, after, turns)
     assert sample.position == (turns, after)
 
 
-def test_velocity_narrows_what_a_single_turn_encoder_can_have_turned():
+def test_velocity_narrows_the_possible_turn_of_a_single_turn_encoder():
     # 20 ms at a steady 400 rad/s are 8 rad: more than a turn, and known from the velocities.
     rotor_input = RotorInput(SINGLE_TURN)
     accept(rotor_input, START, 0.0, [400.0])
@@ -415,7 +415,7 @@ def test_rejected_messages_do_not_turn_the_rotor():
     assert rotor_input.referenced
 
 
-def test_change_of_encoder_starts_anew(rotor_input):
+def test_change_of_encoder_resets_the_state(rotor_input):
     accept(rotor_input, START, 20.0)
     rotor_input.settings = SINGLE_TURN
     assert not rotor_input.referenced
@@ -458,7 +458,7 @@ numbers = st.lists(st.floats(width=64), max_size=2)
 @example(SINGLE_TURN, [(0, [1.0], [0.0], []), (SECOND, [1.0], [1e200], [])])
 @example(SETTINGS, [(0, [1.7e308], [1.7e308], [-1.7e308])])
 @example(SINGLE_TURN, [(0, [1.7e308], [], []), (SECOND, [-1.7e308], [], [])])
-def test_any_numbers_are_taken_or_rejected(settings, messages):
+def test_any_numbers_are_accepted_or_rejected(settings, messages):
     rotor_input = RotorInput(settings)
     stamp, taken = START, 0
     for step, position, velocity, effort in messages:

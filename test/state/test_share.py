@@ -1,4 +1,4 @@
-"""Where the installed files are found, in every layout in which the package gets installed."""
+"""Installed files are found in every layout in which the package gets installed."""
 
 import importlib.util
 import shutil
@@ -14,7 +14,7 @@ SOURCE = Path(gear_kinematics.state.share.__file__)
 
 
 def share_of(package: Path):
-    """Put the module into a package folder and ask it there."""
+    """Copy the module to a package folder and call it there."""
     room = package / SOURCE.parent.name
     room.mkdir(parents=True)
     path = Path(shutil.copy(SOURCE, room))

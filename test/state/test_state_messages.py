@@ -32,7 +32,7 @@ TINY = 1e-20  # rates below: the oracle differentiates numerically, at 50 digits
 
 
 def encode(mechanism, sample, names=NAMES):
-    """Give the three messages as rclpy reads them."""
+    """The three messages as deserialised by rclpy."""
     encoded = dict(StateMessages(mechanism, **names).encode(sample))
     assert list(encoded) == list(TYPES)
     return [deserialize_message(encoded[topic], kind) for topic, kind in TYPES.items()]
@@ -43,7 +43,7 @@ def sample_at(rotor_angle, velocity=None, effort=None) -> RotorSample:
 
 
 def assert_poses(poses, expected, numbers) -> None:
-    """Hold a PoseArray against the oracle: satellites in branch order, then couplings."""
+    """Compare a PoseArray with the oracle: satellites in branch order, then couplings."""
     branches = expected.branches
     centres = [branch.satellite_centre for branch in branches]
     centres += [branch.oldham_centre for branch in branches]
@@ -59,7 +59,7 @@ def assert_poses(poses, expected, numbers) -> None:
 
 
 def assert_joint_states(message, derivatives, numbers, *, velocity: bool) -> None:
-    """Hold mechanism_joint_states against the oracle."""
+    """Compare mechanism_joint_states with the oracle."""
     expected, rates = derivatives.value, derivatives.first
     count, e = len(numbers.branches), numbers.eccentricity
     angles, slides = message.position[: 1 + count], message.position[1 + count : -1]
@@ -145,7 +145,7 @@ def test_fields_that_the_input_lacks_stay_empty(actuator, velocity, effort):
 
 
 @pytest.mark.parametrize('topics', [subset for n in range(4) for subset in combinations(TYPES, n)])
-def test_only_what_is_wanted_is_encoded(actuator, topics):
+def test_only_selected_topics_are_encoded(actuator, topics):
     messages = StateMessages(actuator, **NAMES)
     sample = sample_at(1.9, 3.8, 0.5)
     every = dict(messages.encode(sample))
@@ -223,7 +223,7 @@ rates = st.none() | st.floats(-1e300, 1e300)
 )
 @example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0)] * 2, -1)
 def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction):
-    """To the last bit, by way of the input, which gives numbers for turns and NaN for None."""
+    """To the last bit, from samples of `RotorInput`, which have NaN instead of None."""
     settings = InputSettings('', direction, 0.0, 'multi_turn', 650.0, 6500.0)
     messages = [
         rotor_bytes(stamp, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both))

@@ -1,4 +1,4 @@
-"""The rotor's motion over time: read from bags that are written here, or at a constant speed."""
+"""The rotor's motion over time: read from bags, or at a constant speed."""
 
 import math
 
@@ -47,7 +47,7 @@ def shared_bag():
     return share_directory() / 'bags' / 'constant_speed_3000rpm'
 
 
-def test_a_stamp_counts_once_and_what_begins_anew_is_left_out(tmp_path):
+def test_a_stamp_counts_once_and_a_jump_back_ends_the_motion(tmp_path):
     stamps = [7_000 * MS, 7_001 * MS, 7_001 * MS, 7_002 * MS, 3_000 * MS, 3_001 * MS]
     template = JointStateTemplate(['rotor'], velocity=False, effort=False)
     with BagWriter(tmp_path / 'bag') as writer:
@@ -59,7 +59,7 @@ def test_a_stamp_counts_once_and_what_begins_anew_is_left_out(tmp_path):
     assert positions(read) == pytest.approx([0.0, 1.0, 2.0])
 
 
-def test_faulty_messages_are_passed_over():
+def test_faulty_messages_are_ignored():
     read = read_trajectory(share_directory() / 'bags' / 'driver_faults', config())
     assert np.all(np.diff(read.time) > 0.0)
     assert np.all(np.isfinite(positions(read)) & np.isfinite(read.velocity))
@@ -75,7 +75,7 @@ def test_huge_positions_give_no_warning(tmp_path, actuator):
 
 def test_bags_without_a_motion_are_refused(tmp_path):
     still = write_recording(tmp_path / 'still', Samples([MS, MS], [0.0, 1.0]))
-    with pytest.raises(BagError, match='/rotor_state has no states of the rotor at two times'):
+    with pytest.raises(BagError, match='/rotor_state has fewer than two rotor states'):
         read_trajectory(still, config())
     with pytest.raises(BagError, match='no topic /motor of type sensor_msgs/msg/JointState'):
         read_trajectory(still, config(), '/motor')
@@ -96,12 +96,12 @@ def test_constant_speed_turns_from_zero(actuator):
 
 
 @pytest.mark.parametrize('speed', [0.0, math.nan, math.inf])
-def test_what_does_not_turn_is_refused(speed):
+def test_speeds_without_motion_are_refused(speed):
     with pytest.raises(ValueError, match='finite and not 0'):
         Trajectory.at_constant_speed(speed)
 
 
-def test_blurs_are_refused():
+def test_too_many_turns_are_refused():
     with pytest.raises(ValueError, match=f'2000 turns of the rotor are more than {MOST_TURNS}'):
         Trajectory.at_constant_speed(TURN, duration=2000.0)
 
@@ -116,7 +116,7 @@ def test_even_intervals_reach_to_the_end():
     assert even.longest_step == pytest.approx(0.75)
 
 
-def test_a_closed_loop_goes_on_from_its_end_as_it_went():
+def test_a_closed_loop_continues_seamlessly():
     loop = Trajectory.at_constant_speed(10.0, turns=19).every(0.05, closed=True)
     steps = np.diff([*positions(loop), 19.0 * TURN])
     assert steps == pytest.approx(19.0 * TURN / len(steps), rel=1e-9)
@@ -130,5 +130,5 @@ def test_parts_are_between_two_times():
     part = samples.between(1.0, 2.0)
     assert part.time[[0, -1]] == pytest.approx([1.0, 2.0], abs=0.02)
     assert positions(part) == pytest.approx(part.time)
-    with pytest.raises(ValueError, match='no states of the rotor from 5 s to inf s'):
+    with pytest.raises(ValueError, match='no rotor states from 5 s to inf s'):
         samples.between(5.0, math.inf)

@@ -27,7 +27,7 @@ def make(**changes) -> TransmissionError:
 
 
 def feed(comparison, ideal, measured, order) -> list[ErrorSample]:
-    """Feed both records; `order` says, sample by sample, whether an ideal one comes next."""
+    """Feed both records; `order` says for each sample whether it is an ideal one."""
     samples, ideal, measured = [], list(ideal), list(measured)
     for is_ideal in order:
         if is_ideal and ideal:
@@ -57,7 +57,7 @@ def wrapped(angle):
     st.floats(-30.0, 30.0),
     st.floats(-3.0, 3.0),
 )
-def test_errors_are_those_of_the_interpolated_record_however_the_samples_come_in(
+def test_errors_are_those_of_the_interpolated_record_in_any_order_of_arrival(
     periods, times, order, speed, offset
 ):
     stamps = START + np.cumsum(periods)
@@ -92,7 +92,7 @@ def test_errors_are_those_of_the_interpolated_record_however_the_samples_come_in
 def test_last_bits_survive_any_number_of_turns():
     comparison = make()
     comparison.add_ideal(START, 10**12, 3.0)
-    # Past half a turn the turns go up and the angle starts anew.
+    # Past half a turn, the turns increase and the angle wraps.
     comparison.add_ideal(START + 10 * MS, 10**12 + 1, 3.1 - 2 * math.pi)
     (sample,) = comparison.add_measured(START + 5 * MS, 3.05 + 1e-13)
     assert sample.error == pytest.approx(1e-13, abs=1e-15)
@@ -100,7 +100,7 @@ def test_last_bits_survive_any_number_of_turns():
 
 
 @pytest.mark.parametrize('turns', [0, -3, 7, 1000])
-def test_encoders_of_one_turn_and_of_many_are_the_same(turns):
+def test_single_and_multi_turn_encoders_give_the_same(turns):
     comparison = make()
     comparison.add_ideal(START, 5, 1.0)
     comparison.add_ideal(START + MS, 5, 1.0)
@@ -108,7 +108,7 @@ def test_encoders_of_one_turn_and_of_many_are_the_same(turns):
     assert sample.error == pytest.approx(0.25, abs=1e-12)
 
 
-def test_errors_go_on_where_the_offset_of_the_encoder_is_half_a_turn():
+def test_errors_are_continuous_at_an_offset_of_half_a_turn():
     comparison = make()
     comparison.add_ideal(START, 0, 0.0)
     comparison.add_ideal(START + 40 * MS, 0, 0.0)
@@ -135,7 +135,7 @@ def test_nothing_is_compared_across_a_gap():
     comparison.add_measured(START + 30 * MS, 0.0)
     assert comparison.add_ideal(START + 51 * MS, 0, 0.0) == []
     assert comparison.unmatched == {'gap of the ideal angle': 1}
-    # At its ends no more than within it: the stamps cannot tell what belongs together.
+    # A gap of exactly `max_gap` is interpolated.
     comparison.add_measured(START + 60 * MS, 0.0)
     (sample,) = comparison.add_ideal(START + 101 * MS, 0, 0.0)
     assert sample.stamp == START + 60 * MS
@@ -160,7 +160,7 @@ def test_unusable_measured_angles_are_counted():
 
 
 @pytest.mark.parametrize('first', ['ideal', 'measured'])
-def test_clock_that_is_set_back_is_a_new_beginning(first):
+def test_clock_that_is_set_back_resets_the_comparison(first):
     comparison = make()
     comparison.add_ideal(START, 0, 0.0)
     comparison.add_ideal(START + 10 * MS, 0, 0.0)
@@ -172,7 +172,7 @@ def test_clock_that_is_set_back_is_a_new_beginning(first):
         assert comparison.add_measured(early - MS, 1.0) == []
     comparison.add_ideal(early, 0, 0.0)
     comparison.add_ideal(early + 10 * MS, 0, 0.0)
-    # The offset is another one, too, and is taken as it is now.
+    # The new offset is also accepted.
     (after,) = comparison.add_measured(early + 5 * MS, -3.0)
     assert after.error == pytest.approx(-3.0)
 
@@ -209,16 +209,16 @@ def test_direction_is_known_once_it_has_travelled_far_enough():
 
 
 @given(st.lists(st.integers(-8, 8), max_size=60), st.integers(1, 12))
-def test_direction_is_that_of_the_last_travel_of_such_length(steps, travel):
+def test_direction_is_that_of_the_last_long_enough_travel(steps, travel):
     direction = Direction(float(travel))
     found = [direction.move(float(step)) for step in steps]
-    # Where it is now is the extreme of a way at least as long as the travel.
+    # The position now is the extreme of a motion at least as long as the travel.
     places = np.concatenate([[0], np.cumsum(steps)])
     for k, known in enumerate(found, start=1):
         past = places[: k + 1]
         up = past[k] - np.minimum.accumulate(past[::-1])[::-1]
         down = np.maximum.accumulate(past[::-1])[::-1] - past[k]
-        # Since when has nothing been beyond the place of now?
+        # Since when has no position exceeded the present one?
         higher, lower = np.flatnonzero(past > past[k]), np.flatnonzero(past < past[k])
         rising = (up[higher[-1] + 1 if len(higher) else 0 :] >= travel).any()
         falling = (down[lower[-1] + 1 if len(lower) else 0 :] >= travel).any()
@@ -260,7 +260,7 @@ def test_window_is_that_of_the_whole_record(records):
     assert (len(window), window.mean, window.peak_to_peak) == (0, None, None)
 
 
-def test_window_keeps_nothing_of_what_has_left_it():
+def test_values_that_leave_the_window_leave_no_trace():
     window = SlidingStatistics()
     for k in range(100_000):
         window.add(k, 1e9 * math.sin(k))
@@ -272,7 +272,7 @@ def test_window_keeps_nothing_of_what_has_left_it():
     assert window.peak_to_peak == 0.0
 
 
-def test_window_tells_lost_motion_from_what_is_the_same_both_ways():
+def test_window_separates_lost_motion_from_errors_of_both_directions():
     play, window, comparison = 0.004, ErrorWindow(10 * SECOND), make(travel=0.05)
     forward = backward = 0
     for k in range(4000):
@@ -294,14 +294,14 @@ def test_window_tells_lost_motion_from_what_is_the_same_both_ways():
     assert window.forward.peak_to_peak == pytest.approx(0.002, abs=1e-4)
 
 
-def test_window_without_a_reversal_knows_no_lost_motion():
+def test_window_without_a_reversal_has_no_lost_motion():
     window = ErrorWindow(SECOND)
     assert window.lost_motion is None
     window.add(ErrorSample(START, 0.1, 0, 0.0, 1))
     assert window.lost_motion is None
     window.add(ErrorSample(START + MS, 0.3, 0, 0.0, -1))
     assert window.lost_motion == pytest.approx(0.2)
-    # A direction that was not taken within the window is none of it.
+    # A direction that does not occur in the window does not count.
     window.add(ErrorSample(START + SECOND + 2, 0.3, 0, 0.0, -1))
     assert window.lost_motion is None
     assert len(window.both) == 2
