@@ -1,8 +1,7 @@
-"""The subcommands of `gearkin`: a module each, with its arguments and what it runs.
+"""The subcommands of `gearkin`, one module each.
 
-A command's module has what `Command` lists. Commands import nothing of each other; what several
-need is in `arguments` and `output`. Their results come from the modules below; there is no
-mathematics here.
+Each module implements `Command` and imports no other command; common functions are in `arguments`
+and `output`. Commands compute nothing: their results come from the other rooms.
 """
 
 import argparse
@@ -11,27 +10,27 @@ from typing import Protocol
 
 
 class ExitCode(IntEnum):
-    """What `gearkin` tells the shell."""
+    """Exit codes of `gearkin`."""
 
     DONE = 0
     FAILED = 1
     """A check failed."""
     UNUSABLE = 2
-    """Of the input or the arguments, with one line on stderr."""
+    """The input or the arguments are unusable; stderr has one line on the cause."""
 
 
 class Command(Protocol):
-    """What a module of a subcommand has; the subcommand is called as the module is."""
+    """Interface of the module of a subcommand, which has the subcommand's name."""
 
     HELP: str
-    """What the command is for, in a line."""
+    """Purpose of the command, in one line."""
 
     def add_arguments(self, parser: argparse.ArgumentParser, /) -> None:
-        """Say which arguments the command takes."""
+        """Add the arguments of the command."""
 
     def run(self, options: argparse.Namespace, /) -> ExitCode:
-        """Do it.
+        """Run the command.
 
         Raises:
-            ValueError, OSError, RuntimeError: what is unusable, as one line for the user.
+            ValueError, OSError, RuntimeError: if input or arguments are unusable, in one line.
         """

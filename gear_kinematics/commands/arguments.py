@@ -1,4 +1,4 @@
-"""Arguments that several commands take."""
+"""Arguments that several commands have in common."""
 
 import argparse
 import math
@@ -15,7 +15,7 @@ from gear_kinematics.state.trajectory import Trajectory, read_trajectory
 
 
 def positive(text: str) -> float:
-    """A number greater than 0."""
+    """Parse a number greater than 0."""
     number = float(text)
     if not (number > 0.0 and math.isfinite(number)):
         raise argparse.ArgumentTypeError(f'must be greater than 0, not {text}')
@@ -23,7 +23,7 @@ def positive(text: str) -> float:
 
 
 def add_config(parser: argparse.ArgumentParser) -> None:
-    """Take the parameters of the node."""
+    """Add the options for the parameters of the node."""
     parser.add_argument(
         '--config',
         type=Path,
@@ -34,8 +34,8 @@ def add_config(parser: argparse.ArgumentParser) -> None:
         '--node',
         default=parameters.NODE,
         metavar='NAME',
-        help='whose parameters to take from a file for several nodes: fully qualified, as '
-        f'/left/{parameters.NODE}, or without namespace (default: %(default)s)',
+        help='node in a file with several nodes, with or without namespace, such as '
+        f'/left/{parameters.NODE} (default: %(default)s)',
     )
 
 
@@ -49,13 +49,14 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
 
 
 def add_topics(parser: argparse.ArgumentParser) -> None:
-    """Take the names that the node's topics have in a bag."""
+    """Add the options for the names of the node's topics in a bag."""
+    text = '(default: found by type and name)'
     for topic in ('rotor', 'output', 'poses'):
-        parser.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
+        parser.add_argument(f'--{topic}-topic', metavar='NAME', help=text)
 
 
 def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
-    """The file that was asked for, or the one beside the bag's data, or the default."""
+    """The given parameter file, or the one in the bag's folder, or the default."""
     if options.config:
         return Path(options.config)
     default = parameters.default_config()
@@ -66,32 +67,32 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
 
 
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
-    """The parameters in the file that `config_path` gives.
+    """Load the parameters from `config_path`.
 
     Raises:
-        ValueError: for what the node would refuse.
+        ValueError: for values that the node would refuse.
     """
     return parameters.load(config_path(options, bag), options.node)
 
 
 def add_mechanism(parser: argparse.ArgumentParser) -> None:
-    """Take the mechanism from the parameters of the node, and a tooth pair instead of theirs."""
+    """Add the options for a mechanism: parameters of the node, and tooth numbers."""
     add_config(parser)
     for name, metavar in (('ring', 'ZK'), ('satellite', 'ZS')):
-        text = 'instead of that of the parameters'
+        text = f'replaces the parameter {name}_teeth'
         parser.add_argument(f'--{name}-teeth', type=int, metavar=metavar, help=text)
 
 
 def mechanism(options: argparse.Namespace) -> Mechanism:
-    """The mechanism that was asked for."""
+    """The mechanism given by the options."""
     return Mechanism.from_mapping(node_parameters(options))
 
 
 def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
-    """The parameters of the node, with what was asked for instead of theirs.
+    """The parameters of the node, some of them replaced by options.
 
     Raises:
-        ValueError: for what the node would refuse.
+        ValueError: for values that the node would refuse.
     """
     config = load_config(options, getattr(options, 'bag', None))
     for name in ('ring_teeth', 'satellite_teeth', 'eccentricity', 'module'):
@@ -105,26 +106,27 @@ def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
 
 
 def add_sizes(parser: argparse.ArgumentParser) -> None:
-    """Take eccentricity and module of a tooth pair."""
+    """Add the options for eccentricity and module."""
     for name in ('eccentricity', 'module'):
-        parser.add_argument(f'--{name}', type=float, metavar='M')
+        text = f'replaces the parameter {name}, m'
+        parser.add_argument(f'--{name}', type=float, metavar='M', help=text)
 
 
 def module(options: argparse.Namespace) -> float:
-    """The module of the teeth that was asked for, m."""
+    """The module of the teeth given by the options, m."""
     return float(node_parameters(options)['module'])
 
 
 def add_branch(parser: argparse.ArgumentParser) -> None:
-    """Take the name of a branch."""
-    parser.add_argument('--branch', metavar='NAME', help='(default: the first)')
+    """Add the option for a branch."""
+    parser.add_argument('--branch', metavar='NAME', help='branch to draw (default: the first)')
 
 
 def branch(options: argparse.Namespace, mechanism: Mechanism) -> int:
-    """The index of the branch that was asked for.
+    """The index of the branch given by the options.
 
     Raises:
-        ValueError: if the mechanism has none of this name.
+        ValueError: if the mechanism has no branch of this name.
     """
     names = [branch.name for branch in mechanism.branches]
     if options.branch not in {None, *names}:
@@ -133,59 +135,59 @@ def branch(options: argparse.Namespace, mechanism: Mechanism) -> int:
 
 
 def add_recording(
-    parser: argparse.ArgumentParser, ways: argparse._ActionsContainer, *, lasting: bool = True
+    parser: argparse.ArgumentParser, motions: argparse._ActionsContainer, *, lasting: bool = True
 ) -> None:
-    """Take the rotor's motion from a bag, as one of the ways to give it."""
-    ways.add_argument('--bag', type=Path, metavar='BAG', help="the rotor's motion as recorded")
-    parser.add_argument('--rotor-topic', metavar='NAME', help='(default: by type and name)')
-    parser.add_argument('--start-offset', type=float, metavar='S', help='in the recording')
+    """Add the options for a motion of the rotor from a bag, one of alternative motions."""
+    motions.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
+    parser.add_argument('--rotor-topic', metavar='NAME', help='(default: found by type and name)')
+    parser.add_argument('--start-offset', type=float, metavar='S', help='start in the recording')
     if lasting:
         parser.add_argument('--duration', type=positive, metavar='S', help='(default: all of it)')
 
 
 def recording(
-    options: argparse.Namespace, config: Mapping[str, Any], *of_it: str
+    options: argparse.Namespace, config: Mapping[str, Any], *bag_only_options: str
 ) -> Trajectory | None:
-    """The rotor's motion in the bag from the offset on; None without a bag.
+    """Read the rotor's motion from the bag, from the offset on; None without a bag.
 
     Args:
-        options: as given.
+        options: parsed arguments.
         config: the parameters of the node.
-        of_it: names of further options that are of use for a bag only.
+        bag_only_options: names of further options that need a bag.
 
     Raises:
         ValueError: if such options are given without a bag.
     """
     if not options.bag:
-        for name in ('rotor_topic', 'start_offset', *of_it):
+        for name in ('rotor_topic', 'start_offset', *bag_only_options):
             if getattr(options, name) is not None:
-                raise ValueError(f'--{name.replace("_", "-")} is of use with --bag only')
+                raise ValueError(f'--{name.replace("_", "-")} needs --bag')
         return None
     start = options.start_offset or 0.0
     duration = getattr(options, 'duration', None) or math.inf
-    with message_progress(options.bag.name) as told:
-        whole = read_trajectory(options.bag, config, options.rotor_topic, told)
+    with message_progress(options.bag.name) as report_progress:
+        whole = read_trajectory(options.bag, config, options.rotor_topic, report_progress)
     return whole.between(start, start + duration)
 
 
 def add_ring_turn(ways: argparse._ActionsContainer) -> None:
-    """Take a turn of the ring gear, in rad or in degrees."""
+    """Add the options for a turn of the ring gear, in rad or in degrees."""
     ways.add_argument('--angle', type=float, metavar='RAD', help='turn of the ring gear')
     ways.add_argument('--degrees', type=float, metavar='DEG', help='the same in degrees')
 
 
 def ring_turn(options: argparse.Namespace) -> float | None:
-    """The turn that was asked for, rad, if one was."""
+    """The turn of the ring gear given by the options, rad, if any."""
     if options.degrees is not None:
         return math.radians(options.degrees)
     return None if options.angle is None else float(options.angle)
 
 
 def within_a_turn(angle: float) -> float:
-    """The turn of a ring gear, rad, if it is one.
+    """Check the turn of a ring gear, rad.
 
     Raises:
-        ValueError: if it is more than a whole turn either way.
+        ValueError: if it is more than a whole turn in either direction.
     """
     if not abs(angle) <= TURN:
         raise ValueError(f'a ring gear is turned by at most a whole turn, not by {angle:g} rad')
@@ -193,25 +195,25 @@ def within_a_turn(angle: float) -> float:
 
 
 def add_setting(parser: argparse._ActionsContainer, option: str, name: str, text: str) -> None:
-    """Take a tooth and two holes under a name."""
+    """Add an option for a pin setting, stored as `name`."""
     holes = ('TOOTH', 'RING_HOLE', 'CHASSIS_HOLE')
     parser.add_argument(option, dest=name, type=int, nargs=3, metavar=holes, help=text)
 
 
 def add_stiffness(parser: argparse.ArgumentParser) -> None:
-    """Take the stiffnesses of branches and shaft, and the backlash."""
+    """Add the options for the stiffnesses of branches and shaft, and for the backlash."""
     group = parser.add_argument_group(
-        'stiffness', 'torsional, at the output; given here, since the node has no use for it'
+        'stiffness', 'torsional, at the output; not a parameter of the node'
     )
     group.add_argument(
         '--branch-stiffness',
         type=float,
         nargs='+',
         metavar='N·m/rad',
-        help='of both branches, or of A and then of B, the one at the output; inf: rigid',
+        help='of both branches, or of A and of B, the one at the output; inf: rigid',
     )
     group.add_argument('--shaft-stiffness', type=float, metavar='N·m/rad', help='between the arms')
-    group.add_argument('--shaft-diameter', type=float, metavar='M', help='of a full round shaft')
+    group.add_argument('--shaft-diameter', type=float, metavar='M', help='of a solid round shaft')
     group.add_argument('--shaft-length', type=float, metavar='M', help='between the arms')
     group.add_argument(
         '--shear-modulus',
@@ -223,15 +225,15 @@ def add_stiffness(parser: argparse.ArgumentParser) -> None:
         '--backlash',
         type=float,
         metavar='RAD',
-        help='play of the output where the turn starts, which it has to close first (default: 0)',
+        help='play of the output before the turn, which has to close it first (default: 0)',
     )
 
 
 def stiffness(options: argparse.Namespace) -> Stiffness | None:
-    """The stiffnesses that were given; None if none was.
+    """The stiffnesses given by the options; None if none is given.
 
     Raises:
-        ValueError: if some are missing, or are given twice.
+        ValueError: if some are missing, or the shaft is given twice.
     """
     dimensions = (options.shaft_diameter, options.shaft_length, options.shear_modulus)
     branches, shaft = options.branch_stiffness, options.shaft_stiffness

@@ -44,10 +44,10 @@ COMMANDS: dict[str, Command] = {
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line, as the commands do; the usage is in the help."""
+    """Reports an error in one line, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        """Complain and end."""
+        """Print the message and exit."""
         complain(f'{message}; see {self.prog} --help')
         raise SystemExit(ExitCode.UNUSABLE)
 
@@ -55,20 +55,20 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
     if isinstance(sys.stdout, TextIOWrapper):
-        sys.stdout.reconfigure(errors='backslashreplace')  # not every pipe has a ″
+        sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
     options = make_parser().parse_args(arguments)
     code = ExitCode.DONE
     try:
-        # What overflows shows in the results.
+        # Overflows show in the results.
         with closed_pipe_ignored(), np.errstate(all='ignore'):
             code = options.run(options)
     except (ValueError, OSError, RuntimeError) as error:
         complain(error)
         code = ExitCode.UNUSABLE
-    except ImportError as error:  # of an extra, where it is used
+    except ImportError as error:  # of an optional package, on first use
         complain(remedy(error))
         code = ExitCode.UNUSABLE
-    except Exception as error:  # noqa: BLE001, a traceback is for those who ask for it
+    except Exception as error:  # noqa: BLE001, the traceback is shown with --debug
         complain(unexpected(error, debug=options.debug))
         code = ExitCode.UNUSABLE
     return code

@@ -1,4 +1,4 @@
-"""`gearkin compute`: the outputs for a bag that has only the rotor topic."""
+"""`gearkin compute`: add the outputs to a bag that has only the rotor topic."""
 
 import argparse
 from pathlib import Path
@@ -11,24 +11,24 @@ from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.report.document import printable
 from gear_kinematics.state.compute import compute
 
-HELP = 'write the outputs for a bag with the rotor topic'
+HELP = 'write a bag with the outputs for a recorded rotor topic'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     add_config(parser)
     add_topics(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
-    parser.add_argument('out', type=Path, metavar='OUT', help='directory to make')
+    parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     parser.add_argument(
-        '--topics', nargs='*', metavar='NAME', help='others to copy (default: all)'
+        '--topics', nargs='*', metavar='NAME', help='other topics to copy (default: all)'
     )
     parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
     parser.add_argument('--compression', choices=('none', 'zstd'), default='none')
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Write the bag, and say what is in it."""
+    """Write the bag and print the number of its messages."""
     config = load_config(options, options.bag)
     with Bag(options.bag) as bag, message_progress(options.bag.name) as progress:
         rotor = options.rotor_topic or find_rotor_topic(bag)

@@ -1,4 +1,4 @@
-"""`gearkin demo`: the shipped bag through the live node."""
+"""`gearkin demo`: play the shipped bag into the live node."""
 
 import argparse
 
@@ -7,17 +7,17 @@ from rich.console import Console
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import warn_of_shared_memory
 
-HELP = 'the shipped bag through the live node, validated'
+HELP = 'play the shipped bag into the live node and validate its outputs'
 
 
 def add_arguments(_parser: argparse.ArgumentParser) -> None:
-    """Take none."""
+    """Add no arguments."""
 
 
 def run(_options: argparse.Namespace) -> ExitCode:
-    """Show it live, then whether it agrees."""
+    """Show the outputs live, then the result of the validation."""
     warn_of_shared_memory(participants=2)
-    # Needs ROS, which most commands do without.
+    # Needs ROS, unlike most commands.
     from gear_kinematics.ros import demo  # noqa: PLC0415
 
     return ExitCode.DONE if demo.run(Console()).passed else ExitCode.FAILED

@@ -1,4 +1,4 @@
-"""The packages that pip installs only with an extra, and what to do where one is missing."""
+"""Packages that pip installs only with an extra, and the remedy if one is missing."""
 
 EXTRAS = {
     'rclpy': 'ros',
@@ -7,7 +7,7 @@ EXTRAS = {
     'plotly': 'html',
     'distributed': 'dask',
 }
-"""The extra that brings a package; setup.py says what each installs."""
+"""The extra that installs a package; setup.py defines the extras."""
 
 
 def remedy(error: ImportError) -> str:

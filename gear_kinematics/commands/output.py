@@ -157,7 +157,7 @@ def write_file(target: str, content: bytes) -> None:
             unfinished.unlink()
 
 
-def tell_of_circles(mechanism: Mechanism, module: float) -> None:
+def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:
     """Say why the gears of a drawing have no teeth, where they cannot mesh; module in m."""
     try:
         tooth_pair(mechanism, module)

@@ -1,4 +1,4 @@
-"""`gearkin replay`: a bag's rotor topic, published in its own time."""
+"""`gearkin replay`: publish a bag's rotor topic with the timing of the recording."""
 
 import argparse
 import math
@@ -11,21 +11,24 @@ from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import warn_of_shared_memory
 from gear_kinematics.wire.topics import ROTOR_STATE
 
-HELP = "publish a bag's rotor topic in its own time"
+HELP = "publish a bag's rotor topic with the timing of the recording"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     parser.add_argument('bag', type=Path, metavar='BAG')
-    parser.add_argument('--rate', type=float, default=1.0, help='bag time per real time')
-    parser.add_argument('--loop', action='store_true', help='until stopped')
-    parser.add_argument('--start-offset', type=float, default=0.0, metavar='S')
-    parser.add_argument('--duration', type=float, default=math.inf, metavar='S')
+    parser.add_argument('--rate', type=float, default=1.0, help='playback speed (default: 1)')
+    parser.add_argument('--loop', action='store_true', help='repeat until stopped')
+    for option, default, text in (
+        ('--start-offset', 0.0, 'bag time to skip'),
+        ('--duration', math.inf, 'bag time to play'),
+    ):
+        parser.add_argument(option, type=float, default=default, metavar='S', help=text)
     parser.add_argument(
         '--topics', nargs='+', metavar='NAME', help='(default: the rotor topic, as rotor_state)'
     )
     parser.add_argument(
-        '--clock', type=float, nargs='?', const=40.0, default=0.0, metavar='HZ', help='on /clock'
+        '--clock', type=float, nargs='?', const=40, default=0, metavar='HZ', help='publish /clock'
     )
     parser.add_argument(
         '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
@@ -33,9 +36,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Publish, and say how punctually."""
+    """Publish the messages and print their greatest delay."""
     warn_of_shared_memory(participants=1)
-    # Needs ROS, which most commands do without.
+    # Needs ROS, unlike most commands.
     from gear_kinematics.ros.replay import play, stopped_by_signals  # noqa: PLC0415
 
     with Bag(options.bag) as bag, stopped_by_signals() as stopped:

@@ -1,4 +1,4 @@
-"""`gearkin urdf`: the URDF on stdout."""
+"""`gearkin urdf`: print the URDF."""
 
 import argparse
 
@@ -7,11 +7,11 @@ from gear_kinematics.commands.arguments import add_config, load_config
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.shape.urdf import urdf
 
-HELP = 'the URDF on stdout'
+HELP = 'print the URDF'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     add_config(parser)
 
 

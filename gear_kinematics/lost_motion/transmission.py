@@ -258,8 +258,7 @@ def _amplitudes(
         return {}
     fits = [_fit(run, [float(marked[name]) for name in resolved]) for run in runs]
     return {
-        name: Estimate.of_mean([fit[k] for fit in fits], reading)
-        for k, name in enumerate(resolved)
+        name: Estimate.of_mean([f[k] for f in fits], reading) for k, name in enumerate(resolved)
     }
 
 

@@ -93,7 +93,7 @@ def test_animation_has_the_promised_frames(tmp_path, capsys):
     speed = ('--speed', '60', '--fps', '40', '--width', '120')
     assert main(['animate', str(path), *pair, *speed]) == 0
     told, circles = capsys.readouterr().out.splitlines()
-    assert told == f'{path}: 13 frames, 40 in a second'
+    assert told == f'{path}: 13 frames, 40 per second'
     assert circles.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
     assert path.read_bytes().startswith(SIGNATURES['gif'])
     with Image.open(path) as image:
@@ -115,13 +115,13 @@ def test_animation_of_a_bag_says_how_to_see_the_rotor(tmp_path, capsys):
     part = ('--start-offset', '0.3', '--duration', '0.2', '--fps', '25', '--width', '100')
     assert main(['animate', str(path), '--bag', SERVO, *part]) == 0
     told = capsys.readouterr().out.splitlines()
-    assert told[0] == f'{path}: 5 frames, 25 in a second'
-    assert told[1].startswith('The rotor turns 0.99 times from frame to frame; --rate ')
+    assert told[0] == f'{path}: 5 frames, 25 per second'
+    assert told[1].startswith('The rotor turns 0.99 times from frame to frame; use --rate ')
     rate = told[1].split('--rate ')[1].split()[0]
     assert main(['animate', str(path), '--bag', SERVO, *part, '--rate', rate]) == 0
     [line] = capsys.readouterr().out.splitlines()
     with Image.open(path) as image:
-        assert line == f'{path}: {image.n_frames} frames, 25 in a second'
+        assert line == f'{path}: {image.n_frames} frames, 25 per second'
         assert image.n_frames > 10
 
 
@@ -181,7 +181,7 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
         (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
         (
             ['plot', 'scheme', 'a.png', '--angle', 'nan'],
-            'an angle of the rotor is finite, not nan',
+            'the rotor angle must be finite, not nan',
         ),
         (['plot', 'scheme', 'a.png', '--branch', 'c'], "no branch 'c'; there are a, b"),
         (['plot', 'scheme', 'a.png', '--module', '0'], '--module must be between 1e-06 and 0.1'),
@@ -191,23 +191,26 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
             ['plot', 'roses', 'a.png', '--ring-teeth', '1001', '--satellite-teeth', '1000'],
             'petals',
         ),
-        (['plot', 'slides', 'a.png', '--speed', '0'], 'a speed is finite and not 0'),
+        (['plot', 'slides', 'a.png', '--speed', '0'], 'the speed must be finite and not 0'),
         (['plot', 'output', 'a.png', '--duration', '60'], '3000 turns of the rotor are more than'),
         (
             ['plot', 'output', 'a.png', '--bag', SERVO, '--start-offset', '7'],
-            'no states of the rotor from 7 s to inf s; they are from 0 s to ',
+            'no rotor states from 7 s to inf s; they are from 0 s to ',
         ),
         (
             ['plot', 'output', 'a.png', '--bag', SERVO, '--rotor-topic', '/motor'],
             'no topic /motor of type sensor_msgs/msg/JointState in it',
         ),
-        (['plot', 'roses', 'a.png', '--duration', '1'], '--duration is of use with --bag only'),
-        (['animate', 'a.gif', '--start-offset', '1'], '--start-offset is of use with --bag only'),
+        (['plot', 'roses', 'a.png', '--duration', '1'], '--duration needs --bag'),
+        (['animate', 'a.gif', '--start-offset', '1'], '--start-offset needs --bag'),
         (['animate', 'a.gif', '--width', '1920', '--speed', '2'], 'too large for a GIF: 1194 fr'),
         (['animate', 'a.png'], 'a.png: the suffix of an animation is one of gif, mp4'),
         (['animate', 'a.gif', '--width', '99'], '--width must be between 100 and 1920, not 99'),
         (['animate', 'a.gif', '--fps', '0'], '--fps must be between 1 and 50, not 0'),
-        (['animate', 'a.gif', '--speed', '1'], '2388 frames are more than 2000: shorten it by'),
+        (
+            ['animate', 'a.gif', '--speed', '1'],
+            '2388 frames are more than 2000; reduce --duration',
+        ),
         (['animate', 'none/a.gif', '--duration', '0.1'], 'none/a.gif: No such file or directory'),
     ],
 )
