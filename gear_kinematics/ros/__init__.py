@@ -1,1 +1,1 @@
-"""The node and everything else that talks to ROS: the only room that imports rclpy."""
+"""The node and other ROS interfaces; only this room imports rclpy."""

@@ -1,4 +1,4 @@
-"""`python -m gear_kinematics.ros`: the node, as other programs start it."""
+"""`python -m gear_kinematics.ros`: starts the node."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""`gearkin demo`: the shipped bag through the live node, shown live, then validated."""
+"""The demo: plays the shipped bag into the node, shows its outputs live and validates them."""
 
 import math
 from collections.abc import Mapping
@@ -22,13 +22,13 @@ from gear_kinematics.wire.batches import decode_pose_arrays
 from gear_kinematics.wire.joint_reader import JointReader
 
 TOLERANCE = 1e-12
-"""Greatest deviation that passes: of angles in rad, of positions in units of the eccentricity."""
+"""Tolerance: of angles in rad, of positions in units of the eccentricity."""
 _BAG = 'servo_point_to_point'
 _TOPICS = Topics()
 
 
 def run(console: Console) -> BagReport:
-    """Play the shipped bag's rotor states into a node process and validate what comes back."""
+    """Play the shipped bag's rotor states into a node process and validate its outputs."""
     config = parameters.load(parameters.default_config())
     with Bag(share_directory() / 'bags' / _BAG) as bag:
         count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
@@ -68,12 +68,12 @@ def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> 
             live.update(Group(progress, _current(received, bodies)), refresh=True)
 
         for message in live_messages(bag, config, progress=show):
-            received.append(message)  # noqa: PERF402  # for `show` to see it
+            received.append(message)  # noqa: PERF402  # `show` displays it
     return received
 
 
 def _current(received: list[Message], bodies: int) -> Table:
-    """The latest message of each topic in words; of so many bodies there are poses."""
+    """A table of the latest message of each topic; poses are of so many bodies."""
     table = Table('topic', 'now', box=None)
     latest = {topic: data for topic, _, data in received[-12:]}
     for topic, name in ((_TOPICS.rotor, 'rotor angle'), (_TOPICS.output, 'output angle')):
@@ -95,7 +95,7 @@ def _verdict(report: BagReport) -> Table:
         'missing',
         'field',
         'worst deviation',
-        title='What the node published, against the matrix method',
+        title='Outputs of the node, compared with the matrix method',
         caption=(
             f'{rotor.messages if rotor else 0} rotor states in. '
             f'{verdict}[/] to {TOLERANCE:g} rad and {TOLERANCE:g} of the eccentricity.'

@@ -1,4 +1,4 @@
-"""What a node reports of itself, and of the other ends of its topics in the ROS graph."""
+"""The diagnostics of a node, and checks of its connections in the ROS graph."""
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -13,7 +13,7 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from gear_kinematics.state.diagnostics import GraphFaults, Report
 
 _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
-"""Those in which a subscription can ask for more than a publisher offers."""
+"""Policies in which a subscription can request more than a publisher offers."""
 
 
 def diagnostic_array(node: Node, reports: Mapping[str, Report | None]) -> DiagnosticArray:
@@ -41,13 +41,13 @@ def find_faults(
     publishers: Iterable[Publisher],
     exclusive: Collection[str],
 ) -> GraphFaults:
-    """Find what keeps messages from coming through, and what doubles them.
+    """Find incompatible QoS, and other publishers of the node's topics.
 
     Args:
-        node: the node whose topics they are.
-        subscriptions: of the node; a publisher that they cannot hear is an error.
-        publishers: of the node; a listener that cannot hear them is a warning.
-        exclusive: those of their topics on which another publisher is a warning.
+        node: the node to check.
+        subscriptions: of the node; an incompatible publisher is an error.
+        publishers: of the node; an incompatible subscription is a warning.
+        exclusive: topics on which another publisher is a warning.
     """
     own_name = node.get_fully_qualified_name()
     errors = [
@@ -62,7 +62,7 @@ def find_faults(
         offers = {
             _full_name(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
         }
-        # The profile that a publisher was made with leaves some policies to the middleware.
+        # Ask the graph: in a publisher's own profile some policies are left to the middleware.
         if own_offer := offers.pop(own_name, None):
             warnings += [
                 f'incompatible QoS on {topic}: {policy} (listener {_full_name(listener)})'
@@ -85,9 +85,9 @@ def _full_name(endpoint: TopicEndpointInfo) -> str:
 
 
 def _unmet(requested: QoSProfile, offered: QoSProfile) -> Iterator[str]:
-    """Name the policies in which more is requested than offered."""
+    """Yield the policies in which more is requested than offered."""
     for policy in _POLICIES:
-        alone = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # asks for nothing
+        alone = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)  # requests nothing
         setattr(alone, policy, getattr(requested, policy))
         compatibility, _ = qos_check_compatible(offered, alone)
         if compatibility == QoSCompatibility.ERROR:

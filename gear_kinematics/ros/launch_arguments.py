@@ -1,4 +1,4 @@
-"""What the arguments of the launch files say of the node that they start."""
+"""Arguments of the node, from those of the launch files."""
 
 import posixpath
 from collections.abc import Mapping
@@ -9,29 +9,29 @@ from gear_kinematics.state import parameters
 
 
 class NodeArguments(NamedTuple):
-    """What the node gear_state_publisher is started with."""
+    """Arguments of the node gear_state_publisher."""
 
     config: Path
     """The parameter file."""
     parameters: dict[str, Any]
-    """The node's own, with the values that it will have."""
+    """The parameters of the node, with the values that it will have."""
 
 
 def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
-    """What a launch starts the node with, read before it starts.
+    """Determine the arguments of the node before it is started.
 
-    launch only warns of a parameter file that is not there, and a file that has nothing for the
-    node leaves it with the default values: both would start another actuator than was asked for.
+    launch only warns of a missing parameter file, and with a file for other nodes the node has its
+    default values: in both cases, the wrong actuator would be started.
 
     Args:
-        configurations: of the launch; its arguments `config`, `namespace` and `frame_prefix`, and
-            `ros_namespace` where the launch file is included below a namespace.
+        configurations: of the launch: `config`, `namespace` and `frame_prefix`, and
+            `ros_namespace` if the launch file is included below a namespace.
 
     Raises:
         parameters.ConfigError: as `parameters.load` does.
     """
     config = Path(configurations['config']).expanduser()
-    # An absolute namespace takes the place of the one above it, as it does in launch_ros.
+    # An absolute namespace replaces the one above it, as in launch_ros.
     name = posixpath.join(
         '/', configurations.get('ros_namespace', ''), configurations['namespace'], parameters.NODE
     )

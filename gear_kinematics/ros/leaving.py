@@ -1,4 +1,4 @@
-"""Leaving ROS without waiting for good."""
+"""Shutdown of ROS that cannot hang."""
 
 import ctypes
 import os
@@ -7,8 +7,8 @@ from contextlib import suppress
 import rclpy
 from rclpy.node import Node
 
-_PATIENCE = 5  # s: a callback of discovery takes microseconds
-# C++ functions by the names that they have in a library.
+_PATIENCE = 5  # s; a discovery callback takes microseconds
+# Mangled names of C++ functions.
 _GET_PARTICIPANT = '_ZN16rmw_fastrtps_cpp22get_domain_participantEP10rmw_node_s'
 _SET_LISTENER = (
     '_ZN8eprosima7fastdds3dds17DomainParticipant12set_listener'
@@ -25,12 +25,12 @@ def leave(node: Node) -> None:
 
 
 def _end_discovery(node: Node) -> None:
-    """Wait until no callback of discovery runs in Fast DDS, and have it call no more of them.
+    """Wait until no discovery callback runs in Fast DDS, and prevent further ones.
 
-    Destroying the node does the same, but without a time limit. Fast DDS 2.14 that was built with
-    glibc before 2.30, as the wheels are, then hangs if a callback runs: the end of time overflows
-    in the conversion to another clock, pthread_cond_timedwait refuses it without releasing the
-    lock, which the callback needs to return, and Fast DDS tries again.
+    Destroying the node does the same, but without a time limit. Fast DDS 2.14, if built with glibc
+    before 2.30 as the wheels are, then hangs if a callback runs: its infinite deadline overflows
+    when it is converted to another clock, pthread_cond_timedwait refuses it without releasing the
+    lock that the callback needs to return, and Fast DDS tries again.
 
     Raises:
         OSError: if rmw_fastrtps is not in use.

@@ -1,9 +1,9 @@
 """The mechanism as a visualization_msgs/MarkerArray, for RViz and Foxglove.
 
-The outlines of the teeth have thousands of points, and no viewer moves a marker unless its points
-are sent again. So each marker is locked to the frame of its link: the shapes are sent once, and
-/tf, which robot_state_publisher computes, moves them. All are in one message, because after a jump
-in a recording Foxglove shows nothing but the last message of a topic.
+The outlines of the teeth have thousands of points, which would have to be sent again to move them.
+Instead, each marker is locked to the frame of its link: the shapes are sent once, and /tf from
+robot_state_publisher moves them. All are in one message, because after a jump in a recording
+Foxglove shows only the last message of a topic.
 """
 
 import math
@@ -29,27 +29,27 @@ _REPEAT_BANDWIDTH = 5e3  # bytes/s on average
 _OUTLINE_WIDTH = 0.2  # modules
 _ROSE_WIDTH = 0.03  # eccentricities
 _PETAL_POINTS = 24
-_MOST_PETALS = 100  # of a rose; more could not be told apart
+_MOST_PETALS = 100  # of a rose; more cannot be distinguished
 
 
 class Markers:
-    """Shows the mechanism; nothing is laid out before somebody looks."""
+    """Shows the mechanism; the message is created on first use."""
 
     def __init__(self, mechanism: Mechanism, *, module: float, frame_prefix: str) -> None:
-        """Take what is to be shown; the module is that of the teeth, m."""
+        """Set the mechanism to show; the module is that of the teeth, m."""
         self._mechanism = mechanism
         self._module = module
         self._frame_prefix = frame_prefix
         self._due_at = -math.inf
 
     def due(self, now: float) -> bytes | None:
-        """Give the message if it is to be sent now.
+        """Return the message if it is due, else None.
 
-        Viewers that have it get it again from time to time: RViz drops its markers when it is
-        reset, when its fixed frame changes and when time jumps back.
+        It is repeated periodically, because RViz drops its markers when it is reset, when its
+        fixed frame changes and when time jumps back.
 
         Args:
-            now: the time on any clock that does not jump, s.
+            now: time of a monotonic clock, s.
         """
         if now < self._due_at:
             return None
@@ -57,7 +57,7 @@ class Markers:
         return self._message
 
     def repeat(self) -> None:
-        """Make the message due, for a viewer that is new."""
+        """Make the message due now, for a new viewer."""
         self._due_at = -math.inf
 
     @cached_property
@@ -71,7 +71,7 @@ class Markers:
     def _shapes(self) -> Iterator[Marker]:
         """Yield every shape in the frame of its link, without prefix.
 
-        Along the axis, each satellite carries its coupling, and that the arm.
+        Along the axis, the coupling is on the satellite, and the arm on the coupling.
         """
         mechanism, face = self._mechanism, FACE_WIDTH
         ring, satellite = teeth.outlines(mechanism, self._module)
@@ -84,7 +84,7 @@ class Markers:
         yield _cylinder('output', 'output', 'output_shaft', 0.2 * radius, length + face, middle)
         petals = min(mechanism.oldham_petals, _MOST_PETALS)
         paths = roses(mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
-        # With the rotor at 0, the frames of rotor and stator are one.
+        # With the rotor at 0, the frames of rotor and stator coincide.
         cams = solve(mechanism, 0.0).satellite_centre.tolist()
         for branch, rose, (x, y) in zip(mechanism.branches, paths, cams, strict=True):
             z, phase = branch.axial_position, teeth.ring_phase(mechanism, branch)
@@ -92,7 +92,7 @@ class Markers:
             yield _line(
                 'ring', 'stator', 'stator', _closed(turned(ring, phase)), line, z + 0.5 * face
             )
-            # On it the centre of the Oldham coupling moves.
+            # The path of the centre of the Oldham coupling.
             yield _line('rose', 'oldham', 'stator', rose, thin, z + 1.2 * face)
             cam = _cylinder('cam', 'rotor', 'rotor', radius, 1.1 * face, z)
             cam.pose.position.x, cam.pose.position.y = x, y
@@ -131,7 +131,7 @@ def _box(kind: str, colour: str, link: str, size: Size, z: float) -> Marker:
 
 
 def _marker(shape: int, kind: str, colour: str, link: str, scale: Size, z: float) -> Marker:
-    """A marker on the z axis of a link, locked to it; viewers list it under its kind."""
+    """Create a marker on the z axis of a link, locked to it, in the namespace `kind`."""
     red, green, blue, _ = map(float, COLOURS[colour].split())
     x_scale, y_scale, z_scale = scale
     return Marker(

@@ -1,4 +1,4 @@
-"""Recorded messages into DDS in their own time: `play` is a driver for whoever listens."""
+"""Plays bags: publishes recorded messages with the timing of the recording."""
 
 import importlib.util
 import math
@@ -24,12 +24,12 @@ from gear_kinematics.wire.cdr import SECOND
 
 __all__ = ['Played', 'ReplayError', 'live_messages', 'play', 'stopped_by_signals']
 
-_GRACE = 5.0  # s: subscribers acknowledge what they got every 3 s
+_GRACE = 5.0  # s; subscribers acknowledge messages every 3 s
 
 
 @contextmanager
 def stopped_by_signals() -> Iterator[Callable[[], bool]]:
-    """Give a function that tells whether SIGINT or SIGTERM came, in place of their effect."""
+    """Replace the effect of SIGINT and SIGTERM by a function that returns whether one came."""
     received: list[int] = []
     previous = {
         number: signal.signal(number, lambda number, _frame: received.append(number))
@@ -44,11 +44,11 @@ def stopped_by_signals() -> Iterator[Callable[[], bool]]:
 
 @dataclass(slots=True)
 class Played:
-    """What `play` did."""
+    """Result of `play`."""
 
     messages: int = 0
     worst_delay: float = 0.0
-    """s, by which a message came later than it was due."""
+    """Greatest delay of a message, s."""
 
 
 def play(
@@ -64,30 +64,30 @@ def play(
     stopped: Callable[[], bool] = lambda: False,
     progress: ReportProgress = lambda _done, _total: None,
 ) -> Played:
-    """Publish a bag's messages, unchanged, in their own time, as `ros2 bag play` does.
+    """Publish a bag's messages unchanged, with their original timing, as `ros2 bag play` does.
 
-    What is late does not delay what follows. Everything is sent reliably, which listeners of
-    every kind can receive.
+    A late message does not delay the next ones. All publishers are reliable, which is compatible
+    with every subscription.
 
     Args:
         source: an open bag.
         topics: the names to publish under, by the names in the bag.
-        rate: bag time per real time.
-        loop: whether to begin anew at the end, a mean period after the last message, until
-            stopped. Header stamps and /clock then jump back.
-        start_offset: s of bag time to leave out, from the first message of the topics on.
-        duration: s of bag time to play, in a loop again and again.
-        clock: Hz of the bag's time on /clock; 0 for none.
+        rate: bag time / real time.
+        loop: whether to restart at the end, a mean period after the last message, until stopped.
+            Header stamps and /clock then jump back.
+        start_offset: s of bag time to skip, from the first message of the topics on.
+        duration: s of bag time to play in each loop.
+        clock: rate of the bag's time on /clock, Hz; 0 for none.
         wait: s to wait until every topic has a subscriber; 0 does not wait.
         stopped: asked at least every 0.1 s whether to stop.
         progress: told of the messages sent: when the wait is over, then at most ten times a
             second, and at the end.
 
     Raises:
-        BagError: if the bag has no such topics or nothing to play, or is damaged; then what could
-            be read has been played.
+        BagError: if the bag lacks a topic, has nothing to play or is damaged; the messages before
+            the damage have been played.
         ReplayError: if there is no subscriber in time, or a topic's type is not installed.
-        ValueError: if a number is out of its range.
+        ValueError: if a number is out of range.
     """
     for name, value in (
         ('start offset', start_offset),
@@ -122,7 +122,7 @@ def play(
                 played.worst_delay = max(played.worst_delay, time.monotonic() - start - due)
                 report(played.messages, None)
         finally:
-            # What got lost on the way is sent again as long as the publisher is there.
+            # Lost messages are sent again as long as the publisher exists.
             for publisher in publishers.values():
                 publisher.wait_for_all_acked(Duration(seconds=0.0 if stopped() else _GRACE))
     progress(played.messages, None)
@@ -133,7 +133,7 @@ class _Clock:
     """Publishes the bag's time on /clock."""
 
     def __init__(self, node: Node, hertz: float) -> None:
-        """Open the topic; for 0 Hz, do nothing."""
+        """Create the publisher; for 0 Hz, do nothing."""
         self._period = 1.0 / hertz if hertz else math.inf
         self._next = -math.inf if hertz else math.inf  # of time.monotonic()
         if hertz:
@@ -141,11 +141,11 @@ class _Clock:
             self._publisher = node.create_publisher(self._class, '/clock', QoSProfile(depth=10))
 
     def update(self, bag_time: int) -> float:
-        """Publish the time, ns, if it is due; returns the time until the next is due, s."""
+        """Publish the time, ns, if it is due; returns the time until the next one, s."""
         now = time.monotonic()
         if now >= self._next:
             self._next += self._period
-            if self._next <= now:  # what was missed is not made up for
+            if self._next <= now:  # skip missed ticks
                 self._next = now + self._period
             message = self._class()
             message.clock.sec, message.clock.nanosec = divmod(bag_time, SECOND)
@@ -156,7 +156,7 @@ class _Clock:
 def _wait_for_subscribers(
     publishers: Collection[Publisher], timeout: float, stopped: Callable[[], bool]
 ) -> None:
-    """Wait until each has a subscriber.
+    """Wait until each publisher has a subscriber.
 
     Raises:
         ReplayError: if one has none after `timeout` s, unless that is 0.
@@ -167,7 +167,7 @@ def _wait_for_subscribers(
         if not alone:
             return
         if time.monotonic() > deadline:
-            raise ReplayError(f'nobody listens to {", ".join(alone)} after {timeout:g} s')
+            raise ReplayError(f'no subscriber on {", ".join(alone)} after {timeout:g} s')
         time.sleep(0.01)
 
 
@@ -181,7 +181,7 @@ def _publisher(node: Node, name: str, topic: str, message_type: str) -> Publishe
 
 
 def _load_class(message_type: str) -> Any:
-    """Import a message class; a bag, which names it, can have nothing else imported."""
+    """Import a message class; refuse any other name, as it comes from the bag."""
     named = re.fullmatch(r'([a-z]\w*)(?:/msg)?/([A-Z]\w*)', message_type, re.ASCII)
     package = importlib.util.find_spec(named[1]) if named else None
     places = package.submodule_search_locations if package else None

@@ -1,12 +1,12 @@
-"""Whether /dev/shm has the room that ROS needs; a process that finds none is killed by SIGBUS."""
+"""Checks that /dev/shm has enough space for ROS; without, SIGBUS would kill the process."""
 
 import os
 
 _PLACE = '/dev/shm'  # noqa: S108, where Linux keeps shared memory
 _TRACING = 2 * os.sysconf('SC_PAGE_SIZE')
-"""Bytes that LTTng writes to when rclpy is imported, without reserving them."""
+"""Bytes that LTTng uses without reserving them when rclpy is imported."""
 _PARTICIPANT = 2**20
-"""Bytes, more than the 650 KiB that Fast DDS reserves for a participant."""
+"""Bytes; Fast DDS reserves 650 KiB for a participant."""
 
 
 class SharedMemoryError(RuntimeError):
@@ -14,13 +14,13 @@ class SharedMemoryError(RuntimeError):
 
 
 def check_shared_memory(participants: int = 1) -> str | None:
-    """Check it before rclpy is imported; returns a warning if messages may get lost.
+    """Check before rclpy is imported; returns a warning if messages may get lost.
 
-    Fast DDS falls back to UDP if it cannot reserve memory for messages. Where there is enough for
-    these but not for a port to receive them, they are lost without a word.
+    Fast DDS falls back to UDP if it cannot reserve memory for messages. If there is enough for the
+    messages but not for a port to receive them, they are lost silently.
 
     Args:
-        participants: how many are about to be created.
+        participants: number of DDS participants to be created.
 
     Raises:
         SharedMemoryError: if the process would be killed.

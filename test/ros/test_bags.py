@@ -25,13 +25,13 @@ BAGS = ROOT / 'bags'
 
 @dataclass(frozen=True)
 class Recording:
-    """A bag, and what is known of it from elsewhere: its README, or the data itself."""
+    """A bag, and facts about it from its README or from the data itself."""
 
     name: str
     messages: int
     """Rotor messages in it."""
     compared: int
-    """Those that call for an output."""
+    """Rotor messages that have an output."""
     topic: str = '/rotor_state'
     joint: str = 'rotor'
     single_turn: bool = False
@@ -121,7 +121,7 @@ def read(path: Path, topic: str) -> list[tuple[int, bytes]]:
         return [(received, bytes(data)) for _, received, data in reader.messages(connections)]
 
 
-def test_the_core_gives_what_the_rotor_topic_calls_for(recording, samples, actuator):
+def test_the_core_gives_the_outputs_for_the_rotor_topic(recording, samples, actuator):
     turns = RotorTurns(single_turn=recording.single_turn, max_speed=650.0, max_acceleration=6500.0)
     positions = []
     for sample in samples:
@@ -145,7 +145,7 @@ def test_the_core_gives_what_the_rotor_topic_calls_for(recording, samples, actua
     assert worst.position <= replaying.BOUND
 
 
-def test_the_node_publishes_what_the_rotor_topic_calls_for(
+def test_the_node_publishes_the_outputs_for_the_rotor_topic(
     recording, rotor_messages, samples, record_property
 ):
     namespace = f'/replay_{recording.name}'
@@ -175,7 +175,7 @@ def test_the_node_publishes_what_the_rotor_topic_calls_for(
 
 
 @pytest.mark.parametrize('recording', SHIPPED, ids=lambda r: r.name, scope='module')
-def test_the_recorded_outputs_are_what_the_rotor_topic_calls_for(samples, bag_path):
+def test_the_recorded_outputs_are_those_for_the_rotor_topic(samples, bag_path):
     worst = replaying.compare_messages(
         samples,
         [data for _, data in read(bag_path, '/output_state')],
@@ -203,7 +203,7 @@ def test_the_single_turn_recording_wraps_and_returns():
 @pytest.mark.parametrize('name', [recording.name for recording in SHIPPED])
 def test_shipped_bags_are_named_as_rosbag2_names_them(name):
     [file] = (BAGS / name).glob(f'{name}*')
-    assert re.fullmatch(r'.+_(\d+)\.([a-zA-Z0-9])+', file.name)  # rosbag2's reindexer wants it
+    assert re.fullmatch(r'.+_(\d+)\.([a-zA-Z0-9])+', file.name)  # required by rosbag2's reindexer
     assert file.stem == f'{name}_0'
     document = yaml.safe_load((BAGS / name / 'metadata.yaml').read_text())
     metadata = document['rosbag2_bagfile_information']

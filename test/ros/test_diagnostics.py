@@ -1,4 +1,4 @@
-"""Faults in the graph, of nodes that share a participant: news of it are there at once."""
+"""Faults in the graph, with nodes that share a participant, so that changes show at once."""
 
 import itertools
 
@@ -35,7 +35,7 @@ def context():
 
 @pytest.fixture
 def make(context):
-    """Give a function that makes a node, by default in a namespace of the test's own."""
+    """A function that creates a node, by default in a namespace of the test."""
     nodes, own = [], next(namespaces)
 
     def make(name, namespace=own):
@@ -72,9 +72,7 @@ def subscription(node, topic='in', **policies):
     ],
     ids=str,
 )
-def test_listener_that_asks_for_more_than_is_offered_is_a_warning(
-    make, offered, requested, policies
-):
+def test_listener_that_requests_more_than_offered_is_a_warning(make, offered, requested, policies):
     mine, other = make('mine'), make('other')
     output = publisher(mine, **offered)
     listener = subscription(other, 'out', **requested)
@@ -91,7 +89,7 @@ def test_listener_that_asks_for_more_than_is_offered_is_a_warning(
     ('reliability', 'found'),
     [('RELIABLE', True), ('BEST_EFFORT', False), ('BEST_AVAILABLE', False)],
 )
-def test_driver_that_offers_less_than_is_asked_for_is_an_error(make, reliability, found):
+def test_driver_that_offers_less_than_requested_is_an_error(make, reliability, found):
     mine, driver = make('mine'), make('driver')
     topic_input = subscription(mine, reliability=ReliabilityPolicy[reliability])
     name = driver.get_fully_qualified_name()
@@ -140,7 +138,7 @@ def test_name_in_the_root_namespace_begins_with_one_slash(make):
     assert fault == '/stranger also publishes out'
 
 
-def test_output_that_the_graph_does_not_know_yet_is_not_judged(make, monkeypatch):
+def test_output_that_is_not_in_the_graph_yet_is_not_checked(make, monkeypatch):
     mine = make('mine')
     subscription(mine, 'out', **LATCHED)
     monkeypatch.setattr(Node, 'get_publishers_info_by_topic', lambda *_: [])

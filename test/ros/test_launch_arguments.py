@@ -1,4 +1,4 @@
-"""What the launch files start the node with, and what they refuse to start it with."""
+"""The arguments with which the launch files start the node, and those they refuse."""
 
 import re
 
@@ -27,7 +27,7 @@ def config(tmp_path) -> str:
 
 
 def arguments(config, namespace='', frame_prefix='', **above):
-    """Give what there is for a launch with these arguments, as text like all of launch's."""
+    """The configurations of a launch with these arguments, which are all text."""
     return node_arguments(
         {'config': str(config), 'namespace': namespace, 'frame_prefix': frame_prefix, **above}
     )
@@ -63,7 +63,7 @@ def test_parameters_are_those_of_the_node_in_its_namespace(config, above, namesp
     assert parameters['ring_teeth'] == NODES[node]
 
 
-def test_prefix_that_was_given_holds_and_that_of_the_file_otherwise(config):
+def test_given_prefix_replaces_that_of_the_file(config):
     assert arguments(config, 'left').parameters['frame_prefix'] == 'own_'
     assert arguments(config, 'left', 'my_').parameters['frame_prefix'] == 'my_'
 

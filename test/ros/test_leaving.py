@@ -1,4 +1,4 @@
-"""A participant that leaves while it discovers others: it comes to an end."""
+"""A participant that leaves during discovery does not hang."""
 
 import os
 import shutil
@@ -10,7 +10,7 @@ import pytest
 from live import Listener
 from sensor_msgs.msg import JointState
 
-# The participant leaves, each time, just while a callback of discovery runs.
+# The participant always leaves while a discovery callback runs.
 SLOW_DISCOVERY = r"""
 #include <dlfcn.h>
 #include <stdatomic.h>
@@ -85,7 +85,7 @@ def test_participant_leaves_while_it_discovers(slow_discovery, arguments, words)
             process.terminate()
 
             def has_ended():
-                # Something to discover.
+                # To be discovered.
                 subscription = listener.node.create_subscription(JointState, 'x', print, 1)
                 listener.node.destroy_subscription(subscription)
                 return process.poll() is not None

@@ -1,4 +1,4 @@
-"""Markers: bodies where the matrix method puts them, teeth that mesh, and hardly any messages."""
+"""Markers: bodies placed as by the matrix method, meshing teeth, and few messages."""
 
 import math
 
@@ -37,7 +37,7 @@ def assert_at(marker: Marker, centre, angle: float) -> None:
 
 
 def polygon(marker: Marker, turn: float = 0.0) -> shapely.Polygon:
-    """Give the outline of a marker where a viewer draws it, but for a turn about its centre."""
+    """The outline of a marker as drawn by a viewer, except for a turn about its centre."""
     points = [(point.x, point.y) for point in marker.points]
     assert points[0] == points[-1]
     turned = affinity.rotate(shapely.Polygon(points), yaw(marker) + turn, (0, 0), use_radians=True)
@@ -89,7 +89,7 @@ def test_couplings_are_on_their_roses(mechanism, rotor_angle):
         assert path.distance(centre) < 0.02 * mechanism.eccentricity
 
 
-def test_every_marker_is_one_of_its_own_and_locked_to_a_link(mechanism):
+def test_every_marker_is_unique_and_locked_to_a_link(mechanism):
     markers = sent(mechanism, 'left_')
     names = [(marker.ns, marker.id) for marker in markers]
     assert len(names) == len(set(names)) == 2 + 8 * len(mechanism.branches)
@@ -129,8 +129,8 @@ def test_markers_of_any_mechanism_fit_into_messages():
 
 
 @pytest.mark.parametrize('executor', ['events', 'single_threaded'])
-def test_node_shows_the_mechanism_to_who_looks_now_or_later(executor, tmp_path, actuator):
-    # With so many teeth, nobody can wait for what is repeated.
+def test_node_shows_the_mechanism_to_present_and_later_viewers(executor, tmp_path, actuator):
+    # With so many teeth, the repetition comes too late for a test.
     large = Mechanism(400, 396, actuator.eccentricity, actuator.branches)
     expected = MarkerArray(markers=sent(large))
     teeth = '-p', 'ring_teeth:=400', '-p', 'satellite_teeth:=396'
@@ -162,7 +162,7 @@ def test_node_sends_no_markers_for_a_turning_rotor(tmp_path):
         assert as_many_markers == markers
 
 
-def test_changed_prefix_reaches_who_looks(tmp_path):
+def test_changed_prefix_reaches_viewers(tmp_path):
     with live_node(tmp_path) as live:
         live.peer.listen(MarkerArray, 'markers', LATCHED)
         received = live.peer.received['markers']

@@ -1,4 +1,4 @@
-"""Bags played into DDS: by a process of their own to a listener, and into a live node."""
+"""Bags played into DDS: by a separate process to a listener, and into a live node."""
 
 import json
 import math
@@ -40,7 +40,7 @@ TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: 'geometry_msgs/msg/Pose
 PERIOD = 2_000_000  # ns
 COUNT = 500
 DURATION = (COUNT - 1) * PERIOD / SECOND  # s
-SLEW = 0.005  # s: by which the clocks of stamps and of the player may drift apart
+SLEW = 0.005  # s; drift between the clocks of stamps and of the player
 PLAY = """
 import json, sys
 from gear_kinematics.bag import Bag
@@ -88,7 +88,7 @@ def recorded(bag_path) -> list[bytes]:
 
 
 class Listener:
-    """Keeps what it hears, with the time of sending, s. It hears only within the waits."""
+    """Keeps the messages it receives while waiting, with their times of sending, s."""
 
     def __init__(self) -> None:
         self.heard: dict[str, list[tuple[float, bytes]]] = {}
@@ -129,7 +129,7 @@ def listener():
 
 @contextmanager
 def playing(path: Path, topics, **options):
-    """Play in a process of its own, which ends with 0 and without a word on stderr."""
+    """Play in a separate process, which ends with 0 and nothing on stderr."""
     command = [sys.executable, '-c', PLAY, str(path), json.dumps(topics), json.dumps(options)]
     with subprocess.Popen(
         command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
@@ -146,9 +146,9 @@ def playing(path: Path, topics, **options):
 
 
 def assert_took(heard, process, duration) -> None:
-    """Hold the time from the first message to the last against the bag's, in s."""
+    """Compare the time from the first message to the last with that of the bag, s."""
     took = heard[-1][0] - heard[0][0]
-    # However busy the machine is: nothing is early, and by how much it is late is known.
+    # On a busy machine, too, nothing is early, and delays are reported.
     assert abs(took - duration) <= process.worst_delay + SLEW
 
 
@@ -193,7 +193,7 @@ def test_twice_the_rate_takes_half_the_time(tmp_path, listener):
 def test_a_loop_repeats_until_a_signal(number, bag_path, recorded, listener):
     name = next(names)
     heard = listener.listen(name)
-    # At a rate at which a listener on a busy machine stays within its queue, however many rounds.
+    # A rate at which the queue of a listener on a busy machine does not overflow.
     with playing(bag_path, {ROTOR: name}, loop=True) as process:
         listener.wait_until(lambda: len(heard) >= 2.5 * COUNT, 'the third round')
         process.send_signal(number)
@@ -241,7 +241,7 @@ def test_the_clock_is_published_on_request_and_increases_with_the_time_of_the_ba
         listener.wait_until(lambda: len(heard) == COUNT, 'every message')
     messages = [decode(data, 'rosgraph_msgs/msg/Clock').clock for data in data_of(clock)]
     times = [message.sec * SECOND + message.nanosec for message in messages]
-    # Listeners to the clock come upon it late, and a busy machine gives fewer.
+    # The clock is discovered late, and a busy machine publishes less often.
     assert 10 < len(times) <= 0.5 + 100.0 * 2.0 * DURATION
     assert all(a < b for a, b in pairwise(times))
     assert times[0] >= SECOND
@@ -269,12 +269,12 @@ def test_a_signal_ends_the_wait(bag_path, listener):
 # In this process.
 
 
-def test_the_node_offers_no_services_that_nobody_would_answer():
+def test_the_node_offers_no_services():
     with replay_node('') as node:
         assert not list(node.services)
 
 
-def test_without_a_wait_nobody_needs_to_listen(bag_path):
+def test_without_a_wait_no_subscriber_is_needed(bag_path):
     seen = []
     with Bag(bag_path) as bag:
         played = play(
@@ -330,7 +330,7 @@ def schedule(times, topics=(ROTOR,), **options) -> list[tuple[float, int]]:
     ],
     ids=str,
 )
-def test_what_is_due_when(options, expected):
+def test_due_times(options, expected):
     assert schedule([5.0, 6.0, 6.5, 9.0], **options) == expected
 
 
@@ -344,7 +344,7 @@ def test_what_is_due_when(options, expected):
     ],
     ids=str,
 )
-def test_a_loop_goes_on_after_a_mean_period(times, options, due):
+def test_a_loop_restarts_after_a_mean_period(times, options, due):
     assert [moment for moment, _ in schedule(times, loop=True, **options)] == due
 
 
@@ -364,7 +364,7 @@ def test_a_loop_goes_on_after_a_mean_period(times, options, due):
     ],
     ids=lambda x: str(x) if isinstance(x, dict) else '',
 )
-def test_what_cannot_be_played_is_told_at_once_in_one_line(topics, options, error, words):
+def test_unplayable_bags_are_refused_at_once_in_one_line(topics, options, error, words):
     types = TYPES | {'/grip': 'acme_msgs/msg/Grip', '/odd': 'sensor_msgs/msg/Odd'}
     messages = [(topic, SECOND, b'') for topic in (ROTOR, '/grip', '/odd')]
     with pytest.raises(error) as caught:
@@ -373,7 +373,7 @@ def test_what_cannot_be_played_is_told_at_once_in_one_line(topics, options, erro
     assert '\n' not in str(caught.value)
 
 
-def test_what_is_before_damage_is_played(listener):
+def test_messages_before_damage_are_played(listener):
     name = next(names)
     heard = listener.listen(name)
     messages = rotor_states([SECOND + k for k in range(5)])
@@ -419,7 +419,7 @@ def test_a_live_node_publishes_what_it_published_when_recorded(name, settings, r
     assert seen[-1] == len(recorded[ROTOR])
 
 
-def test_live_messages_take_the_topic_the_joint_and_the_prefix_of_somebody_else():
+def test_live_messages_with_another_topic_joint_and_prefix():
     data = [rotor_bytes(SECOND + k, ['m1'], [1.0]) for k in range(20)]
     source = Scripted(
         [('/m', SECOND + k, d) for k, d in enumerate(data)], types={'/m': JOINT_STATE}
@@ -432,7 +432,7 @@ def test_live_messages_take_the_topic_the_joint_and_the_prefix_of_somebody_else(
 
 
 @pytest.mark.parametrize('little_endian', [True, False])
-def test_live_messages_stamp_what_has_no_stamp(little_endian):
+def test_live_messages_add_missing_stamps(little_endian):
     times = [SECOND, SECOND + 7]
     data = rotor_bytes(0, position=[1.0], little_endian=little_endian)
     found = by_topic(live_messages(Scripted([(ROTOR, t, data) for t in times]), config()))
@@ -440,17 +440,17 @@ def test_live_messages_stamp_what_has_no_stamp(little_endian):
         assert stamps([(0.0, d) for d in found[topic]]) == times
 
 
-def test_a_consumer_that_dawdles_loses_nothing():
+def test_a_slow_consumer_loses_nothing():
     messages = rotor_states(SECOND + k for k in range(6000))
     found = Counter()
     for number, message in enumerate(live_messages(Scripted(messages), config())):
         found[message[0]] += 1
         if number == 9000:
-            time.sleep(1.2)  # the consumer's own business, in which the node goes on
+            time.sleep(1.2)  # the node goes on meanwhile
     assert found == dict.fromkeys(TYPES, 6000)
 
 
-def test_what_the_node_made_of_the_part_before_damage_is_given():
+def test_outputs_for_the_part_before_damage_are_yielded():
     messages = rotor_states(SECOND + k for k in range(30))
     found = []
     with pytest.raises(DamagedBagError, match='torn'):
@@ -483,13 +483,13 @@ def test_the_node_ends_with_its_consumer(processes):
 def test_a_node_that_ends_is_an_error(processes):
     messages = live_messages(Scripted(rotor_states(SECOND + k for k in range(5000))), config())
     next(messages)
-    # Killed, it may take a lock in shared memory with it, which Fast DDS does not survive here.
+    # If killed, it may leave a lock in shared memory, which would block Fast DDS here.
     processes[0].terminate()
     with pytest.raises(ReplayError, match='has ended'):
         list(messages)
 
 
-def test_a_node_that_does_not_start_says_why():
+def test_a_node_that_does_not_start_gives_the_cause():
     with pytest.raises(ReplayError, match=r'has ended.*ring_teeth'):
         next(live_messages(Scripted(rotor_states([SECOND])), config(ring_teeth=10**6)))
 

@@ -1,4 +1,4 @@
-"""What people watch the mechanism with: launch files, RViz's configuration, Foxglove's layout."""
+"""Viewers of the mechanism: launch files, RViz's configuration, Foxglove's layout."""
 
 import ast
 import json
@@ -106,11 +106,11 @@ class View(NamedTuple):
     elevation: float
     azimuth: float
     field: float
-    """From the lower to the upper edge."""
+    """Field of view, from the lower to the upper edge."""
     near: float
 
     def seen(self, points: np.ndarray) -> np.ndarray:
-        """Give the places of points in the picture, from -1 to 1 along the height of it."""
+        """Project points to the picture, whose height is from -1 to 1."""
         across = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
         flat = np.array([math.cos(self.azimuth), math.sin(self.azimuth), 0.0])
         back = math.cos(self.elevation) * flat + [0.0, 0.0, math.sin(self.elevation)]
@@ -146,7 +146,7 @@ def views(rviz, foxglove) -> dict[str, View]:
 
 
 def surface(marker: Marker) -> np.ndarray:
-    """Give points of a marker, of a cylinder about it where it is a body."""
+    """Points of a marker; for a body, those of a cylinder around it."""
     position, scale = marker.pose.position, marker.scale
     middle = np.array([position.x, position.y, position.z])
     angle, height = np.meshgrid(np.linspace(0.0, math.tau, 72), [-0.5 * scale.z, 0.5 * scale.z])
@@ -186,14 +186,14 @@ def test_plots_are_named_in_foxglove_and_in_lichtblick(foxglove):
     assert titles == [{'Output angle, rad'}, {'Output velocity, rad/s'}]
 
 
-def test_rviz_is_told_whether_to_hide_its_docks(rviz):
-    """Otherwise it reads a variable that nobody has set."""
+def test_rviz_knows_whether_to_hide_its_docks(rviz):
+    """Otherwise it reads an uninitialised variable."""
     geometry = rviz['Window Geometry']
     assert geometry['Hide Left Dock'] is geometry['Hide Right Dock'] is False
 
 
 def started_packages(path: Path) -> set[str]:
-    """Give the packages whose nodes a launch file starts."""
+    """The packages whose nodes a launch file starts."""
     return {
         keyword.value.value
         for node in ast.walk(ast.parse(path.read_text('utf-8')))
@@ -203,7 +203,7 @@ def started_packages(path: Path) -> set[str]:
     }
 
 
-def test_what_launch_files_start_is_a_dependency():
+def test_packages_that_launch_files_start_are_dependencies():
     manifest = ET.parse(ROOT / 'package.xml').getroot()  # noqa: S314, the project's own file
     declared = {element.text for element in manifest.iterfind('exec_depend')}
     started = set().union(*map(started_packages, LAUNCH_FILES))
@@ -229,7 +229,7 @@ TWO_NODES = """
 
 @pytest.fixture
 def launched(tmp_path):
-    """Give a context as it is when the launch files' arguments are known; needs a system ROS."""
+    """A context with the launch files' arguments; needs a system ROS."""
     pytest.importorskip('launch_ros', reason='launch_ros is not installed')
     context = pytest.importorskip('launch', reason='launch is not installed').LaunchContext()
     config = tmp_path / 'two.yaml'
@@ -242,18 +242,18 @@ def launched(tmp_path):
 
 
 def described(context, file: str, function: str) -> list:
-    """Give the nodes that a function of a launch file describes."""
+    """The nodes that a function of a launch file returns."""
     return runpy.run_path(str(ROOT / 'launch' / file))[function](context)
 
 
 def parameters_of(context, node) -> tuple[dict | Path, ...]:
-    """Give the parameters and parameter files that a node is started with."""
+    """The parameters and parameter files that a node is started with."""
     launch_ros = pytest.importorskip('launch_ros')
     return launch_ros.utilities.evaluate_parameters(context, node._Node__parameters)
 
 
 def fixed_frame(context, rviz) -> str:
-    """Give the frame that RViz is told to look from."""
+    """The fixed frame of RViz."""
     launch = pytest.importorskip('launch')
     words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd[1:]]
     return words[words.index('-f') + 1]
