@@ -1,4 +1,4 @@
-"""Why recorded outputs differ: an offset, another mechanism or order of poses, unseen turns."""
+"""Causes of deviations: an offset, another mechanism, another order of poses, unseen turns."""
 
 import math
 from collections.abc import Iterator
@@ -17,15 +17,15 @@ Stamps = NDArray[np.int64]
 Stretches = NDArray[np.int64]
 
 _MOST_TEETH = 1000
-_ENOUGH_TURNING = 0.1  # rad of the rotor, to tell a ratio
-_MOST_BODIES = 6  # whose orders are tried
+_ENOUGH_TURNING = 0.1  # rad of the rotor, to determine a ratio
+_MOST_BODIES = 6  # up to which all orders are tried
 _KEPT = 65_536
 """Stretches, of which samples that still wait for their outputs are in the last few thousand."""
 
 
 @dataclass(slots=True)
 class AngleFit:
-    """A straight line through recorded output angles over rotor angles, by running sums."""
+    """Straight line through recorded output angles over rotor angles, from running sums."""
 
     count: int = 0
     lowest_error: float = math.inf
@@ -38,7 +38,7 @@ class AngleFit:
     _yy: float = 0.0
 
     def update(self, rotor_angle: Array, recorded: Array, error: Array) -> None:
-        """Take the next samples (n,), rad; `error` is recorded less recomputed."""
+        """Add samples (n,), rad; `error` is recorded minus recomputed."""
         if not len(recorded):
             return
         if not self.count:
@@ -54,37 +54,37 @@ class AngleFit:
         self.highest_error = max(self.highest_error, float(error.max()))
 
     def offset(self, tolerance: float) -> float | None:
-        """Give the constant offset of all errors, rad, or None where they are not constant."""
+        """Return the constant offset of all errors, rad, or None if they are not constant."""
         if not self.count or self.highest_error - self.lowest_error > 2.0 * tolerance:
             return None
         offset = 0.5 * (self.lowest_error + self.highest_error)
         return offset if abs(offset) > tolerance else None
 
     def slope(self) -> tuple[float, float] | None:
-        """Give output per rotor angle and its uncertainty, or None: not turned, or no line."""
+        """Return output angle / rotor angle and its uncertainty; None without motion or a line."""
         if self.count < 3:  # noqa: PLR2004, two points always lie on a line
             return None
         n = self.count
-        xx = self._xx - self._x * self._x / n  # a power that overflows raises
+        xx = self._xx - self._x * self._x / n  # ** raises on overflow
         xy = self._xy - self._x * self._y / n
         yy = self._yy - self._y * self._y / n
         if xx < n * _ENOUGH_TURNING**2:
             return None
         slope = xy / xx
         scatter = max(yy - slope * xy, 0.0) / n
-        if not scatter <= 1e-6 * yy / n < math.inf:  # garbage has no line either
+        if not scatter <= 1e-6 * yy / n < math.inf:  # nor is garbage a line
             return None
-        # What the sums themselves lose, and what the scatter leaves open.
+        # The rounding of the sums, and the scatter.
         return slope, abs(slope) * 1e-9 + 5.0 * math.sqrt(scatter / xx)
 
 
 def diagnose(mechanism: Mechanism, fit: AngleFit, tolerance: float) -> str | None:
-    """Name what the recorded output angles have in common, or None.
+    """Describe a systematic deviation of the recorded output angles, or return None.
 
     Args:
-        mechanism: that was assumed.
+        mechanism: the assumed mechanism.
         fit: of the recorded output angles.
-        tolerance: of the angles, rad.
+        tolerance: of the output angles, rad.
     """
     offset = fit.offset(tolerance)
     if offset is not None:
@@ -114,7 +114,7 @@ def diagnose(mechanism: Mechanism, fit: AngleFit, tolerance: float) -> str | Non
 
 
 def _tooth_pair(mechanism: Mechanism, ratio: float, uncertainty: float) -> tuple[int, int] | None:
-    """The teeth whose (zk - zs)/zs is the ratio, as near to the assumed ones as there are."""
+    """Tooth numbers with (zk - zs)/zs = ratio, close to the assumed ones."""
     zk, zs = mechanism.ring_teeth, mechanism.satellite_teeth
     candidates = [(round(zs * (1.0 + ratio)), zs), (zk, round(zk / (1.0 + ratio)))]
     fraction = Fraction(ratio).limit_denominator(_MOST_TEETH)
@@ -129,21 +129,21 @@ def _tooth_pair(mechanism: Mechanism, ratio: float, uncertainty: float) -> tuple
 
 
 class PoseOrder:
-    """Recognises recorded poses that are the expected ones in another order."""
+    """Detects recorded poses that are the expected ones in another order."""
 
     def __init__(self, bodies: list[str], tolerance: float) -> None:
         """Start with no poses.
 
         Args:
-            bodies: their names, in the order that is expected.
+            bodies: names of the bodies in the expected order.
             tolerance: m.
         """
         self._bodies = bodies
         self._tolerance = tolerance
-        self._found: dict[tuple[int, ...], tuple[int, int]] = {}  # messages, and the first stamp
+        self._found: dict[tuple[int, ...], tuple[int, int]] = {}  # number of messages, first stamp
 
     def update(self, recorded: Array, expected: Array, error: Array, stamp: Stamps) -> None:
-        """Take positions (n, bodies, 3) with the greatest error of each message, (n,), m."""
+        """Add positions (n, bodies, 3) and the greatest error of each message (n,), m."""
         wrong = np.flatnonzero(error > self._tolerance)
         if not len(wrong) or len(self._bodies) > _MOST_BODIES:
             return
@@ -156,7 +156,7 @@ class PoseOrder:
                 return
 
     def findings(self, messages: int) -> Iterator[str]:
-        """Name the orders that were found, if any, in a number of messages."""
+        """Describe the orders found in a number of messages."""
         for order, (count, first) in self._found.items():
             names = ', '.join(self._bodies[k] for k in order)
             if count == messages:

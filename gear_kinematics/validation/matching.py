@@ -1,7 +1,7 @@
-"""Matching published messages with the samples that call for them, by header stamp, in a stream.
+"""Matches streams of published messages with the samples they belong to, by header stamp.
 
-A node answers its inputs in order, so that nearly all messages match in long runs; only where a
-run breaks is a single message looked up. Memory is bounded by a window of samples.
+A node publishes in the order of its inputs, so nearly all messages match in long runs; a single
+message is looked up only where a run ends. Memory is bounded by a window of samples.
 """
 
 from collections import Counter
@@ -23,8 +23,8 @@ Columns = dict[str, Array]
 Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
-"""Samples that are kept for messages that come late; what comes later still is extra."""
-_NEW_BEGINNING = 1_000_000_000  # ns: a stamp older by more is no disorder
+"""Samples that are kept for late messages; still later ones count as extra."""
+_RESTART = 1_000_000_000  # ns: a stamp that is older by more is a restart, not disorder
 
 
 class Window:
@@ -38,7 +38,7 @@ class Window:
         return len(self.columns['stamp']) if self.columns else 0
 
     def append(self, **columns: Array) -> None:
-        """Add samples; `stamp` is one of the columns."""
+        """Add samples; one of the columns is `stamp`."""
         old = self.columns
         self.columns = {
             name: np.concatenate([old[name], column]) if old else column
@@ -50,15 +50,15 @@ class Window:
         return {name: column[index] for name, column in self.columns.items()}
 
     def drop(self, count: int) -> None:
-        """Forget the oldest."""
+        """Drop the oldest samples."""
         self.columns = {name: column[count:] for name, column in self.columns.items()}
 
 
 class Matcher:
-    """Matches the messages of one topic, and counts what does not."""
+    """Matches the messages of one topic and counts those without a match."""
 
     def __init__(self) -> None:
-        """Start with nothing seen."""
+        """Start without messages."""
         self.messages = 0
         self.compared = 0
         self.extra = 0
@@ -67,30 +67,30 @@ class Matcher:
         self.first_extra: int | None = None
         self.first_out_of_order: int | None = None
         self.matched = np.zeros(0, bool)
-        """Which samples of the window have their message."""
+        """Whether each sample of the window has its message."""
         self._next = 0
         self._last_stamp: int | None = None
 
     def extend(self, count: int) -> None:
-        """Take note of new samples in the window."""
+        """Add new samples of the window, without messages yet."""
         self.matched = np.concatenate([self.matched, np.zeros(count, bool)])
 
     def see(self, stamps: Array) -> None:
-        """Count new messages, ns, and what is wrong with their order."""
+        """Count new messages by their stamps, ns, and those out of order."""
         self.messages += len(stamps)
         if not len(stamps):
             return
         before = stamps[0] - 1 if self._last_stamp is None else self._last_stamp
         steps = np.diff(stamps, prepend=before)
         self.duplicates += int(np.count_nonzero(steps == 0))
-        disordered = np.flatnonzero((steps < 0) & (steps >= -_NEW_BEGINNING))
+        disordered = np.flatnonzero((steps < 0) & (steps >= -_RESTART))
         self.out_of_order += len(disordered)
         if len(disordered) and self.first_out_of_order is None:
             self.first_out_of_order = int(stamps[disordered[0]])
         self._last_stamp = int(stamps[-1])
 
     def match(self, stamps: Array, window: Array) -> Array:
-        """Find the sample of each message: its index in the window, or -1. Marks it as matched.
+        """Find the sample of each message, as its index in the window or -1, and mark it.
 
         Args:
             stamps: of messages, (n,), ns.
@@ -111,18 +111,18 @@ class Matcher:
         return index
 
     def give_up(self, stamps: Array) -> None:
-        """Count messages, by their stamps, as extra."""
+        """Count messages as extra, by their stamps."""
         self.extra += len(stamps)
         if len(stamps) and self.first_extra is None:
             self.first_extra = int(stamps[0])
 
     def drop(self, count: int) -> None:
-        """Forget the oldest samples of the window."""
+        """Drop the oldest samples of the window."""
         self.matched = self.matched[count:]
         self._next = max(self._next - count, 0)
 
     def _run(self, stamps: Array, window: Array) -> int:
-        """How many messages match the next samples one after the other."""
+        """Number of messages that match the next samples in order."""
         longest = min(len(stamps), len(window) - self._next)
         part = slice(self._next, self._next + longest)
         alike = (stamps[:longest] == window[part]) & ~self.matched[part]
@@ -132,7 +132,7 @@ class Matcher:
         found = np.flatnonzero((window == stamp) & ~self.matched)
         if not len(found):
             return -1
-        # Of a stamp that occurs again after a new beginning, the one that is nearest to come.
+        # If a stamp occurs again after a restart, take the next sample that has it.
         ahead = found[found >= self._next]
         index = int(ahead[0] if len(ahead) else found[-1])
         self.matched[index] = True

@@ -1,9 +1,8 @@
-"""What a recording lacks because of its recorder, for which the node is not to blame.
+"""Messages that are missing in a recording because of its recorder, not of the node.
 
 A recorder subscribes to one topic after another and loses messages meanwhile: `ros2 bag record`
-for about a tenth of a second. So outputs can be missing only from the moment at which every topic
-is being recorded and nothing is lost any more, and an output can be too many only if its input
-would have been recorded.
+for about a tenth of a second. Outputs therefore count as missing only once every topic is recorded
+and the recorder has settled; an output counts as extra only if its input would have been recorded.
 """
 
 from collections import Counter
@@ -20,13 +19,13 @@ SETTLING = 'while the recorder settled'
 AFTER = 'after the last output'
 NO_INPUT = 'whose input was not recorded'
 
-_SETTLED = 1_000_000_000  # ns: by then a recorder loses nothing any more
-_QUIET = 150_000_000  # ns without a loss, after which it has settled earlier
-_END = 500_000_000  # ns that outputs can end before their input
-_HOLE = 1.5  # median periods between two inputs, of which one between them was not recorded
-_SILENCE = 2.5  # median periods between two inputs; there the recorder lost all topics alike
+_SETTLED = 1_000_000_000  # ns after which a recorder has settled
+_QUIET = 150_000_000  # ns without a loss after which it has settled earlier
+_END = 500_000_000  # ns by which outputs may end before their inputs
+_HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
+_SILENCE = 2.5  # median periods between inputs; beyond, the recorder lost all topics
 _KEPT = 32_768  # stamps of inputs
-_DELAY = 1_000_000_000  # ns that an output can take longer than the inputs around it
+_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
 _ALWAYS = -(2**62)  # ns
 
 
@@ -41,12 +40,12 @@ class Inputs(NamedTuple):
     """(n, topics): whether the input has its output."""
 
     def where(self, chosen: Flags) -> 'Inputs':
-        """Give some of them."""
+        """Select some of them."""
         return Inputs(self.received[chosen], self.stamp[chosen], self.answered[chosen])
 
 
 class Missing:
-    """The outputs that one topic lacks."""
+    """The missing outputs of one topic."""
 
     def __init__(self) -> None:
         """Start with none."""
@@ -54,28 +53,28 @@ class Missing:
         self.first: int | None = None
         """Stamp of the first input without its output."""
         self.left_out: Counter[str] = Counter()
-        """Of those that are not judged, by cause."""
+        """Numbers of missing outputs that are not judged, by cause."""
         self.ended_early: float | None = None
-        """s between the last input that has its output and the last input, if that is too long."""
+        """s from the last input with an output to the last input, if that is too long."""
         self._last_answered: int | None = None  # received, ns
         self._tail = 0
         self._tail_first: tuple[int, int] | None = None  # received, stamp; ns
 
     def update(self, received: Array, stamp: Array, answered: Flags, cause: str = '') -> None:
-        """Take the next inputs.
+        """Process the next inputs.
 
         Args:
             received: (n,), ns.
             stamp: (n,), ns.
-            answered: (n,): which of them have an output on this topic.
-            cause: why they are not judged, if they are not.
+            answered: (n,): whether they have an output on this topic.
+            cause: reason not to judge them, or an empty text.
         """
         with_output = np.flatnonzero(answered)
         if cause:
             self.left_out[cause] += len(answered) - len(with_output)
         else:
             end = int(with_output[-1]) + 1 if len(with_output) else 0
-            if end:  # those behind the last output are missing only if another one follows
+            if end:  # those after the last output are missing only if another one follows
                 self._count_tail()
             inner = np.flatnonzero(~answered[:end])
             self._count(len(inner), int(stamp[inner[0]]) if len(inner) else None)
@@ -86,11 +85,11 @@ class Missing:
             self._last_answered = int(received[with_output[-1]])
 
     def close(self, last_received: int | None, *, strict: bool) -> None:
-        """Decide on what follows the last output.
+        """Judge the inputs after the last output.
 
         Args:
-            last_received: when the last input of all was received, ns.
-            strict: whether all of it is missing.
+            last_received: time of reception of the last input, ns.
+            strict: whether all their outputs count as missing.
         """
         if self._last_answered is None or last_received is None:
             self._count_tail()
@@ -117,28 +116,28 @@ class Missing:
 
 
 class Completeness:
-    """Which outputs are missing, on several topics that answer the same inputs."""
+    """Finds missing outputs on several topics with the same inputs."""
 
     def __init__(self, topics: int, *, strict: bool) -> None:
         """Start with no input.
 
         Args:
             topics: number of output topics.
-            strict: whether everything is judged, as if the recorder lost nothing.
+            strict: whether to judge everything, as if the recorder lost nothing.
         """
         self.topics = tuple(Missing() for _ in range(topics))
         self._strict = strict
         self._start = _ALWAYS if strict else None
-        self._first: list[Inputs] = []  # until the recorder has settled for sure
+        self._first: list[Inputs] = []  # until the recorder has certainly settled
         self._last_received: int | None = None
 
     def begin(self, received: int) -> None:
-        """Take note of when the last of all topics began to be recorded, ns."""
+        """Set the time from which all topics are recorded, ns."""
         if self._start is None:
             self._start = received
 
     def update(self, inputs: Inputs) -> None:
-        """Take the next inputs."""
+        """Process the next inputs."""
         received = inputs.received
         if not len(received):
             return
@@ -154,7 +153,7 @@ class Completeness:
             self._take(inputs.where(settled))
 
     def close(self) -> None:
-        """Decide on what waits, since no input comes any more."""
+        """Judge the inputs that are still waiting, after the last input."""
         self._settle()
         for topic in self.topics:
             topic.close(self._last_received, strict=self._strict)
@@ -164,7 +163,7 @@ class Completeness:
             topic.update(inputs.received, inputs.stamp, answered, cause)
 
     def _settle(self) -> None:
-        """Find out when the recorder had settled, and take the inputs that wait for that."""
+        """Find the time at which the recorder had settled, and judge the waiting inputs."""
         if not self._first:
             return
         inputs = Inputs(*map(np.concatenate, zip(*self._first, strict=True)))
@@ -175,9 +174,9 @@ class Completeness:
 
 
 def _settled(inputs: Inputs) -> int:
-    """When the last loss was that follows one before it, or the first input, at once; ns."""
+    """Time of the last loss in an uninterrupted series from the first input on, ns."""
     received, stamp, answered = inputs
-    if len(received) < 2:  # noqa: PLR2004, to tell anything
+    if len(received) < 2:  # noqa: PLR2004, for a period
         return _ALWAYS
     incomplete = received[~answered.all(axis=1)]
     period = np.diff(stamp)
@@ -193,22 +192,22 @@ def _settled(inputs: Inputs) -> int:
 
 
 class RecordedInputs:
-    """The stamps of the latest inputs in a recording, by which one is known not to be in it."""
+    """The latest stamps of recorded inputs, to find inputs that were not recorded."""
 
     def __init__(self, *, strict: bool) -> None:
         """Start with none.
 
         Args:
-            strict: whether every input is taken to have been recorded.
+            strict: whether to assume that every input was recorded.
         """
         self._strict = strict
         self._stamps = np.zeros(0, np.int64)
         self._complete = True
-        self._first_age: int | None = None  # received less stamp, ns
+        self._first_age: int | None = None  # received minus stamp, ns
         self._last_age = 0
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
-        """Take the next inputs (n,), ns, and the stamps of those that were rejected, (m,)."""
+        """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
         if len(stamp):
             self._last_age = int(received[-1] - stamp[-1])
             if self._first_age is None:
@@ -218,7 +217,7 @@ class RecordedInputs:
         self._stamps = stamps[-_KEPT:]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
-        """Tell of outputs (n,), ns, which of them answer an input that was not recorded."""
+        """Whether the inputs of outputs (n,), ns, were not recorded."""
         if self._strict or not len(stamp):
             return np.zeros(len(stamp), bool)
         if self._first_age is None:

@@ -1,4 +1,4 @@
-"""Recordings as `ros2 bag record` makes them: right ones pass, and each fault is found."""
+"""Recordings by `ros2 bag record`: correct ones pass, and each fault is found."""
 
 import math
 import random
@@ -42,7 +42,7 @@ def config() -> dict:
 
 @pytest.fixture(scope='module')
 def traffic() -> dict[int, list[Message]]:
-    """What goes over the topics for 6 s at each rate."""
+    """The messages of 6 s at each rate."""
 
     def at(name: str, every: int) -> list[Message]:
         with Reader(ROOT / 'bags' / name) as reader:
@@ -76,7 +76,7 @@ def stamp_of(message: Message) -> int:
 
 
 def recording(traffic: dict[int, list[Message]], seed: int) -> list[Message]:
-    """Record, from a second after the node has started or from before that, to before its end."""
+    """Record from before, or up to a second after, the start of the node to before its end."""
     rng = random.Random(seed)  # noqa: S311, of faults, not of secrets
     rate = list(RATES)[seed % len(RATES)]
     messages = traffic[rate]
@@ -102,7 +102,7 @@ def validate(messages: list[Message], config: dict, **options) -> BagReport:
 
 
 @pytest.mark.parametrize('seed', range(50))
-def test_what_the_recorder_loses_fails_nothing(traffic, config, seed):
+def test_losses_of_the_recorder_fail_nothing(traffic, config, seed):
     messages = recording(traffic, seed)
     report = validate(messages, config)
     assert report.verdict == Verdict.PASS
@@ -138,7 +138,7 @@ def swap_satellites(content) -> None:
 
 
 def one_changed(messages: list[Message], topic: str, place: float, edit) -> list[Message]:
-    """Change the message of a topic that is at a place of those whose input is there."""
+    """Change the message at a relative place among those of a topic with an input."""
     there = {stamp_of(m) for m in messages if m.topic == ROTOR}
     own = [k for k, m in enumerate(messages) if m.topic == topic and stamp_of(m) in there]
     chosen = own[round(place * (len(own) - 1))]
@@ -146,12 +146,12 @@ def one_changed(messages: list[Message], topic: str, place: float, edit) -> list
 
 
 def settled_by(messages: list[Message]) -> int:
-    """A second after the last topic began, ns: no loss is excused from there on."""
+    """A second after the last topic began, ns, from which on no loss is excused."""
     return max(next(m.received for m in messages if m.topic == t) for t in TOPICS) + SECOND
 
 
 def moment(messages: list[Message], place: float) -> int:
-    """A moment at which outputs are judged in any case, ns."""
+    """A time at which outputs are always judged, ns."""
     begin, end = settled_by(messages), messages[-1].received
     return begin + round(place * (end - SECOND // 3 - begin))
 
@@ -201,8 +201,8 @@ def test_a_fault_is_found_wherever_it_is(traffic, config, seed, fault, place):
 
 
 @pytest.mark.parametrize('seed', range(5))
-def test_a_loss_after_a_quiet_while_is_found_at_once(traffic, config, seed):
-    """A recorder that has lost nothing for a while has settled, before a second has passed."""
+def test_a_loss_after_a_quiet_period_is_found_at_once(traffic, config, seed):
+    """A recorder without losses for some time has settled before a second has passed."""
     rng = random.Random(seed)  # noqa: S311, of faults, not of secrets
     messages = traffic[500]
     begin = messages[0].received + SECOND
@@ -214,8 +214,8 @@ def test_a_loss_after_a_quiet_while_is_found_at_once(traffic, config, seed):
     assert [t.missing for t in report.topics] == [0, 5]
 
 
-def test_an_output_for_a_rejected_input_is_too_many(traffic, config):
-    """Its input was recorded, and calls for no output."""
+def test_an_output_for_a_rejected_input_is_extra(traffic, config):
+    """Its input was recorded, but has no output."""
     messages = list(traffic[500][:3000])
 
     def spoil(content) -> None:
@@ -228,8 +228,8 @@ def test_an_output_for_a_rejected_input_is_too_many(traffic, config):
     assert [(t.extra, t.first_extra) for t in report.topics] == [(1, stamp_of(messages[k]))] * 2
 
 
-def test_outputs_of_another_time_are_too_many(traffic, config):
-    """A stamp before or after all inputs is the recorder's doing only if it was received then."""
+def test_outputs_of_another_time_are_extra(traffic, config):
+    """Stamps before or after all inputs are excused only if they were received then."""
     messages = list(traffic[500][:3000])
     for k, nanoseconds in ((1500, 100 * SECOND), (1800, -100 * SECOND)):
         (output,) = [m for m in messages[k : k + 3] if m.topic == OUTPUT]
@@ -289,7 +289,7 @@ def test_turns_are_taken_again_after_holes_that_hide_some(single_turn, seed):
     assert [t.left_out for t in report.topics] == [{NO_INPUT: len(lost)}] * 2
 
 
-def test_poses_tell_the_turns_where_they_are_recorded_alone(single_turn):
+def test_turns_are_taken_from_poses_that_are_recorded_alone(single_turn):
     """Between two holes of the rotor's topic, before the output's topic was recorded."""
     config, messages = single_turn
     messages = messages[len(messages) // 2 :]
@@ -331,7 +331,7 @@ def test_turns_of_poses_and_angle_have_to_agree(single_turn):
     assert [t.passed for t in report.topics] == [True, False]
 
 
-def test_turns_of_a_multi_turn_encoder_are_no_matter_of_inference(traffic, config):
+def test_turns_of_a_multi_turn_encoder_are_not_inferred(traffic, config):
     def slip(content) -> None:
         content.position = content.position - math.tau / 19
 

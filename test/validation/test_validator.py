@@ -27,7 +27,7 @@ JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseA
 TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: POSE_ARRAY}
 SECOND = 1_000_000_000
 CHANGED = 100
-"""Which message of its topic is changed."""
+"""Number of the changed message of a topic."""
 
 
 @pytest.fixture(scope='module')
@@ -63,7 +63,7 @@ def field_of(report: BagReport, topic: str, name: str):
 
 
 def edited(data: bytes, topic: str, edit: Callable) -> bytes:
-    """Change a message by means of rosbags: `edit` changes the message object."""
+    """Change a message object by `edit`, using rosbags."""
     message = replaying.TYPESTORE.deserialize_cdr(data, TYPES[topic])
     for name in ('position', 'velocity', 'effort'):
         if hasattr(message, name):
@@ -73,7 +73,7 @@ def edited(data: bytes, topic: str, edit: Callable) -> bytes:
 
 
 def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[list[Message], int]:
-    """Change one message of a topic; also give its original stamp."""
+    """Change one message of a topic; also return its original stamp."""
     changed, count, stamp = [], 0, 0
     for name, received, data in messages:
         if name == topic:
@@ -227,7 +227,7 @@ def test_a_value_that_is_not_finite_is_found(recorded, config, value):
 @pytest.mark.parametrize('topic', [ROTOR, OUTPUT])
 @pytest.mark.parametrize('field', ['position', 'velocity', 'effort'])
 def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topic, field, value):
-    """What a flipped bit makes of a float: nothing overflows, and all else is compared."""
+    """As from a flipped bit: nothing overflows, and everything else is compared."""
 
     def spoil(message) -> None:
         getattr(message, field)[0] = value
@@ -242,8 +242,8 @@ def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topi
 
 
 @pytest.mark.parametrize('value', [1e17, 1e100])
-def test_garbage_in_the_first_output_tells_no_turns(value):
-    """Of a single-turn encoder, whose turns before the recording the next output tells."""
+def test_garbage_in_the_first_output_gives_no_turns(value):
+    """The turns of the single-turn encoder are then taken from the next output."""
     config = parameters.load(BAGS.parent / 'config' / 'single_turn.yaml')
     messages = read('single_turn_encoder')
     index = index_of(messages, OUTPUT, 1)
@@ -280,7 +280,7 @@ def test_garbage_in_one_pose_is_an_error_of_that_pose(recorded, config, value):
         assert failed.max_error == pytest.approx(value, rel=1.1)
 
 
-def test_a_field_that_lacks_is_found(recorded, config):
+def test_a_missing_field_is_found(recorded, config):
     def without_effort(message) -> None:
         message.effort = np.zeros(0)
 
@@ -398,7 +398,7 @@ def test_the_offset_that_homing_leaves_is_accepted_with_its_poses(recorded, conf
     assert accepted.verdict == Verdict.PASS
 
 
-def test_no_offset_is_made_up(recorded, config):
+def test_no_offset_is_invented(recorded, config):
     report = validate(recorded, config, allow_offset=True)
     assert report.verdict == Verdict.PASS
     assert report.findings == ()
@@ -418,7 +418,7 @@ def test_another_order_of_the_poses_is_named(recorded, config):
     )
 
 
-def test_a_single_message_in_another_order_is_not_said_of_all(recorded, config):
+def test_a_single_message_in_another_order_is_reported_as_such(recorded, config):
     def swap(message) -> None:
         message.poses[0], message.poses[1] = message.poses[1], message.poses[0]
 
@@ -455,7 +455,7 @@ def test_another_joint_name_is_named(recorded, config):
     )
 
 
-def test_a_prefix_belongs_to_the_configuration(recorded, config):
+def test_a_prefix_of_the_configuration_is_expected(recorded, config):
     report = validate(recorded, {**config, 'frame_prefix': 'left_'})
     assert report.verdict == Verdict.FAIL
     assert all(topic.faults for topic in report.topics)
@@ -512,7 +512,7 @@ def test_a_topic_without_messages_fails(recorded, config):
     assert topic_of(report, POSES).missing == 300
 
 
-def test_damage_keeps_what_came_before(recorded, config):
+def test_messages_before_damage_are_validated(recorded, config):
     def cut_short():
         yield from recorded[:600]
         raise OSError('the disk is gone')
@@ -529,14 +529,14 @@ def test_damage_keeps_what_came_before(recorded, config):
 
 
 def test_outputs_recorded_before_their_inputs_match(recorded, config):
-    """Reception decides on the order in a bag, and the network on reception."""
+    """Messages in a bag are in the order of reception, which depends on the network."""
     early = sorted(recorded, key=lambda m: (m[1] // 20_000_000, m[0]))
     assert [m[0] for m in early] != [m[0] for m in recorded]
     assert validate(early, config).passed
 
 
 def repeated(messages: list[Message], times: int, seconds: int) -> list[Message]:
-    """A longer recording of the same, stamps going on."""
+    """Repeat a recording with increasing stamps."""
     long = []
     for k in range(times):
         for topic, received, data in messages:
@@ -554,7 +554,7 @@ def test_batches_leave_no_seams(recorded, config):
     assert report.rotor.gaps == 39
 
 
-def test_a_bag_that_loops_starts_anew(config):
+def test_a_bag_that_loops_restarts(config):
     messages = read('servo_point_to_point')
     looped = messages + messages
     report = validate(looped, config)
@@ -602,7 +602,7 @@ def test_inputs_without_stamps_are_named(recorded, config):
 
 
 def restamped(data: bytes, seconds: int = 1) -> bytes:
-    """Write the time of the stamp with so many seconds among its nanoseconds."""
+    """Move a number of seconds of the stamp to its nanoseconds."""
     sec, nanosec = struct.unpack_from('<iI', data, 4)
     return data[:4] + struct.pack('<iI', sec - seconds, nanosec + seconds * SECOND) + data[12:]
 
@@ -624,7 +624,7 @@ def test_unnormalised_stamps_match_their_outputs_and_are_named(recorded, config)
     [(150, Verdict.PASS), (151, Verdict.FAIL), (299, Verdict.FAIL), (300, Verdict.UNUSABLE)],
 )
 def test_a_recording_of_which_most_is_rejected_does_not_pass(recorded, config, bad, verdict):
-    """Though all that is left is as it should be: a node answers no message that it rejects."""
+    """Although the remaining outputs are right, as rejected messages have none."""
     wrong = set(np.random.default_rng(0).permutation(300)[:bad].tolist())
     counts, changed = Counter(), []
     for topic, received, data in recorded:
@@ -679,7 +679,7 @@ def test_layouts_may_change_in_mid_recording(recorded, config):
     assert validate(recorded[:450] + half, config).passed
 
 
-def test_the_series_shows_the_worst(recorded, config):
+def test_the_series_shows_the_worst_deviation(recorded, config):
     messages = repeated(recorded, 60, 1)
     changed, stamp = change_one(messages, OUTPUT, add('position', 1e-3))
     series = validate(changed, config).series
@@ -694,7 +694,7 @@ def test_the_series_shows_the_worst(recorded, config):
     assert series.time == sorted(series.time)
 
 
-def test_progress_is_told(recorded, config):
+def test_progress_is_reported(recorded, config):
     told = []
     validator = Validator(config)
     messages = repeated(recorded, 20, 1)
