@@ -159,7 +159,7 @@ def test_numbers_of_the_handbooks_example():
     ('mechanism', 'words'),
     [
         (Mechanism(80, 76, 0.0009, (Branch('a'),)), ['0.0009 m', 'greater than 0.000939693 m']),
-        (pair_of(80, 76, 1.0), ['0.001 m', 'clearance of -0.0105 rad', 'contact ratio of 0.994']),
+        (pair_of(80, 76, 1.0), ['0.001 m', 'margin of -0.0105 rad', 'contact ratio of 0.994']),
         (pair_of(80, 76, 1.5), ['0.0015 m', 'contact ratio of 0.691']),
         (pair_of(80, 76, 5.0), ['0.005 m', 'contact ratio of -7.221']),
     ],
