@@ -155,7 +155,7 @@ class RotorTurns:
         if reach >= math.pi and velocity is not None and self._velocity is not None:
             change = velocity - self._velocity
             middle = 0.5 * (velocity + self._velocity) * elapsed
-            # Products, because ** raises on overflow.
+            # No **, which raises on overflow.
             spread = self.max_acceleration * elapsed * elapsed / 4.0
             spread -= change * change / (4.0 * self.max_acceleration)
             if spread >= 0.0 and abs(middle) <= reach:  # else the limits or the speeds are wrong

@@ -171,7 +171,7 @@ def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[st
 
 
 def load(path: Path, node: str = NODE) -> dict[str, Any]:
-    """Read a node's parameters from a file as the node would; what it leaves out has its default.
+    """Read a node's parameters from a file as the node would; missing ones have their defaults.
 
     Args:
         path: a parameter file of ROS: blocks of parameters below names of nodes.

@@ -18,7 +18,7 @@ from gear_kinematics.wire.cdr import SECOND
 Array = NDArray[np.float64]
 
 MOST_TURNS = 1000
-"""Of the rotor at a constant speed; figures cannot show more."""
+"""Rotor turns at a constant speed; figures cannot show more."""
 _PER_TURN = 360  # samples
 _ROUNDING = 1e-9  # by which intervals may miss the end
 

@@ -65,7 +65,7 @@ class AngleFit:
         if self.count < 3:  # noqa: PLR2004, two points always lie on a line
             return None
         n = self.count
-        xx = self._xx - self._x * self._x / n  # ** raises on overflow
+        xx = self._xx - self._x * self._x / n  # no **, which raises on overflow
         xy = self._xy - self._x * self._y / n
         yy = self._yy - self._y * self._y / n
         if xx < n * _ENOUGH_TURNING**2:
