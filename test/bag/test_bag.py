@@ -1069,7 +1069,7 @@ def test_what_cannot_be_written_is_refused(tmp_path):
             (lambda: writer.add_topic('/a', 'sensor_msgs/msg/JointState'), 'added already'),
             (lambda: writer.add_topic('/b', 'my_msgs/msg/Odd'), 'my_msgs/msg/Odd is not of'),
             (lambda: writer.write('/b', 1, b''), '/b has not been added'),
-            (lambda: writer.write('/a', -1, b''), 'bag: -1 is no time'),
+            (lambda: writer.write('/a', -1, b''), 'bag: the time of reception -1 is out'),
         ):
             with pytest.raises(BagError, match=cause):
                 attempt()
