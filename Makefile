@@ -12,6 +12,9 @@ EXPLAIN_PIP = if grep -q 'connection broken' $(PIP_LOG); then \
 	elif test "$$(uname -sm)" != 'Linux x86_64'; then \
 	echo "ROS has no wheels for $$(uname -sm): install ROS 2 Jazzy, then colcon build"; \
 	else tail -n 1 $(PIP_LOG); fi
+# Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
+# may wait for good after that.
+PYTEST := -m pytest --numprocesses 2 --dist loadfile --max-worker-restart 0
 LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 	--no-emit-index-url --quiet --upgrade
 
@@ -19,7 +22,7 @@ LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
 	_ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help demo test lint types docs format pictures soak fuzz lock clean
+.PHONY: help demo quick test lint types docs format pictures soak fuzz lock clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
@@ -27,11 +30,12 @@ help: ## Show this list
 demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and validate it
 	$(BIN)/gearkin demo
 
-# Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
-# may wait for good after that.
+quick: lint ## Check style, and run the tests that need neither a live node nor much time
+	$(BIN)/python $(PYTEST) -m 'not live and not slow'
+
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest --numprocesses 2 --dist loadfile --max-worker-restart 0
+	$(BIN)/coverage run $(PYTEST)
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 	@echo "$$(cat .pytest_cache/v/skipped)"

@@ -17,6 +17,8 @@ from mounts import with_mounts
 from gear_kinematics.ros import shared_memory
 from gear_kinematics.ros.shared_memory import check_shared_memory
 
+pytestmark = pytest.mark.slow
+
 BAG = BAGS / 'servo_point_to_point'
 NODE = [sys.executable, '-P', '-m', 'gear_kinematics.ros']
 PIPES = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE}
@@ -109,6 +111,7 @@ def test_nothing_heavy_is_imported_before_signals_are_handled():
     assert not {'numpy', 'rclpy', 'argparse', 'rich', 'yaml'} & set(done.stdout.split())
 
 
+@pytest.mark.live
 def test_a_node_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
     options = PIPES | {'env': os.environ | {'ROS_LOG_DIR': str(tmp_path)}}
     with started(NODE, **options) as process:
@@ -249,6 +252,7 @@ def test_gearkin_needs_no_open_streams(streams, tmp_path):
     assert [bag['verdict'] for bag in json.loads(report.read_text())['bags']] == ['pass', 'pass']
 
 
+@pytest.mark.live
 def test_a_node_opens_nothing_in_place_of_a_closed_stream(tmp_path):
     command = closing('<&- >&- 2>&-', *NODE)
     with started(command, env=os.environ | {'ROS_LOG_DIR': str(tmp_path)}) as process:
@@ -335,6 +339,7 @@ def test_without_shared_memory_there_is_one_line_and_no_bus_error(program, argum
     )
 
 
+@pytest.mark.live
 def test_a_node_warns_of_little_shared_memory_and_starts(tmp_path):
     environment = os.environ | {'ROS_LOG_DIR': str(tmp_path)}
     with started(in_shared_memory('200k', *NODE), env=environment, **PIPES) as process:

@@ -346,6 +346,7 @@ def test_big_endian_messages_pass_untouched(recorded, tmp_path):
         assert read(rosbags_bag(tmp_path / storage, swapped, storage)) == swapped
 
 
+@pytest.mark.slow
 def test_real_recordings_are_read(shared_path):
     for name, topic, count in (
         ('feetech_servos', '/servo/out/state', 954),
@@ -416,6 +417,7 @@ def test_messages_of_an_mcap_are_in_the_order_of_reception(recorded, tmp_path):
     assert read(path) == recorded
 
 
+@pytest.mark.slow
 def test_reading_takes_little_memory(recorded, tmp_path):
     messages = [
         (topic, received + 10**10 * turn, data)
@@ -460,6 +462,7 @@ def offsets_of_messages(path: Path) -> list[int]:
     return ends
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('use_chunking', [True, False])
 def test_a_cut_mcap_gives_every_whole_message_before_the_cut(recorded, tmp_path, use_chunking):
     original = mcap_file(
@@ -839,6 +842,7 @@ def fuzzed(request, recorded, tmp_path_factory) -> tuple[Path, dict[Path, bytes]
     return path, {p: p.read_bytes() for p in ([path] if path.is_file() else path.iterdir())}
 
 
+@pytest.mark.slow
 @settings(
     max_examples=80, suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None
 )
@@ -942,6 +946,7 @@ def test_others_read_what_is_written(recorded, tmp_path, storage, compression):
             assert dict(rows.execute(query)) == definitions
 
 
+@pytest.mark.slow
 @WRITTEN
 @pytest.mark.parametrize('count', [1, 1000, 10**6])
 def test_files_are_those_of_rosbags(recorded, tmp_path, storage, compression, count):
@@ -1003,6 +1008,7 @@ with Bag(sys.argv[1]) as bag, BagWriter(*sys.argv[2:]) as writer:
 """
 
 
+@pytest.mark.slow
 @WRITTEN
 def test_the_same_messages_give_the_same_bytes(recorded, tmp_path, storage, compression):
     """In any folder and process, and when a copy is copied."""

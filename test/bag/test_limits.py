@@ -26,6 +26,8 @@ if sys.version_info >= (3, 14):
 else:
     from backports import zstd
 
+pytestmark = pytest.mark.slow
+
 JOINT_STATE = 'sensor_msgs/msg/JointState'
 KB, MB, GB = 10**3, 10**6, 10**9
 MAX_MEMORY = 300 * MB  # of it, the program itself takes 60

@@ -21,6 +21,8 @@ def run(code: str, *arguments: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_demo_plays_the_shipped_bag_through_the_live_node_and_agrees():
     done = run(GEARKIN, 'demo')
     assert done.returncode == 0, done.stderr
@@ -207,6 +209,7 @@ def test_help_is_everywhere(command, capsys):
     assert 'usage: gearkin' in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_only_the_demo_needs_ros():
     done = run(f'import sys; sys.modules["rclpy"] = None; {GEARKIN}', 'describe')
     assert done.returncode == 0, done.stderr

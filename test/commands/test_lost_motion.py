@@ -104,6 +104,7 @@ def test_transmission_error_of_both_encoders(motion, capsys):
     assert found['hysteresis'] is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('suffix', ['png', 'svg', 'pdf'])
 def test_plot_is_an_image_of_its_suffix(recording, motion, tmp_path, suffix, capsys):
     starts = {'png': b'\x89PNG', 'svg': b'<?xml', 'pdf': b'%PDF'}
@@ -117,6 +118,7 @@ def test_plot_is_an_image_of_its_suffix(recording, motion, tmp_path, suffix, cap
     assert capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_page_needs_nothing_from_elsewhere(recording, motion, tmp_path, capsys):
     target = tmp_path / 'page.html'
     assert main(['lost-motion', str(recording), str(motion), '--html', str(target)]) == 0
@@ -210,6 +212,7 @@ def test_garbage_in_one_recording_keeps_no_other(recording, tmp_path, column, va
     assert json.loads(captured.out)['recordings'][-1]['recording'] == 'gear.csv'
 
 
+@pytest.mark.slow
 def test_report_needs_neither_matplotlib_nor_plotly(recording):
     program = (
         'import sys; sys.modules["matplotlib"] = sys.modules["plotly"] = None\n'

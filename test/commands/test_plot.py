@@ -21,6 +21,7 @@ SERVO = str(share_directory() / 'bags' / 'servo_point_to_point')
 SIGNATURES = {'png': b'\x89PNG\r\n\x1a\n', 'svg': b'<?xml', 'pdf': b'%PDF-', 'gif': b'GIF89a'}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('suffix', 'figure', 'options'),
     [
@@ -44,6 +45,7 @@ def test_plot_writes_the_same_file_each_time(figure, suffix, options, tmp_path, 
     assert capsys.readouterr() == ('', '')
 
 
+@pytest.mark.slow
 def test_scheme_shows_the_moment_of_the_recording(tmp_path):
     """The rotor stands at 2 rad from the second on."""
     rotor = Samples([0, 1_000_000_000, 3_000_000_000], [0.5, 2.0, 2.0])
@@ -60,6 +62,7 @@ def test_scheme_shows_the_moment_of_the_recording(tmp_path):
     assert path.read_bytes() == pictures[0]
 
 
+@pytest.mark.slow
 def test_sizes_are_those_of_the_config_and_the_options(tmp_path):
     config = tmp_path / 'small.yaml'
     parameters = 'ring_teeth: 61, satellite_teeth: 58, eccentricity: 0.0008'
@@ -73,6 +76,7 @@ def test_sizes_are_those_of_the_config_and_the_options(tmp_path):
     assert pictures[0] == pictures[1] != pictures[2]
 
 
+@pytest.mark.slow
 def test_scheme_without_teeth_says_why(tmp_path, capsys):
     """At 0.65 mm the same gears mesh."""
     pair = ('--ring-teeth', '30', '--satellite-teeth', '28')
@@ -110,6 +114,7 @@ def test_picture_of_the_readme_is_a_whole_turn_of_the_output():
         assert (image.n_frames, image.size, image.info['loop']) == (190, (420, 280), 0)
 
 
+@pytest.mark.slow
 def test_animation_of_a_bag_says_how_to_see_the_rotor(tmp_path, capsys):
     path = tmp_path / 'servo.gif'
     part = ('--start-offset', '0.3', '--duration', '0.2', '--fps', '25', '--width', '100')
@@ -239,6 +244,7 @@ def test_bag_without_a_rotor_topic_is_refused(tmp_path, capsys):
         assert not path.exists()
 
 
+@pytest.mark.slow
 def test_without_matplotlib_there_is_one_line_and_no_file(tmp_path):
     code = (
         'import sys; sys.modules["matplotlib"] = None\n'

@@ -238,6 +238,7 @@ def test_plot_shows_the_split_and_its_thresholds(tmp_path, monkeypatch):
     assert seconds[-1] == pytest.approx((load[-1] - 1.0) / 2000 / SECOND)
 
 
+@pytest.mark.slow
 def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
     code = (
         'import sys; sys.modules["matplotlib"] = None\n'

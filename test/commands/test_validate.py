@@ -117,6 +117,7 @@ def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
     assert done.stdout.isprintable() or done.stdout.replace('\n', '').isprintable()
 
 
+@pytest.mark.slow
 def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_only(tmp_path):
     rewrite(tmp_path / 'late', late={'/body_poses': 40})
     done = gearkin('validate', 'late', cwd=tmp_path)
@@ -132,6 +133,7 @@ def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_onl
         assert 'late: finding: /body_poses: 40 messages missing, the first at ' in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('options', [[], ['--jobs', '2']])
 def test_the_worst_verdict_of_many_counts_and_their_order_is_kept(options, bags):
     done = gearkin('validate', *options, 'wrong', 'garbage.mcap', 'good', cwd=bags)
@@ -158,6 +160,7 @@ def test_all_shipped_bags_pass_each_with_its_own_config():
     }
 
 
+@pytest.mark.slow
 def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
     file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
     done = gearkin('validate', file)
@@ -385,6 +388,7 @@ def test_a_report_goes_into_a_pipe_and_through_a_link(bags, tmp_path):
 # Pipes, terminals, signals.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('arguments', 'code'),
     [
@@ -473,6 +477,7 @@ def test_a_terminal_gets_tables_and_its_progress_apart(bags, terminals):
     assert 'FAILED' not in bar
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('options', [[], ['--jobs', '2']])
 def test_progress_on_a_terminal_leaves_a_pipe_clean(options, bags, terminals):
     _, progress = terminals
@@ -492,6 +497,7 @@ def test_progress_on_a_terminal_leaves_a_pipe_clean(options, bags, terminals):
     assert '━' in progress.text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('options', [[], ['--jobs', '2']])
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_validation_ends_at_once_and_leaves_nothing(
@@ -515,6 +521,7 @@ def test_an_interrupted_validation_ends_at_once_and_leaves_nothing(
     assert list(reports.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_ctrl_c_is_for_the_process_that_ends_the_others(bags, tmp_path):
     with ExitStack() as stack:
         with BlockedBag(SERVO, tmp_path / 'blocked') as blocked:
@@ -528,6 +535,7 @@ def test_ctrl_c_is_for_the_process_that_ends_the_others(bags, tmp_path):
     assert errors.count('\n') == 1
 
 
+@pytest.mark.slow
 def test_processes_end_with_one_that_is_killed(bags, tmp_path):
     with (
         BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
@@ -541,6 +549,7 @@ def test_processes_end_with_one_that_is_killed(bags, tmp_path):
 # compute.
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('name', 'options'),
     [
@@ -565,6 +574,7 @@ def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
         assert found[f'{namespace}/{topic}: compared'] == str(SAMPLES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('bad', 'code'), [(0, 0), (5, 0), (6, 1)])
 def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code, tmp_path):
     with BagWriter(source := tmp_path / 'source') as writer:
@@ -581,6 +591,7 @@ def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code
         assert bag.message_count == 10 + 2 * (10 - bad)
 
 
+@pytest.mark.slow
 def test_compute_says_what_it_left_out_and_what_it_did_not_understand(tmp_path):
     types = [('/rotor_state', JOINT_STATE), ('/grip', 'a/msg/Grip'), ('/nod', 'a/msg/Nod')]
     messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0])), ('/nod', 2, b'who knows')]
@@ -600,6 +611,7 @@ def test_compute_says_what_it_left_out_and_what_it_did_not_understand(tmp_path):
         ]
 
 
+@pytest.mark.slow
 def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
     types = [('/rotor_state', JOINT_STATE), ('/text', 'std_msgs/msg/String')]
     messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0]))]
@@ -616,6 +628,7 @@ def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
     assert gearkin(*given, '--topics').returncode == 0
 
 
+@pytest.mark.slow
 def test_compute_uses_the_config_beside_the_bag(tmp_path):
     out = tmp_path / 'out'
     assert gearkin('compute', SINGLE_TURN, out).returncode == 0
@@ -623,6 +636,7 @@ def test_compute_uses_the_config_beside_the_bag(tmp_path):
     assert gearkin('validate', out).returncode == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
 def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
     folder = tmp_path / 'results'
@@ -668,6 +682,8 @@ def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags
 # The live node.
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(bags):
     """The recorded outputs are wrong; the file of a bag that is none is told on the way."""
     bag = bags / 'wrong'
@@ -679,6 +695,8 @@ def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(bags):
     assert f'{bag}: /output_state: compared: {SAMPLES}\n' in done.stdout
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_a_shipped_bag_validates_live():
     done = gearkin('validate', '--live', SINGLE_TURN)
     assert (done.returncode, done.stderr) == (0, '')
@@ -686,6 +704,8 @@ def test_a_shipped_bag_validates_live():
     assert found['/output_state: compared'] == found['/body_poses: compared'] == '2500'
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_a_replay_tells_what_it_did(bags):
     done = gearkin('replay', bags / 'good', '--no-wait', '--rate', 10, '--start-offset', 0.1)
     assert (done.returncode, done.stderr) == (0, '')
@@ -725,6 +745,7 @@ def test_help_tells_the_arguments(command, capsys):
     assert 'BAG' in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('arguments', [['validate', 'good'], ['compute', 'rotor_only', 'out']])
 def test_recordings_need_neither_ros_nor_dask_nor_plotly(arguments, bags, tmp_path):
     missing = 'for name in ("rclpy", "distributed", "dask", "plotly"): sys.modules[name] = None'

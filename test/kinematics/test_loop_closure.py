@@ -65,6 +65,7 @@ def constraints(mechanism, bodies, start) -> np.ndarray:
     return np.array(values)
 
 
+@pytest.mark.slow
 @given(mechanisms(), motions())
 def test_loops_of_both_methods_close(mechanism, values):
     tolerance = 200.0 * EPS * speed_up(mechanism) * mechanism.eccentricity

@@ -51,6 +51,7 @@ def test_closed_form_and_matrix_method_agree_in_every_field(mechanism, values):
     assert compared == set(field_names(closed))
 
 
+@pytest.mark.slow
 @given(mechanisms(), samples(3.0))
 def test_positions_agree_with_the_oracle(mechanism, angles):
     state = matrix_method.solve(mechanism, angles)
@@ -58,12 +59,14 @@ def test_positions_agree_with_the_oracle(mechanism, angles):
     assert_within(position_errors(state, mechanism, exact), 4e-15 * (1.0 + speed_up(mechanism)))
 
 
+@pytest.mark.slow
 @given(mechanisms(), samples(1e6))
 def test_turn_angle_is_within_half_a_turn(mechanism, angles):
     state = matrix_method.solve(mechanism, angles)
     assert np.all(np.abs(state.output_turn_angle) <= math.pi + np.spacing(np.abs(angles) * 800.0))
 
 
+@pytest.mark.slow
 @given(mechanisms(), motions())
 def test_batches_equal_single_samples(mechanism, values):
     state = matrix_method.solve(mechanism, *values)

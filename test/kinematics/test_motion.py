@@ -99,6 +99,7 @@ def test_turns_are_counted_where_their_product_with_the_teeth_is_not_exact(
     assert_within(position_errors(state, mechanism, exact))
 
 
+@pytest.mark.slow
 def test_thousands_of_samples_agree_with_the_oracle(actuator):
     """More samples than one chunk of `solve`, with a turn count for each, in both directions."""
     generator = np.random.default_rng(1)

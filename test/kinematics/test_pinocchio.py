@@ -47,6 +47,7 @@ def chains(mechanism: Mechanism) -> Chains:
     return result
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('teeth', [(80, 76), (61, 58), (9, 4)], ids=str)
 @pytest.mark.parametrize('count', [1, 2, 3])
 def test_chains_of_rigid_bodies_move_alike(teeth, count):

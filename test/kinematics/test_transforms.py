@@ -79,6 +79,7 @@ def test_cams_are_where_their_phases_point():
     assert_close(offsets, [[0.0, 2.0, 0.5], [-2.0, 0.0, 0.0], [0.0, -2.0, -0.5]], 4.0 * EPS)
 
 
+@pytest.mark.slow
 @given(mechanisms(), samples(100.0))
 def test_turns_of_shaft_and_satellite(mechanism, angles):
     """The satellite turns by φ5 - φ2 = -φ2 zk/zs on its cam."""
@@ -88,6 +89,7 @@ def test_turns_of_shaft_and_satellite(mechanism, angles):
     assert_close(satellite_turn(mechanism, angles), -angles * zk / zs, tolerance)
 
 
+@pytest.mark.slow
 @given(mechanisms(max_branches=2), samples(5.0, shapes=((), (3,), (2, 1))))
 def test_frames_agree_with_the_oracle(mechanism, angles):
     """Every transform against 50-digit products with exact slides, at any axial position."""

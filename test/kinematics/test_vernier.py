@@ -106,6 +106,7 @@ def test_counts_agree_with_enumeration(ring_teeth):
     assert step(ring_teeth) == pytest.approx(2.0 * math.pi * float(gaps.pop()), rel=1e-15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('ring_teeth', SMALL)
 def test_every_position_is_reached_from_its_own_angle(ring_teeth):
     """Also with whole turns added or subtracted."""
@@ -131,6 +132,7 @@ def test_nearest_is_nearest_of_all(ring_teeth):
         assert_consistent(ring_teeth, above)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('ring_teeth', [1, 2, 3, 5, 6])
 @given(st.floats(-30.0, 30.0))
 def test_no_setting_is_nearer(ring_teeth, angle):

@@ -81,6 +81,7 @@ def recorded(angle, noise: float, seed: int):
     return torque, quantised(angle + generator.uniform(0.0, STEP), STEP)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', GEARS)
 def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
     expected = truth(GEARS[name])._asdict()
@@ -90,6 +91,7 @@ def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
         assert estimate.value == pytest.approx(expected[figure], abs=tolerance), figure
 
 
+@pytest.mark.slow
 def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
     """Intervals contain the true value as often as stated, and are no wider than that needs."""
     hits: dict[str, list[bool]] = {}
@@ -119,6 +121,7 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
             assert np.median(widths[f'{name} {figure}']) < limit, (name, figure)
 
 
+@pytest.mark.slow
 def test_many_repeats_do_not_hide_that_noise_rounds_the_curve():
     """The gear goes through its play at a torque of 1 N·m; lost motion is read at 1.2 N·m."""
     torque = ramps(*[(LARGE, 400)] * 10)
@@ -231,6 +234,7 @@ def actuator_test(request, shared_path):
     return request.param, data
 
 
+@pytest.mark.slow
 def test_preload_shows_in_the_hysteresis_of_the_actuator(actuator_test):
     name, data = actuator_test
     small, large = measured(data['TORQUE'], 2.0 * math.pi * data['POSITION'])
@@ -246,6 +250,7 @@ def test_preload_shows_in_the_hysteresis_of_the_actuator(actuator_test):
         assert abs(np.degrees(small.play.value)) < 0.2
 
 
+@pytest.mark.slow
 def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(actuator_test):
     """The commanded torque is free of noise: angles where it is zero, ramp by ramp."""
     _, data = actuator_test
@@ -264,6 +269,7 @@ def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(actuator_tes
     assert abs(small.hysteresis.value - expected) <= small.hysteresis.uncertainty
 
 
+@pytest.mark.slow
 def test_ramps_of_the_actuator_repeat_within_their_uncertainty(shared_path):
     """Each ramp lies in the 95 % prediction interval of the others."""
     inside = total = 0

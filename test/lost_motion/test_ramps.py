@@ -29,6 +29,7 @@ def test_isotonic_fit_is_that_of_the_min_max_formula(values):
     np.testing.assert_allclose(np.repeat(means, counts), expected, rtol=0, atol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('noise', [0.0, 0.05, 0.3])
 def test_ramps_are_told_apart_by_their_amplitude(noise):
     torque = ramps((4.0, 300), (4.0, 300), (4.0, 300), (40.0, 900), (40.0, 900))

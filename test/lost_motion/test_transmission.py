@@ -67,11 +67,13 @@ def found(recording, actuator):
     return measure(recording, actuator).transmission
 
 
+@pytest.mark.slow
 def test_lost_motion_on_reversals_is_the_play(found):
     assert found.lost_motion.repeats == 2
     assert abs(found.lost_motion.value - PLAY) <= found.lost_motion.uncertainty < 2e-5
 
 
+@pytest.mark.slow
 def test_accuracy_is_peak_to_peak_in_one_direction(found):
     ideal = np.linspace(0.0, 2.2 * TURN, 200_000)
     errors = sum(a * np.sin(order * ideal + order) for order, a in AMPLITUDES.items())
@@ -80,6 +82,7 @@ def test_accuracy_is_peak_to_peak_in_one_direction(found):
         assert way.value == pytest.approx(np.ptp(errors), abs=2e-5)
 
 
+@pytest.mark.slow
 def test_amplitudes_of_the_marked_orders(found):
     orders = {order.name: order for order in found.orders}
     assert orders['rotor × 1'].cycles == 19
@@ -91,6 +94,7 @@ def test_amplitudes_of_the_marked_orders(found):
             assert way.value == pytest.approx(expected, abs=3e-6), order.name
 
 
+@pytest.mark.slow
 def test_spectrum_has_its_peaks_at_these_orders(found):
     for spectrum in found.spectra:
         for order, amplitude in AMPLITUDES.items():
@@ -101,16 +105,19 @@ def test_spectrum_has_its_peaks_at_these_orders(found):
         assert spectrum.amplitude[quiet].max() < 1e-5
 
 
+@pytest.mark.slow
 def test_steps_of_both_encoders_are_known(recording):
     assert recording.motion.rotor_step == pytest.approx(TURN / 2**16 / 19, rel=1e-6)
     assert recording.motion.output_step == pytest.approx(TURN / 2**20, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_offset_of_the_encoder_is_reported(found):
     assert found.offset == pytest.approx(1.0, abs=2e-4)
     assert found.travel == pytest.approx(2.2 * TURN, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_values_of_a_csv_row_are_simultaneous(tmp_path, actuator):
     ideal = there_and_back(2.2, 2)
     path = write_csv(
@@ -150,6 +157,7 @@ def motion(angle: np.ndarray, error: np.ndarray) -> Motion:
     return Motion(angle, error, direction, {}, rotor_step=0.0, output_step=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('wrong', ['ratio', 'direction'])
 def test_output_that_does_not_follow_is_refused(tmp_path, actuator, wrong):
     ideal = there_and_back(0.8, 1)
@@ -179,6 +187,7 @@ def test_orders_of_any_tooth_pair():
     assert orders['teeth × 2'] == 2 * orders['teeth × 1']
 
 
+@pytest.mark.slow
 def test_twist_is_measured_with_both_encoders(tmp_path, config, actuator):
     """The output turns under load; only the twist of the gear counts."""
     gear_stiffness, bench_stiffness, friction = 400.0, 50.0, 0.5

@@ -108,6 +108,7 @@ def test_scheme_shows_the_bodies_named_and_the_angles(actuator, figures):
     assert (high, top) > tuple(ring.max(axis=0))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rotor_angle', [0.0, math.pi * 76 / 160, 2.0, -1.0])
 def test_labels_of_the_centres_do_not_lie_on_each_other(actuator, figures, rotor_angle):
     """Also where two centres coincide: O4 and O3, or O4 and O1."""
@@ -186,6 +187,7 @@ def test_slides_are_those_of_the_matrix_method(actuator, figures, by_angle):
 LONG = 'far_end_of_the_left_elbow'  # 25 letters
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('names', [('a', 'b'), (LONG,), ('left', LONG, 'c'), tuple('abcde')])
 def test_nothing_is_cut_off_with_long_branch_names(figures, names):
     mechanism = Mechanism(80, 76, 0.0011, tuple(Branch(name) for name in names))
@@ -223,6 +225,7 @@ def loop():
     return Trajectory.at_constant_speed(19.0, turns=19).every(2.0 * math.pi / 20, closed=True)
 
 
+@pytest.mark.slow
 def test_frames_of_a_gif_show_the_bodies_in_turn(actuator, loop):
     """The background shows through the satellite's mark, but not on the opposite side."""
     told = []

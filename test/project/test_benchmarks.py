@@ -16,6 +16,7 @@ BENCHMARK = Path(__file__).resolve().parents[2] / 'benchmark'
 ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     'arguments',
     [
@@ -29,12 +30,15 @@ def test_benchmark_prints_its_results_as_json(arguments):
     assert finite_numbers(results_of(*arguments))
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_benchmark_of_the_live_node_loses_none_of_a_hundred_messages():
     results = results_of('live.py', '--rates', '1000', '--seconds', '0.1', '--rounds', '1')
     assert finite_numbers(results)
     assert results['rates']['1000']['node']['delivered'] == 1.0
 
 
+@pytest.mark.live
 def test_driver_runs_where_it_cannot_ask_for_exact_sleep(tmp_path):
     """Some containers have a /proc that is read-only."""
     program = sys.executable, BENCHMARK / 'rotor_driver.py'

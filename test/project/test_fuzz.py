@@ -371,6 +371,7 @@ def assert_near(found, expected) -> None:
     assert (near | (found == expected) | (np.isnan(found) & np.isnan(expected))).all()
 
 
+@pytest.mark.slow
 def test_mutated_messages_are_read_as_rclpy_reads_them():
     messages, payloads = harness('messages'), Payloads(seed=2)
     taken = 0
@@ -381,6 +382,8 @@ def test_mutated_messages_are_read_as_rclpy_reads_them():
     assert 0.1 * MUTATIONS < taken < 0.9 * MUTATIONS
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_hostile_bytes_change_nothing(tmp_path):
     # The peer has nothing to listen to: the driver keeps all as bytes.
     elsewhere = {topic: f'elsewhere/{topic}' for topic in STATES}

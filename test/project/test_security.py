@@ -87,6 +87,7 @@ def endpoints(live) -> tuple[set[str], set[str]]:
     return set(dict(written)), set(dict(read))
 
 
+@pytest.mark.live
 def test_policy_lists_exactly_what_the_node_offers_and_uses(live):
     written, read = dds_topics(rules(live.peer.namespace))
 
@@ -98,6 +99,7 @@ def test_policy_lists_exactly_what_the_node_offers_and_uses(live):
     assert endpoints(live) == (written, read)
 
 
+@pytest.mark.live
 def test_simulated_time_needs_the_clock_besides(live):
     before, after = endpoints(live)
     assert live.peer.set(use_sim_time=True).successful
@@ -105,6 +107,7 @@ def test_simulated_time_needs_the_clock_besides(live):
     assert endpoints(live) == (before, after | {'rt/clock'})
 
 
+@pytest.mark.live
 @pytest.mark.parametrize('name', ['frame_prefix', 'output_joint'])
 def test_names_that_xml_cannot_hold_are_refused(live, name):
     result = live.peer.set(**{name: ESCAPE})
@@ -310,6 +313,7 @@ def test_links_among_bags_lead_in_no_circles(tmp_path):
     assert find_bags([str(tmp_path)]) == [bag, tmp_path / 'latest']
 
 
+@pytest.mark.live
 @pytest.mark.parametrize('kind', ['trap/msg/Type', '.trap/msg/Type', 'trap', ''])
 def test_a_type_has_nothing_imported_but_messages(kind, tmp_path, monkeypatch):
     (tmp_path / 'trap.py').write_text('')
@@ -411,6 +415,8 @@ def downloaded(tmp_path) -> Path:
     return folder
 
 
+@pytest.mark.live
+@pytest.mark.slow
 @pytest.mark.parametrize(
     'arguments',
     [['validate', '--jobs', '2', 'one', 'two'], ['validate', '--live', 'one'], ['demo']],
@@ -434,6 +440,7 @@ def test_nothing_in_the_current_folder_is_run_or_obeyed(
     assert not (downloaded / 'trap.sprung').exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('content', ['savefig.facecolor: ff0000', None], ids=['red', 'pipe'])
 def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, tmp_path):
     pytest.importorskip('matplotlib')

@@ -24,6 +24,8 @@ SENT = 4  # messages
 TOPICS = ('output_state', 'body_poses', 'mechanism_joint_states')
 
 
+@pytest.mark.live
+@pytest.mark.slow
 def test_twenty_seconds_lose_nothing_and_keep_their_memory():
     # Measuring the node's coverage would slow it down.
     environment = {k: v for k, v in os.environ.items() if not k.startswith('COVERAGE_')}

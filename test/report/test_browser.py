@@ -15,6 +15,8 @@ from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import Series
 
+pytestmark = pytest.mark.slow
+
 sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
 expect = sync_api.expect
 expect.set_options(timeout=30_000.0)  # a machine can be busy

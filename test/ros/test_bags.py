@@ -121,6 +121,7 @@ def read(path: Path, topic: str) -> list[tuple[int, bytes]]:
         return [(received, bytes(data)) for _, received, data in reader.messages(connections)]
 
 
+@pytest.mark.slow
 def test_the_core_gives_the_outputs_for_the_rotor_topic(recording, samples, actuator):
     turns = RotorTurns(single_turn=recording.single_turn, max_speed=650.0, max_acceleration=6500.0)
     positions = []
@@ -145,6 +146,7 @@ def test_the_core_gives_the_outputs_for_the_rotor_topic(recording, samples, actu
     assert worst.position <= replaying.BOUND
 
 
+@pytest.mark.slow
 def test_the_node_publishes_the_outputs_for_the_rotor_topic(
     recording, rotor_messages, samples, record_property
 ):
@@ -174,6 +176,7 @@ def test_the_node_publishes_the_outputs_for_the_rotor_topic(
     assert worst.position <= replaying.BOUND
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('recording', SHIPPED, ids=lambda r: r.name, scope='module')
 def test_the_recorded_outputs_are_those_for_the_rotor_topic(samples, bag_path):
     worst = replaying.compare_messages(

@@ -19,6 +19,8 @@ from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.diagnostics import find_faults
 
+pytestmark = pytest.mark.live
+
 BEST_EFFORT = {'reliability': ReliabilityPolicy.BEST_EFFORT}
 LATCHED = {'durability': DurabilityPolicy.TRANSIENT_LOCAL}
 SECOND = Duration(seconds=1)

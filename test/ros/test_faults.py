@@ -48,6 +48,8 @@ from std_srvs.srv import Trigger
 from gear_kinematics.bag import BagWriter
 from gear_kinematics.ros.live import running_node
 
+pytestmark = pytest.mark.live
+
 OK, WARN, ERROR = 0, 1, 2
 BEST_EFFORT = QoSProfile(depth=2000, reliability=ReliabilityPolicy.BEST_EFFORT)
 PATIENCE = 20.0  # s: far beyond anything but a loss

@@ -10,6 +10,8 @@ import pytest
 from live import Listener
 from sensor_msgs.msg import JointState
 
+pytestmark = pytest.mark.live
+
 # The participant always leaves while a discovery callback runs.
 SLOW_DISCOVERY = r"""
 #include <dlfcn.h>

@@ -128,6 +128,7 @@ def test_markers_of_any_mechanism_fit_into_messages():
     assert len(Markers(many, module=MODULE, frame_prefix='').due(0.0)) < 2**20
 
 
+@pytest.mark.live
 @pytest.mark.parametrize('executor', ['events', 'single_threaded'])
 def test_node_shows_the_mechanism_to_present_and_later_viewers(executor, tmp_path, actuator):
     # With so many teeth, the repetition comes too late for a test.
@@ -143,6 +144,7 @@ def test_node_shows_the_mechanism_to_present_and_later_viewers(executor, tmp_pat
             live.peer.node.destroy_subscription(subscription)
 
 
+@pytest.mark.live
 def test_node_sends_no_markers_for_a_turning_rotor(tmp_path):
     with live_node(tmp_path, *PATIENT, '-p', 'markers_rate:=1000.0') as live:
         live.peer.connect()
@@ -162,6 +164,7 @@ def test_node_sends_no_markers_for_a_turning_rotor(tmp_path):
         assert as_many_markers == markers
 
 
+@pytest.mark.live
 def test_changed_prefix_reaches_viewers(tmp_path):
     with live_node(tmp_path) as live:
         live.peer.listen(MarkerArray, 'markers', LATCHED)

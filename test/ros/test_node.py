@@ -22,6 +22,8 @@ from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state import parameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 
+pytestmark = pytest.mark.live
+
 READ_ONLY = (
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',

@@ -26,6 +26,8 @@ from wire import micro_ros_bytes
 from gear_kinematics.ros.live import running_node
 from gear_kinematics.state.parameters import default_config
 
+pytestmark = pytest.mark.live
+
 OK, WARN, ERROR = 0, 1, 2
 ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)

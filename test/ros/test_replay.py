@@ -32,6 +32,8 @@ from gear_kinematics.ros.live import ReplayError, live_messages, replay_node
 from gear_kinematics.ros.replay import play
 from gear_kinematics.state import parameters
 
+pytestmark = pytest.mark.live
+
 ROOT = Path(__file__).resolve().parents[2]
 BAGS = ROOT / 'bags'
 ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'

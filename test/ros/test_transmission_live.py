@@ -9,6 +9,8 @@ from live import SECOND, START, live_node, rotor_state, stamp_of
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
+pytestmark = pytest.mark.live
+
 MS = SECOND // 1000
 PLAY = 0.002  # rad
 COUNT = 800

@@ -28,6 +28,8 @@ from replaying import BOUND, compare_messages, valid_samples
 
 from gear_kinematics.ros.live import running_node
 
+pytestmark = [pytest.mark.live, pytest.mark.slow]
+
 LINES = {
     'best_effort': Line('BEST_EFFORT', 10, 'single_turn'),
     'reliable': Line('RELIABLE', 10, 'multi_turn'),

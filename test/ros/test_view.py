@@ -56,6 +56,7 @@ def topics() -> dict[str, str]:
     return found
 
 
+@pytest.mark.live
 def test_rviz_listens_to_topics_of_the_node(rviz, topics):
     displays = rviz['Visualization Manager']['Displays']
     kinds = {'MarkerArray': 'MarkerArray', 'RobotModel': 'String'}
@@ -69,12 +70,14 @@ def test_rviz_listens_to_topics_of_the_node(rviz, topics):
     assert wanted.items() <= topics.items()
 
 
+@pytest.mark.live
 @pytest.mark.parametrize('topic', ['markers', 'robot_description'])
 def test_rviz_gets_what_was_latched(rviz, topic):
     [qos] = [n for n in nodes_of(rviz) if n.get('Value') == topic]
     assert qos['Durability Policy'] == 'Transient Local'
 
 
+@pytest.mark.live
 def test_foxglove_listens_to_topics_of_the_node(foxglove, topics):
     panels = foxglove['configById']
     shown = {topic for panel in panels.values() for topic in panel.get('topics', {})}

@@ -199,6 +199,7 @@ def drawn_mechanism(generator, ring_teeth, satellite_teeth, count) -> Mechanism:
     return Mechanism(ring_teeth, satellite_teeth, generator.uniform(0.0005, 0.005), branches)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('prefix', ['', 'left/'])
 @pytest.mark.parametrize(
     ('ring_teeth', 'satellite_teeth', 'count'), [(80, 76, 2), (80, 78, 1), (61, 58, 3), (7, 2, 2)]

@@ -95,6 +95,7 @@ def rotor_only(tmp_path) -> Path:
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', SHIPPED)
 @pytest.mark.parametrize('recorded_outputs', [True, False], ids=['replaced', 'added'])
 def test_the_computed_outputs_are_those_that_the_node_published(name, recorded_outputs, tmp_path):
@@ -219,6 +220,7 @@ def test_a_time_of_reception_that_no_stamp_can_hold_gives_no_output(tmp_path):
     assert Counter(topic for topic, *_ in read(tmp_path / 'computed'))['/rotor_state'] == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 @pytest.mark.parametrize('compression', ['none', 'zstd'])
 def test_the_same_input_gives_the_same_bytes_in_every_storage(storage, compression, tmp_path):
@@ -240,6 +242,7 @@ def test_computing_a_computed_bag_changes_nothing(tmp_path):
     assert digests(tmp_path / 'one') == digests(tmp_path / 'two')
 
 
+@pytest.mark.slow
 def test_another_implementation_reads_the_result(tmp_path):
     run(BAGS / 'single_turn_encoder', tmp_path / 'computed', compression='zstd')
     (path,) = (tmp_path / 'computed').glob('*.mcap')

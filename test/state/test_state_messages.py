@@ -81,6 +81,7 @@ def assert_joint_states(message, derivatives, numbers, *, velocity: bool) -> Non
         assert oracle.length_error(slide, branch.satellite_slide, e) <= 1e-12 * scale
 
 
+@pytest.mark.slow
 @given(mechanisms(), st.floats(-20.0, 20.0), st.floats(-700.0, 700.0))
 def test_messages_hold_the_motion(mechanism, rotor_angle, velocity):
     # The output of 2:1 turns as fast as the rotor, that of 400:1 399 times: few turns of both.

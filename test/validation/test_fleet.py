@@ -125,6 +125,7 @@ fleet.find_topics = find_topics
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('options', [[], ['--debug']])
 def test_an_unexpected_error_makes_one_bag_unusable_and_no_other(options):
     bags = [BAGS / name for name in ('driver_faults', 'constant_speed_3000rpm')]
@@ -165,6 +166,7 @@ def test_a_bag_that_is_cut_off_is_reported_as_far_as_it_goes(tmp_path):
 # Processes.
 
 
+@pytest.mark.slow
 def test_processes_report_what_one_after_the_other_does():
     tasks = [task(BAGS / name) for name in SHIPPED]
     tasks.append(task(BAGS / 'missing'))
@@ -212,6 +214,7 @@ def kill_readers(blocked: BlockedBag, process) -> int:
     return len(set(killed))
 
 
+@pytest.mark.slow
 def test_as_many_bags_as_there_are_jobs_are_under_way(tmp_path):
     with ExitStack() as stack:
         blocked = [
@@ -223,6 +226,7 @@ def test_as_many_bags_as_there_are_jobs_are_under_way(tmp_path):
         assert process.pid not in readers
 
 
+@pytest.mark.slow
 def test_a_bag_whose_process_died_is_begun_again(tmp_path):
     bags = [*copies(tmp_path / 'bags'), tmp_path / 'bags' / 'driver_faults']
     report = tmp_path / 'report.json'
@@ -238,6 +242,7 @@ def test_a_bag_whose_process_died_is_begun_again(tmp_path):
     check_reports(report, bags)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('place', [0, 8], ids=['first', 'last'])
 def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(place, tmp_path):
     bags = copies(tmp_path / 'bags', 2)
@@ -306,6 +311,7 @@ def cluster(folder: Path, **options):
         yield Cluster(folder, stack, **options)
 
 
+@pytest.mark.slow
 def test_the_bags_of_a_killed_worker_are_done_by_another(tmp_path, monkeypatch):
     copies(tmp_path / 'bags', 6)
     monkeypatch.chdir(tmp_path)  # the workers are elsewhere
@@ -330,6 +336,7 @@ def test_the_bags_of_a_killed_worker_are_done_by_another(tmp_path, monkeypatch):
     check_reports(tmp_path / 'report.json', bags)
 
 
+@pytest.mark.slow
 def test_a_bag_that_kills_every_worker_is_lost_and_no_other(tmp_path):
     bags = copies(tmp_path / 'bags', 3)
     lost = tmp_path / 'bags' / 'killer'
@@ -356,6 +363,7 @@ IMPATIENT = (
 )
 
 
+@pytest.mark.slow
 def test_a_cluster_that_has_no_workers_or_ends_is_an_error(tmp_path):
     with cluster(tmp_path / 'cluster') as dask:
         arguments = ['validate', '--scheduler', dask.address, BAGS / 'driver_faults']
@@ -378,6 +386,7 @@ def test_a_cluster_that_has_no_workers_or_ends_is_an_error(tmp_path):
     assert 'verdict: unusable' in output
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('address', 'cause'),
     [

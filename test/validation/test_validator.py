@@ -570,6 +570,7 @@ def test_a_message_later_than_the_window_is_missing_and_extra(recorded, config):
     assert (found.missing, found.extra) == (1, 1)
 
 
+@pytest.mark.slow
 def test_missing_messages_are_counted_exactly_in_long_recordings(recorded, config):
     messages = repeated(recorded, 100, 1)
     dropped = [k for k, m in enumerate(messages) if m[0] == OUTPUT][::97]

@@ -4,6 +4,7 @@ import math
 import struct
 
 import numpy as np
+import pytest
 import replaying
 from harnesses import harness
 from hypothesis import given
@@ -55,6 +56,7 @@ def same(left: float, right: float) -> bool:
     return left == right or (math.isnan(left) and math.isnan(right))
 
 
+@pytest.mark.slow
 @given(messages, st.sampled_from(['rotor', '', '1']))
 def test_joint_states_are_decoded_as_one_by_one(messages, joint):
     batch = decode_joint_states(messages, joint)
@@ -84,6 +86,7 @@ def test_joint_states_are_decoded_as_one_by_one(messages, joint):
             assert same(batch.values[row, field], values[index] if there else math.nan)
 
 
+@pytest.mark.slow
 @given(
     st.lists(
         st.tuples(st.integers(0, 2**60), st.sampled_from(['stator', 'base']), st.integers(0, 3)),
@@ -121,6 +124,7 @@ def test_padding_that_is_left_to_chance_makes_no_layout():
     np.testing.assert_array_equal(batch.values, [[1.0, 2.0, 3.0]] * 2)
 
 
+@pytest.mark.slow
 @given(
     st.lists(messages, max_size=4),
     st.sampled_from(['rotor', '1']),

@@ -62,6 +62,7 @@ def template_values(count):
     return st.lists(st.floats(width=64), min_size=count, max_size=count)
 
 
+@pytest.mark.slow
 @given(messages)
 @example({'stamp': 0, 'names': [], 'position': [], 'velocity': [], 'effort': [], 'frame_id': ''})
 @example({
@@ -147,6 +148,7 @@ def pose_array(stamp, frame_id, numbers) -> PoseArray:
 pose_arrays = st.integers(0, 5).flatmap(lambda count: template_values(7 * count))
 
 
+@pytest.mark.slow
 @given(stamps, texts, pose_arrays)
 def test_pose_array_template_gives_what_others_read_and_write(stamp, frame_id, numbers):
     template = PoseArrayTemplate(frame_id, len(numbers) // 7)
@@ -160,6 +162,7 @@ def test_pose_array_template_gives_what_others_read_and_write(stamp, frame_id, n
     assert bytes(typestore.serialize_cdr(other, other.__msgtype__)) == encoded
 
 
+@pytest.mark.slow
 @given(stamps, texts, pose_arrays)
 def test_pose_array_of_either_byte_order_is_decoded(stamp, frame_id, numbers):
     little = serialize_message(pose_array(stamp, frame_id, numbers))
@@ -273,6 +276,7 @@ def whole(text: bytes) -> str:
     return text.split(b'\0')[0].decode(errors='replace')
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(ENCAPSULATIONS), headers, st.lists(raw_strings, max_size=4), doubles, doubles,
     doubles, st.binary(max_size=40), st.integers(0, 40),
@@ -293,6 +297,7 @@ def test_joint_state_is_whatever_rclpy_takes(
     assert decoded.stamp == header[0] * SECOND + header[1]
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(ENCAPSULATIONS), headers, pose_arrays, st.binary(max_size=40),
     st.integers(0, 40),

@@ -71,6 +71,7 @@ def expected(data, joint):
     return stamp, nanoseconds >= SECOND, position, *rates
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(messages, st.booleans()), max_size=8), names)
 def test_any_layout_is_read_after_any_other(sequence, joint):
     reader = JointReader(joint)
