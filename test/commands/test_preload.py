@@ -200,6 +200,7 @@ def test_preload_reads_well(capsys, monkeypatch):
     assert 'never leaves mesh' in capsys.readouterr().out
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('suffix', 'signature'), [('.png', b'\x89PNG'), ('.svg', b'<?xml'), ('.PDF', b'%PDF')]
 )
@@ -310,6 +311,7 @@ def test_unusable_input_gets_one_clear_line_and_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('arguments', [('--help',), ('--angle', '0.001', *PAPER)])
 def test_a_pipe_that_knows_no_seconds_gets_the_rest(arguments):
     code = 'import sys; from gear_kinematics.commands.cli import main; sys.exit(main())'

@@ -339,6 +339,7 @@ def test_without_plotly_a_page_is_an_error_and_no_file(bags, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('target', ['nowhere/report.json', 'folder', 'file/report.json'])
 def test_a_report_that_cannot_be_written_is_named_and_leaves_nothing(target, bags, tmp_path):
     (tmp_path / 'folder').mkdir()
@@ -653,6 +654,7 @@ def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
     assert list(folder.iterdir()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('name', 'out', 'cause'),
     [

@@ -215,6 +215,7 @@ def test_settings_of_a_position_are_complete(ring_teeth):
         assert ways == sorted(ways)
 
 
+@pytest.mark.slow
 @given(
     ring_teeth=st.integers(1, 9),
     angle=st.floats(-7.0, 7.0),
