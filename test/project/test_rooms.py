@@ -1,6 +1,7 @@
-"""What may import what: the core stands alone, and imports in the package point one way."""
+"""Rooms of the package: what they may import, what a listing shows, and that each has tests."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -157,6 +158,41 @@ TENANTS = {
     'plotly': ['report'],
 }
 """Libraries, and the only rooms that import them."""
+
+
+def test_a_listing_of_the_package_shows_the_rooms():
+    names = {path.name for path in PACKAGE.iterdir()} - {'__pycache__'}
+    assert names == {*ROOMS, '__init__.py', '__main__.py', 'py.typed'}
+    assert len(names) <= 14
+
+
+@pytest.mark.parametrize('room', ROOMS)
+def test_room_says_in_a_sentence_what_it_is(room):
+    document = ast.parse((PACKAGE / room / '__init__.py').read_text('utf-8'))
+    first = (ast.get_docstring(document) or '').partition('\n')[0]
+    assert re.fullmatch(r'[A-Z].{20,}\.', first)
+
+
+def quick_tests(path: Path) -> list[str]:
+    """Return the tests of a file that carry none of the marks that `make quick` leaves out."""
+    document = ast.parse(path.read_text('utf-8'))
+
+    def marked(*nodes: ast.AST) -> bool:
+        return any(re.search(r'mark\.(live|slow)\b', ast.unparse(node)) for node in nodes)
+
+    if any(isinstance(node, ast.Assign) and marked(node) for node in document.body):
+        return []
+    functions = (node for node in document.body if isinstance(node, ast.FunctionDef))
+    return [
+        function.name
+        for function in functions
+        if function.name.startswith('test_') and not marked(*function.decorator_list)
+    ]
+
+
+@pytest.mark.parametrize('room', ROOMS)
+def test_room_has_quick_tests(room):
+    assert any(map(quick_tests, (ROOT / 'test' / room).glob('test_*.py')))
 
 
 def test_rooms_import_as_the_table_says(imports):
