@@ -221,7 +221,7 @@ right:
 def test_gearkin_reads_of_a_parameter_file_what_the_node_does(
     context, tmp_path, text, name, expected
 ):
-    """Where nothing is for the node, it runs on the default values; gearkin refuses the file."""
+    """Where nothing is for the node, rclpy passes over the file, and gearkin refuses it."""
     path = tmp_path / 'robot.yaml'
     path.write_text(text)
     namespace, _, last = name.rpartition('/')
