@@ -170,6 +170,7 @@ def test_motion_satisfies_the_constraints(mechanism, angles):
         assert_close(rates, np.zeros(rates.shape), tolerance * np.max(np.abs(jacobian[index])))
 
 
+@pytest.mark.slow
 @given(mechanisms(), samples(20.0, shapes=((),)))
 def test_joints_carry_a_load_of_i_times_the_rotor_torque(mechanism, angle):
     """Statics: joint forces balance the torques T2 on the rotor and -i T2 on the shaft alone."""

@@ -65,6 +65,7 @@ def test_positions_agree_with_the_oracle(mechanism, angles):
     assert_within(position_errors(state, mechanism, exact))
 
 
+@pytest.mark.slow
 @given(mechanisms(), samples(1.0))
 @example(Mechanism(80, 76, 1e-3, (Branch('a'),)), np.array([1.0, -1.0]))
 def test_positions_lose_nothing_at_any_float_angle(mechanism, shares):
@@ -75,6 +76,7 @@ def test_positions_lose_nothing_at_any_float_angle(mechanism, shares):
     assert_within(position_errors(state, mechanism, exact))
 
 
+@pytest.mark.slow
 @given(mechanisms(), samples(10.0, shapes=((), (4,))), st.floats(-1.0, 1.0))
 @example(Mechanism(80, 76, 1e-3, (Branch('a'),)), np.array(1.0), 1.0)
 @example(Mechanism(400, 1, 1e-3, (Branch('a'),)), np.array(1.0), -1.0)
@@ -219,6 +221,7 @@ def test_power_is_the_same_on_both_sides(mechanism, motion, rotor_torque):
     assert_close(load_torque * state.output_velocity, power, 4.0 * EPS * np.abs(power))
 
 
+@pytest.mark.slow
 @given(
     mechanisms(),
     motions(),
@@ -239,6 +242,7 @@ def test_motion_repeats_after_as_many_turns_as_satellite_teeth(mechanism, motion
     )
 
 
+@pytest.mark.slow
 @given(mechanisms())
 def test_motion_does_not_repeat_earlier(mechanism):
     """Each turn of the rotor leaves the shaft at a different place, at q places in all."""

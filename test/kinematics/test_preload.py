@@ -61,6 +61,7 @@ def unloaded(stiffness: Stiffness, interference: float) -> Fraction:
     return equilibrium(stiffness, interference, 0.0)[2]
 
 
+@pytest.mark.slow
 @given(
     stiffness=stiffness_triples,
     interference=either_way(1e-9, 0.1),
@@ -83,6 +84,7 @@ def test_split_is_the_equilibrium_of_unilateral_contacts(stiffness, interference
         assert float(abs(Fraction(turn) - (b - start))) <= 1e-14 * softest
 
 
+@pytest.mark.slow
 @given(stiffness=stiffness_triples, interference=st.floats(1e-6, 0.1))
 def test_a_branch_leaves_mesh_at_its_threshold(stiffness, interference):
     """Just below it touches, just above it does not."""
@@ -99,6 +101,7 @@ def test_a_branch_leaves_mesh_at_its_threshold(stiffness, interference):
     assert min(min(equilibrium(stiffness, interference, load)[:2]) for load in outside) == 0
 
 
+@pytest.mark.slow
 @given(stiffness=stiffness_triples, interference=st.floats(1e-6, 0.1))
 def test_stiffness_is_the_slope_within_and_beyond_the_thresholds(stiffness, interference):
     preload = Preload(stiffness, interference)

@@ -117,6 +117,7 @@ def test_every_position_is_reached_from_its_own_angle(ring_teeth):
             assert setting.turn == turn
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('ring_teeth', SMALL)
 def test_nearest_is_nearest_of_all(ring_teeth):
     """On both sides of each midpoint between positions, including the wrap-around."""

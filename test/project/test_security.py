@@ -192,6 +192,7 @@ def test_yaml_makes_no_objects(tmp_path):
     assert not trace.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ('text', 'cause'),
     [

@@ -80,6 +80,7 @@ def test_teeth_mesh_as_drawn(actuator, rotor_angle):
         assert polygon(satellite, 1e-3).difference(space).area > 1e-3 * MODULE**2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('rotor_angle', ANGLES)
 def test_couplings_are_on_their_roses(mechanism, rotor_angle):
     markers = all_at(mechanism, rotor_angle)

@@ -209,6 +209,7 @@ def test_messages_have_the_bits_of_a_batch(mechanism, position, velocity):
 rates = st.none() | st.floats(-1e300, 1e300)
 
 
+@pytest.mark.slow
 @given(
     mechanisms(),
     st.lists(

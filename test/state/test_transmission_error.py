@@ -50,6 +50,7 @@ def wrapped(angle):
     return (angle + math.pi) % (2 * math.pi) - math.pi
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.integers(1, 40 * MS), min_size=2, max_size=40),
     st.lists(st.integers(0, 1000 * MS), max_size=40),
@@ -243,6 +244,7 @@ def test_gap_makes_the_direction_unknown():
 values = st.floats(-7.0, 7.0) | st.sampled_from([0.0, 1e-17, 1e6, -1e6])
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.integers(0, 30), values), min_size=1, max_size=40))
 def test_window_is_that_of_the_whole_record(records):
     window, stamp, past = SlidingStatistics(), START, []

@@ -81,6 +81,7 @@ def test_any_layout_is_read_after_any_other(sequence, joint):
             assert read(reader, data) == expected(data, joint)
 
 
+@pytest.mark.slow
 @given(messages, names, st.data())
 def test_every_message_is_held_against_the_layout(message, joint, data):
     good = rotor_bytes(**message)
