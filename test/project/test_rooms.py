@@ -173,6 +173,12 @@ def test_room_says_in_a_sentence_what_it_is(room):
     assert re.fullmatch(r'[A-Z].{20,}\.', first)
 
 
+def test_no_file_is_longer_than_350_lines():
+    files = (p for p in PACKAGE.rglob('*') if p.is_file() and '__pycache__' not in p.parts)
+    lines = {p.relative_to(PACKAGE).as_posix(): p.read_bytes().count(b'\n') for p in files}
+    assert not {path: count for path, count in lines.items() if count > 350}
+
+
 def quick_tests(path: Path) -> list[str]:
     """Return the tests of a file that carry none of the marks that `make quick` leaves out."""
     document = ast.parse(path.read_text('utf-8'))
