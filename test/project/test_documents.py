@@ -89,5 +89,8 @@ def test_every_parameter_is_in_the_reference_with_its_default():
     documented.pop('qos_overrides.<topic>.<policy>')
     of_branches = {f'<branch>.{name}' for name in BRANCH_PARAMETERS}
     assert set(documented) == {*PARAMETERS, *of_branches}
-    shown = {name: yaml.safe_load(documented[name].removesuffix(' (1°)')) for name in PARAMETERS}
+    shown = {
+        name: yaml.safe_load(documented[name].removesuffix(' (1°)').strip('`'))
+        for name in PARAMETERS
+    }
     assert shown == {name: defaults()[name] for name in PARAMETERS}
