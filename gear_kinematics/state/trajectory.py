@@ -130,7 +130,7 @@ def read_trajectory(
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
     if len(used) < 2:  # noqa: PLR2004, what a motion takes
-        raise BagError(f'{path}: {topic} has no states of the rotor at two times')
+        raise BagError(f'{path}: {topic} has fewer than two rotor states of different times')
     stamps, turns, angle, velocity = (column[used] for column in samples[:4])
     time = (stamps - stamps[0]) / SECOND
     positions = (turns - turns[0]) * TURN + angle

@@ -122,7 +122,7 @@ def read(path: Path, topic: str) -> list[tuple[int, bytes]]:
 
 
 @pytest.mark.slow
-def test_the_core_gives_the_outputs_for_the_rotor_topic(recording, samples, actuator):
+def test_the_core_gives_what_the_rotor_topic_calls_for(recording, samples, actuator):
     turns = RotorTurns(single_turn=recording.single_turn, max_speed=650.0, max_acceleration=6500.0)
     positions = []
     for sample in samples:
@@ -147,7 +147,7 @@ def test_the_core_gives_the_outputs_for_the_rotor_topic(recording, samples, actu
 
 
 @pytest.mark.slow
-def test_the_node_publishes_the_outputs_for_the_rotor_topic(
+def test_the_node_publishes_what_the_rotor_topic_calls_for(
     recording, rotor_messages, samples, record_property
 ):
     namespace = f'/replay_{recording.name}'
@@ -178,7 +178,7 @@ def test_the_node_publishes_the_outputs_for_the_rotor_topic(
 
 @pytest.mark.slow
 @pytest.mark.parametrize('recording', SHIPPED, ids=lambda r: r.name, scope='module')
-def test_the_recorded_outputs_are_those_for_the_rotor_topic(samples, bag_path):
+def test_the_recorded_outputs_are_what_the_rotor_topic_calls_for(samples, bag_path):
     worst = replaying.compare_messages(
         samples,
         [data for _, data in read(bag_path, '/output_state')],

@@ -309,7 +309,7 @@ def joint_states(path: Path, count: int, joint: str = 'rotor') -> Path:
         ({'rotor_topic': '/motor'}, ['/motor', '/rotor_state']),
         ({'rotor_topic': '/body_poses', 'poses_topic': '/p'}, ['PoseArray', 'JointState']),
         ({'output_topic': '/body_poses', 'poses_topic': '/p'}, ['/body_poses', 'PoseArray']),
-        ({'output_topic': '/rotor_state'}, ['/rotor_state', 'twice']),
+        ({'output_topic': '/rotor_state'}, ['/rotor_state', 'must differ']),
         ({'topics': ['/rotor_state', '/grip']}, ['no topic /grip in it', '/rotor_state']),
     ],
     ids=['missing', 'wrong type', 'not an output', 'twice', 'other missing'],
