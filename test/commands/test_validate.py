@@ -725,7 +725,7 @@ def test_a_replay_tells_what_it_did(bags):
         (['good', '--start-offset', '-1'], 'start offset must not be negative'),
         (['good', '--clock', '-1'], 'clock must not be negative'),
         (['good', '--start-offset', '1000'], 'good: nothing to play'),
-        (['good', '--topics', '/nope'], 'good: no topic /nope in it'),
+        (['good', '--topics', '/nope'], 'good: no topic /nope in it; there are: '),
     ],
 )
 def test_a_replay_that_cannot_be_done_gets_one_line_and_code_2(
