@@ -16,7 +16,8 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 
 DEPTH = 2000
-"""Messages that wait: what a driver at several kHz sends while the node is held up."""
+"""Messages that wait on either side of a topic: what a driver at several kHz sends while the node
+is held up."""
 
 
 class DriverInput:

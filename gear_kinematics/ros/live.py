@@ -30,6 +30,7 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.bag.schedule import due_messages, throttled
+from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
@@ -42,8 +43,6 @@ from gear_kinematics.wire.topics import (
     ROTOR_STATE,
 )
 
-DEPTH = 2000
-"""Messages that wait on either side of a topic."""
 POLL = 0.1
 """s: how late a signal can be noticed."""
 
