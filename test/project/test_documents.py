@@ -67,6 +67,11 @@ def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     assert written <= {path.name for path in tmp_path.iterdir()}
 
 
+def test_every_command_is_in_the_reference():
+    page = (ROOT / 'docs/reference/gearkin.md').read_text('utf-8')
+    assert re.findall(r'^```{arguments} (\S+)$', page, re.MULTILINE) == list(COMMANDS)
+
+
 def test_every_topic_is_in_the_reference():
     policy = ET.parse(ROOT / 'policies/gear_state_publisher.policy.xml')  # noqa: S314, our own
     topics = {
