@@ -32,6 +32,9 @@ DRAWN = {
 """By file, each with the arguments of gearkin that come before it."""
 PAGES = {
     'pictures/validate.png': ['validate', BAG, *CONFIG],
+    'pictures/describe.png': ['describe'],
+    'pictures/index.png': ['index', '--phase-b', '--preload', '0.8', *SHAFT],
+    'pictures/preload.png': ['preload', '--wanted-threshold', '1', *SHAFT],
     'pictures/lost_motion.png': ['lost-motion', 'docs/examples/ramps.csv', *CONFIG],
 }
 VIEW = {'width': 1100, 'height': 1000}  # pixels
