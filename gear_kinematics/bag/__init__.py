@@ -1,7 +1,7 @@
-"""Recorded bags: raw messages in and out, without ROS.
+"""Recorded bags: reading and writing raw messages, without ROS.
 
-`rosbags` reads ROS 1, knows the message types and writes. rosbag2 files are read here, because
-rosbags refuses unfinished and damaged files as a whole and takes longer over each message.
+`rosbags` reads ROS 1 bags, defines the message types and writes. rosbag2 files are read here,
+because rosbags refuses unfinished and damaged files altogether and takes longer per message.
 """
 
 from gear_kinematics.bag.errors import BagError, DamagedBagError, TopicError

@@ -1,4 +1,4 @@
-"""What a recording consists of, and what metadata.yaml says about it."""
+"""The files of a recording, and the contents of its metadata.yaml."""
 
 import re
 from pathlib import Path, PurePath
@@ -19,7 +19,7 @@ _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
 
 _TEXT = 'tag:yaml.org,2002:str'
 _MAX_YAML = 2**22  # bytes: metadata of ten thousand topics or files
-_MAX_PLAIN = 10_000  # bytes of a value that may be anything but a text
+_MAX_PLAIN = 10_000  # bytes of a value without quotes, which may be a number
 _MAX_NUMBERS = 100
 _MAX_EVENTS = 400_000
 _MAX_DEPTH = 20
@@ -27,24 +27,24 @@ _MAX_FILES = 50_000
 
 
 class Contents(NamedTuple):
-    """Files, and what is known without opening them."""
+    """The files of a recording, and what is known without opening them."""
 
     files: list[Path]
     """In the order of recording."""
     topics: dict[str, Topic]
-    """By their names; empty without metadata.yaml."""
+    """Topics by name; empty without metadata.yaml."""
     message_count: int | None
     """None without metadata.yaml."""
 
 
 def find_contents(path: Path) -> Contents:
-    """Find what a recording consists of.
+    """Find the files of a recording, and read its metadata.
 
     Args:
         path: a rosbag2 folder, or a file.
 
     Raises:
-        ValueError: or whatever else tells that this is no recording.
+        ValueError: or other exceptions, if this is not a recording.
     """
     if path.is_file():
         return Contents([path], {}, None)
@@ -53,11 +53,11 @@ def find_contents(path: Path) -> Contents:
     metadata = path / 'metadata.yaml'
     if metadata.exists():
         with bag_errors(metadata):
-            if not metadata.is_file():  # a device may have no end
+            if not metadata.is_file():  # a device may be endless
                 raise ValueError('not a regular file')
             _check_length(metadata.stat().st_size)
             return _listed_contents(path, parse_yaml(metadata.read_text('utf-8')))
-    # A recorder that is killed writes none.
+    # A recorder that is killed writes no metadata.
     files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
     if not files:
         raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')
@@ -67,10 +67,10 @@ def find_contents(path: Path) -> Contents:
 
 
 class _Loader(SafeLoader):
-    """Takes no merge keys (`<<`), by which a few lines can stand for endlessly many."""
+    """Refuses merge keys (`<<`), by which a few lines can expand without end."""
 
     def flatten_mapping(self, node: yaml.MappingNode) -> None:
-        """Leave them to be refused as keys of no known kind, and many keys that are no texts.
+        """Leave merge keys to be refused as unknown; refuse many keys that are not texts.
 
         The hashes of numbers can be made to collide, unlike those of texts.
         """
@@ -79,10 +79,10 @@ class _Loader(SafeLoader):
 
 
 def parse_yaml(text: str) -> Any:
-    """Parse what a bag says in YAML.
+    """Parse YAML of a bag.
 
     Raises:
-        ValueError: if that is more than any recorder writes.
+        ValueError: if it is larger than any recorder writes.
     """
     _check_length(len(text))
     depth = 0
@@ -90,22 +90,22 @@ def parse_yaml(text: str) -> Any:
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)
         if isinstance(event, yaml.ScalarEvent) and not event.implicit[1]:
-            _check_length(len(event.value), _MAX_PLAIN)  # a number of base 60, perhaps
+            _check_length(len(event.value), _MAX_PLAIN)  # parsing a number in base 60 takes long
         if number > _MAX_EVENTS:
             raise ValueError(f'more than {_MAX_EVENTS} values in YAML')
-        if depth > _MAX_DEPTH:  # libyaml is not stopped by a limit of recursion
+        if depth > _MAX_DEPTH:  # libyaml has no limit of recursion
             raise ValueError(f'YAML is nested deeper than {_MAX_DEPTH} levels')
     return yaml.load(text, _Loader)  # noqa: S506, it is a SafeLoader
 
 
 def _check_length(length: int, limit: int = _MAX_YAML) -> None:
     if length > limit:
-        raise ValueError(f'YAML has {length} bytes where there may be {limit}')
+        raise ValueError(f'YAML has {length} bytes, more than {limit}')
 
 
 def _listed_contents(path: Path, metadata: Any) -> Contents:
     if not isinstance(metadata, dict):
-        raise ValueError('no metadata in it')  # noqa: TRY004, of what is on disk
+        raise ValueError('no metadata in it')  # noqa: TRY004, about data on disk
     information = metadata['rosbag2_bagfile_information']
     if information.get('compression_mode', '').lower() == 'message' and (
         information['compression_format'] not in DECOMPRESSORS
@@ -138,7 +138,7 @@ def _listed_topic(known: Any) -> Topic:
         qos=known.get('offered_qos_profiles', ''),
     )
     if not all(isinstance(text, str) for text in topic[:-1]):
-        raise ValueError('a topic is not described by texts')
+        raise ValueError('the description of a topic is not text')
     return topic
 
 
@@ -147,5 +147,5 @@ def _listed_file(path: Path, name: str) -> Path:
     file = folder / name
     if '..' in PurePath(name).parts or not file.is_relative_to(folder):
         raise ValueError(f'{name!r} leads outside the folder')
-    # Before version 4 names began with that of the folder, which may have changed since.
+    # Before version 4, names began with that of the folder, which may have been renamed.
     return path / (name if file.exists() else file.name)

@@ -1,4 +1,4 @@
-"""What is raised about a bag, whichever library noticed it."""
+"""Errors about bags, whichever library raised them first."""
 
 import traceback
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ class BagError(ValueError):
 
 
 class DamagedBagError(BagError):
-    """A bag that is damaged behind messages that could be read; the text also says where."""
+    """A bag that is damaged after some readable messages; the text also says where."""
 
 
 class TopicError(BagError):
@@ -18,20 +18,20 @@ class TopicError(BagError):
 
 
 def cause(error: BaseException) -> str:
-    """Put an error of any library into one line."""
+    """Describe an error of any library in one line."""
     if isinstance(error, KeyError):
         return f'{error} is missing'
-    # Some errors of the operating system's kind come from elsewhere and have no such text.
+    # Some OSErrors are raised by libraries, without this text.
     text = str(getattr(error, 'strerror', None) or error)
     return ' '.join(text.split()) or type(error).__name__
 
 
 def unexpected(error: Exception, *, debug: bool) -> str:
-    """Describe an error that nothing foresaw, in one line.
+    """Describe an unexpected error in one line.
 
     Args:
-        error: being handled.
-        debug: whether to write its traceback to stderr.
+        error: the error.
+        debug: whether to print its traceback to stderr.
     """
     if debug:
         traceback.print_exception(error)
@@ -41,7 +41,7 @@ def unexpected(error: Exception, *, debug: bool) -> str:
 
 @contextmanager
 def bag_errors(name: object, kind: type[BagError] = BagError) -> Iterator[None]:
-    """Turn whatever a library raises about bytes on disk into a BagError that names the file."""
+    """Convert any exception about data on disk to a BagError that names the file."""
     try:
         yield
     except BagError:

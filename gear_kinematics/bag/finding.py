@@ -1,4 +1,4 @@
-"""Finding the bags that files, directories and globs name."""
+"""Finds the bags that files, directories and globs name."""
 
 import glob
 import re
@@ -9,14 +9,14 @@ from gear_kinematics.bag.errors import BagError
 
 _BAG_FILE = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
-"""Of a file of a split recording."""
+"""Number of a file of a split recording."""
 
 
 def find_bags(patterns: Iterable[str]) -> list[Path]:
     """Find the bags that files, directories and globs name; a directory can hold many.
 
     Raises:
-        BagError: naming a pattern that nothing fits.
+        BagError: naming a pattern without a match.
     """
     found: list[Path] = []
     for pattern in patterns:
@@ -32,7 +32,7 @@ def _glob(pattern: str) -> Iterator[Path]:
     # Path.glob takes no absolute patterns.
     matches = sorted(map(Path, glob.iglob(pattern, recursive=True)))  # noqa: PTH207
     bags = {bag: None for match in matches if _may_hold(match) for bag in _bags_below(match)}
-    # `**` also fits the files of the bags that it fits.
+    # `**` also matches the files inside matched bags.
     return (bag for bag in bags if bag.parent not in bags)
 
 
@@ -52,7 +52,7 @@ def _bags_below(path: Path) -> Iterator[Path]:
 
 
 def _leads_astray(path: Path) -> bool:
-    """Whether it is a link to a folder that is no bag: links can go round in circles."""
+    """Whether it is a link to a folder that is not a bag: such links can form cycles."""
     return path.is_symlink() and path.is_dir() and not (path / 'metadata.yaml').exists()
 
 

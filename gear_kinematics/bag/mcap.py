@@ -1,4 +1,4 @@
-"""mcap files."""
+"""Reads mcap files."""
 
 import os
 import struct
@@ -26,20 +26,20 @@ _FOOTER, _SCHEMA, _CHANNEL, MESSAGE, _CHUNK, _STATISTICS, _DATA_END = 2, 3, 4, 5
 _DATA = frozenset({_SCHEMA, _CHANNEL, MESSAGE, _CHUNK})
 _DESCRIPTIONS = frozenset({_SCHEMA, _CHANNEL})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
-RECORD = struct.Struct('<BQ')  # opcode, length of what follows
+RECORD = struct.Struct('<BQ')  # opcode, length of the body
 _MESSAGE_START = struct.Struct('<H4xQ')  # channel, reception; the data begin at byte 22
 _LATEST = 2**63 - 1  # ns
-_BATCH = 4096  # messages outside of chunks that are handled together
+_BATCH = 4096  # messages outside of chunks that are yielded together
 _BATCH_SIZE = 2**22  # bytes, likewise
-_AT_ONCE = 65_536  # records of a chunk; those of a recorder have fewer
+_AT_ONCE = 65_536  # records of a chunk; recorders write fewer
 _RECEIVED = itemgetter(1)
 
 
 class Mcap(Storage):
     """An mcap file, read from front to back: https://mcap.dev/spec.
 
-    The index serves to know topics and counts without reading everything, no more. So a file
-    without one is read like any other.
+    The index only gives topics and counts without reading everything, so a file without an index
+    is read like any other.
     """
 
     def __init__(self, path: Path, budget: Budget) -> None:
@@ -59,11 +59,11 @@ class Mcap(Storage):
         self._stream.close()
 
     def position(self) -> str:
-        """Tell where reading is, for errors."""
+        """Position of reading, for error messages."""
         return f'at byte {self._offset}: '
 
     def topics(self) -> list[Topic]:
-        """Give the topics of the index, or else of the file as far as it can be read."""
+        """Return the topics of the index, or else of the readable part of the file."""
         self._read_summary()
         if not self._channels:
             try:
@@ -75,13 +75,13 @@ class Mcap(Storage):
         return list(self._channels.values())
 
     def count(self) -> int | None:
-        """Give the number in the index, if there is one; `topics` has to be asked first."""
+        """Return the number in the index, if there is one; call `topics` first."""
         return self._total
 
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
-        """Read messages, in order if they are off it by no more than a chunk."""
-        # Recorders with several threads, and those with several chunks open at a time, put
-        # messages aside by up to a chunk: as much is held back to bring them into order.
+        """Read messages, sorted if they are out of order by at most a chunk."""
+        # Recorders with several threads or several open chunks write messages out of order by up
+        # to a chunk: a chunk is held back to sort them.
         number = 0
         held: list[Message] = []
         self._read_summary()
@@ -93,7 +93,7 @@ class Mcap(Storage):
             error, batch = None, None
             try:
                 batch = next(batches, None)
-            except Exception as caught:  # noqa: BLE001, raised below, behind what was held back
+            except Exception as caught:  # noqa: BLE001, raised below, after the held messages
                 error = caught
             if batch:
                 batch.sort(key=_RECEIVED)
@@ -113,11 +113,11 @@ class Mcap(Storage):
             raise ValueError(f'the index lists {expected} messages, there are {number}')
 
     def _batches(self) -> Iterator[list[Message]]:
-        """Walk through the file; on damage, give the messages before it and then raise."""
+        """Yield the messages of the file; on damage, those before it, and then raise."""
         stream, batch, size = self._stream, list[Message](), 0
         self._offset = stream.seek(len(MCAP_MAGIC))
         try:
-            while header := stream.read(RECORD.size):  # an unfinished file just ends
+            while header := stream.read(RECORD.size):  # an unfinished file has no footer
                 if len(header) < RECORD.size:
                     raise _CutOffError
                 opcode, length = RECORD.unpack(header)
@@ -149,7 +149,7 @@ class Mcap(Storage):
         yield batch
 
     def _fill(self, batch: list[Message], chunk: bytes, *, whole: bool) -> Iterator[list[Message]]:
-        """Fill a batch from a chunk; whenever it is full, give what is in it and begin anew."""
+        """Fill a batch from a chunk; yield a copy and clear it whenever it is full."""
         records, end = self._chunk_records(chunk, whole=whole), 0
         while (end := self._walk(records, end, batch)) < len(records):
             yield batch[:]
@@ -165,7 +165,7 @@ class Mcap(Storage):
         """Append the wanted messages among the next records, up to the first damage.
 
         Returns:
-            Where it ended.
+            End of the last record.
         """
         wanted = self._wanted_channels
         unpack_record, unpack_message = RECORD.unpack_from, _MESSAGE_START.unpack_from
@@ -203,7 +203,7 @@ class Mcap(Storage):
             return
         self.descriptions.add(len(body))
         if opcode == _SCHEMA:
-            # Definitions that are no text belong to encodings that are of no use here.
+            # Definitions that are not text belong to unsupported encodings.
             texts = [text.decode(errors='replace') for text in _strings(body[2:], 3)]
             self._schemas[number] = texts[0], texts[1], texts[2]
         else:
@@ -229,7 +229,7 @@ class Mcap(Storage):
             self._wanted_channels[channel] = topic.name
 
     def _read_summary(self) -> None:
-        """Learn from the index, if there is one and it is sound."""
+        """Read the index, if there is one and it is valid."""
         try:
             end = self._stream.seek(-37, os.SEEK_END)
             opcode, _, start, _, _, magic = struct.unpack('<BQQQI8s', self._stream.read())
@@ -238,12 +238,12 @@ class Mcap(Storage):
                 records, place = self._stream.read(end - start), 0
                 while place < len(records):
                     place = self._walk(records, place, [], {*_DESCRIPTIONS, _STATISTICS})
-        except Exception:  # noqa: BLE001, bytes of any kind
+        except Exception:  # noqa: BLE001, arbitrary bytes
             self._schemas, self._channels, self._counts, self._total = {}, {}, {}, None
             self.descriptions = Descriptions()
 
     def _chunk_records(self, body: bytes, *, whole: bool) -> bytes:
-        """Take the records out of a chunk; as many as there are, if it is not whole."""
+        """Decompress the records of a chunk; those that there are, if it is not `whole`."""
         size, crc, name_length = struct.unpack_from('<16xQII', body)
         name = body[32 : 32 + name_length].decode()
         (length,) = struct.unpack_from('<Q', body, 32 + name_length)
@@ -255,7 +255,7 @@ class Mcap(Storage):
         records = DECOMPRESSORS[name](data, size + 1)[0] if name else data
         self.budget.expand(len(records) if name else 0)
         if whole and len(records) != size:
-            raise ValueError('a chunk is not of the size that it should have')
+            raise ValueError('a chunk does not have the size that it states')
         if whole and crc and crc32(records) != crc:
             raise ValueError('a chunk does not match its checksum')
         return records
@@ -267,7 +267,7 @@ class _CutOffError(ValueError):
 
 
 def _strings(data: bytes, count: int | None = None) -> list[bytes]:
-    """Split strings that stand one after the other, each behind its length."""
+    """Split consecutive strings, each preceded by its length."""
     strings: list[bytes] = []
     end = 0
     while len(strings) < count if count else end < len(data):

@@ -1,4 +1,4 @@
-"""Reading a recording, whatever it consists of."""
+"""Reads recordings of any storage, and opens their files by content, whatever their names."""
 
 import tempfile
 from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Mapping
@@ -26,7 +26,7 @@ from gear_kinematics.bag.storage import (
 from gear_kinematics.bag.topics import Topic, missing_topic
 
 ReportProgress = Callable[[int, int | None], None]
-"""Called now and then with the number of messages done, and of all if that is known."""
+"""Called repeatedly with the number of messages done, and the total if known."""
 
 _BATCH = 8192  # messages
 _BATCH_SIZE = 2**24  # bytes
@@ -50,19 +50,19 @@ class TopicMessages:
 class Bag:
     """A recording: a rosbag2 folder, one of its files alone, or a ROS 1 bag.
 
-    A context manager; at its end the readings under way are over too.
+    A context manager, which ends unfinished reading on exit.
     """
 
     topics: Mapping[str, str]
-    """The types by the names, such as sensor_msgs/msg/JointState."""
+    """Types by name, such as sensor_msgs/msg/JointState."""
     message_count: int | None
-    """On all topics; None where only reading all of them would tell."""
+    """On all topics; None if unknown without reading all of them."""
 
     def __init__(self, path: Path | str) -> None:
-        """Look what is in a bag.
+        """Read the topics and the number of messages.
 
         Raises:
-            BagError: if there is no bag, or none that can be read.
+            BagError: if there is no readable bag.
         """
         self.path = Path(path)
         self._readings = ExitStack()
@@ -84,14 +84,14 @@ class Bag:
         """Read raw messages in the order in which they were received, those of ROS 1 as CDR.
 
         Args:
-            topics: which to read; one that is not in the bag has no messages.
+            topics: names; a topic that is not in the bag has no messages.
 
         Yields:
-            Topic, reception in ns, CDR in the byte order of the recording.
+            Topic, time of reception in ns, CDR in the byte order of the recording.
 
         Raises:
-            BagError: if none can be read.
-            DamagedBagError: behind the last that can be read.
+            BagError: if no message can be read.
+            DamagedBagError: after the last readable message.
         """
         reading = self._read(frozenset(topics))
         self._readings.callback(reading.close)
@@ -103,8 +103,8 @@ class Bag:
         """Read all messages on topics.
 
         Args:
-            columns: where to put the messages of each topic; what came before an error is there.
-            progress: told after each batch, with the messages on all topics of the bag.
+            columns: filled with the messages of each topic, up to an error.
+            progress: called after each batch; the total counts all topics of the bag.
 
         Raises:
             BagError: as `messages` does.
@@ -114,10 +114,10 @@ class Bag:
             sort_by_topic(batch, columns)
 
     def type_of(self, topic: str, wanted: str = '') -> str:
-        """Give the type of a topic.
+        """Return the type of a topic.
 
         Raises:
-            BagError: if the topic is not in the bag, or not of the type that is wanted.
+            BagError: if the topic is not in the bag, or not of the wanted type.
         """
         found = self.topics.get(topic)
         if found is None or (wanted and found != wanted):
@@ -125,7 +125,7 @@ class Bag:
         return found
 
     def describe(self, name: str) -> Topic:
-        """Give what the bag says about a topic.
+        """Return the description of a topic.
 
         Raises:
             BagError: if it is not in the bag, or the bag cannot be read.
@@ -145,7 +145,7 @@ class Bag:
         return Budget(sum(file.stat().st_size for file in self._files if file.exists()))
 
     def _describe(self) -> None:
-        """Collect what the files say about topics, and count messages if nothing else did."""
+        """Collect the descriptions of the topics, and count messages if metadata did not."""
         counts: list[int | None] = []
         budget, descriptions, definitions = self._budget(), Descriptions(), set[str]()
         for file in self._files:
@@ -162,7 +162,7 @@ class Bag:
             except BagError:
                 if not counts:
                     raise
-                counts.append(None)  # reading will come to it, and say it then
+                counts.append(None)  # reading the messages will raise it
             if self._listed and self._listed.keys() <= self._described.keys():
                 return
         if not self._listed:
@@ -184,7 +184,7 @@ class Bag:
 
 
 def read_bag(path: Path, topics: Collection[str]) -> Iterator[Message]:
-    """Read the messages of a bag, all of whose topics must be there.
+    """Read the messages of a bag on topics, all of which must exist.
 
     Raises:
         BagError: if a topic is missing or the bag cannot be read; see `Bag.messages`.
@@ -201,15 +201,15 @@ def in_batches(
     progress: ReportProgress | None = None,
     total: int | None = None,
 ) -> Iterator[list[Message]]:
-    """Gather messages, up to so many at a time, and no more than take little memory.
+    """Group messages into batches of up to `size` messages and 16 MiB.
 
-    What came before an exception is given before it is raised; the last batch can be empty.
+    Messages before an exception are yielded before it is raised; the last batch may be empty.
 
     Args:
-        messages: to gather.
-        size: of a batch.
-        progress: told after each batch.
-        total: of the messages, for `progress`.
+        messages: the messages.
+        size: largest number of messages in a batch.
+        progress: called after each batch.
+        total: number of all messages, for `progress`.
     """
     done = 0
     for batch in _batches(messages, size):
@@ -244,15 +244,15 @@ def sort_by_topic(messages: Iterable[Message], columns: Mapping[str, TopicMessag
 
 @contextmanager
 def _opened(file: Path, budget: Budget, read: int = 0) -> Iterator[Storage]:
-    """Open a file of a bag; a compressed one by way of a temporary file.
+    """Open a file of a bag, if compressed via a temporary file.
 
     Args:
         file: to open.
-        budget: what may come out of the files of the bag.
-        read: messages that were read before, from other files.
+        budget: limits on the files of the bag.
+        read: number of messages already read from other files.
 
     Raises:
-        BagError: for whatever is raised about the file, also by the one who uses it.
+        BagError: for any exception about the file, also from the body of the with statement.
     """
     storage, broken = None, ''
     try:

@@ -1,4 +1,4 @@
-"""Which topic of a recording plays which part."""
+"""Finds the topics of the rotor, the outputs and the encoder in a recording."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -17,11 +17,11 @@ from gear_kinematics.wire.topics import (
 )
 
 _PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
-"""The parts in a validation; the rotor is what is left when the outputs are found."""
+"""Topics by their parts in a validation; the rotor is found last, among the remaining topics."""
 
 
 class Topics(NamedTuple):
-    """The names of the topics in the recording."""
+    """Names of topics in a recording."""
 
     rotor: str = f'/{ROTOR_STATE}'
     output: str = f'/{OUTPUT_STATE}'
@@ -29,7 +29,7 @@ class Topics(NamedTuple):
 
     @classmethod
     def beside(cls, rotor: str) -> Self:
-        """Those of the node, in the namespace of the rotor's topic."""
+        """The topics of the node in the namespace of the rotor's topic."""
         namespace, _, _ = rotor.rpartition('/')
         return cls(rotor, f'{namespace}/{OUTPUT_STATE}', f'{namespace}/{BODY_POSES}')
 
@@ -37,17 +37,15 @@ class Topics(NamedTuple):
 def find_topics(
     bag: Bag, given: Mapping[str, str | None] = MappingProxyType({}), *, outputs: bool = True
 ) -> Topics:
-    """Find the three topics by type and name: as in the contract, in any namespace.
-
-    Those of the namespace of the rotor's topic come first.
+    """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
 
     Args:
         bag: an open bag.
-        given: names of topics by their parts, as far as they are known.
-        outputs: whether those have to be there.
+        given: names of known topics by their parts.
+        outputs: whether the outputs must exist too.
 
     Raises:
-        BagError: if one is not there, or which one is meant is not clear.
+        BagError: if a topic is missing or ambiguous.
     """
     parts = list(_PARTS) if outputs else ['rotor']
     found = {part: topic for part in parts if (topic := given.get(part))}
@@ -68,19 +66,19 @@ def find_topics(
 
 
 def find_rotor_topic(bag: Bag, given: str | None = None) -> str:
-    """Give the rotor's topic: the given one, or else by type and name.
+    """Return the rotor's topic: the given one, or else by type and name.
 
     Raises:
-        BagError: if it is not there, or which one is meant is not clear.
+        BagError: if it is missing or ambiguous.
     """
     return find_topics(bag, {'rotor': given}, outputs=False).rotor
 
 
 def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
-    """Give the topic of the output's encoder: the given one, or else by name; None without one.
+    """Return the topic of the output encoder: the given one, or else by name; None without one.
 
     Raises:
-        BagError: if the given one is not there, or which one is meant is not clear.
+        BagError: if the given one is missing, or several have the name.
     """
     wanted = TOPICS[OUTPUT_ENCODER].type
     if given:

@@ -1,4 +1,4 @@
-"""ROS 1 bags."""
+"""Reads ROS 1 bags."""
 
 import bz2
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -34,11 +34,11 @@ _BOUNDED: Mapping[Callable[[bytes], bytes], Decompressor] = {
     bz2.decompress: _unbz2,
     lz4.frame.decompress: DECOMPRESSORS['lz4'],
 }
-"""In place of those of rosbags, which decompress whatever there is."""
+"""Replacements for those of rosbags, which decompress without limit."""
 
 
 class _Reader(rosbag1.Reader):
-    """Bounds the index: a file can refer to the same part of it again and again."""
+    """Bounds the index, because a file can refer to the same part of it repeatedly."""
 
     def __init__(self, path: Path, descriptions: Descriptions) -> None:
         super().__init__(path)
@@ -51,7 +51,7 @@ class _Reader(rosbag1.Reader):
         self._descriptions.add(len(connection.topic) + len(connection.msgdef.data))
         self._definitions.add(connection.msgdef.data)
         if sum(map(len, self._definitions)) > MAX_DEFINITIONS:
-            raise ValueError(f'its types take more than {MAX_DEFINITIONS} bytes to define')
+            raise ValueError(f'its type definitions have more than {MAX_DEFINITIONS} bytes')
         return connection
 
     def read_index_data(self, pos: int, indexes: dict[int, list[IndexData]]) -> None:
@@ -80,11 +80,11 @@ class Ros1(Storage):
         self._reader.close()
 
     def topics(self) -> list[Topic]:
-        """Give the topic of each connection."""
+        """Return the topic of each connection."""
         return [self._topic(connection) for connection in self._reader.connections]
 
     def count(self) -> int | None:
-        """Give the number in the index."""
+        """Return the number in the index."""
         return sum(connection.msgcount for connection in self._reader.connections)
 
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
@@ -98,7 +98,7 @@ class Ros1(Storage):
             for connection, received, data in self._reader.messages(wanted) if wanted else ():
                 kind = connection.msgtype
                 store, _ = types[kind]
-                # Left alone, rosbags counts through any length that damaged bytes claim.
+                # By default, rosbags loops over any length that damaged bytes claim.
                 store.max_sequence_length = len(data)
                 yield connection.topic, received, bytes(store.ros1_to_cdr(data, kind))
                 number += 1

@@ -1,4 +1,4 @@
-"""The types of ROS 1 messages, which have to be understood to be read."""
+"""The types of ROS 1 messages, which are needed to convert them to CDR."""
 
 from functools import cache
 from typing import Any
@@ -9,26 +9,26 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
 MAX_PARTS = 10_000
-"""Of all types together: rosbags takes up to a millisecond to prepare for one."""
+"""Most parts of all types together: rosbags takes up to a millisecond to prepare each."""
 _MAX_PARTS_FOR_BYTES = 8
 _TEXTS = {'string', 'wstring'}
 
 
 @cache
 def ros1_types(message_type: str, definition: str) -> tuple[Typestore, int]:
-    """Make a store of the types that a definition defines, as they are in ROS 2.
+    """Create a store of the types of a definition, as they are in ROS 2.
 
     Returns:
-        The store, and the number of parts that rosbags converts a message in.
+        The store, and the number of parts in which rosbags converts a message.
 
     Raises:
-        ValueError: if converting a message would take longer than its size explains.
+        ValueError: if the conversion of a small message could take long.
     """
     types = get_types_from_msg(definition, message_type)
     jazzy = get_typestore(Stores.ROS2_JAZZY).fielddefs
-    types['std_msgs/msg/Header'] = jazzy['std_msgs/msg/Header']  # has a number in ROS 1
+    types['std_msgs/msg/Header'] = jazzy['std_msgs/msg/Header']  # ROS 1 has a sequence number
     for name in ('builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration'):
-        types.setdefault(name, jazzy[name])  # primitive in ROS 1
+        types.setdefault(name, jazzy[name])  # primitive types in ROS 1
     parts, _ = _extent((Nodetype.NAME, message_type), types, {})
     store = get_typestore(Stores.EMPTY)
     store.register(types)
@@ -38,7 +38,7 @@ def ros1_types(message_type: str, definition: str) -> tuple[Typestore, int]:
 def _extent(
     field: tuple[Nodetype, Any], types: Typesdict, known: dict[str, tuple[int, int]]
 ) -> tuple[int, int]:
-    """The parts that rosbags converts one by one, and how many of them have bytes for certain."""
+    """The parts that rosbags converts one by one, and how many of them are never empty."""
     kind, detail = field
     if kind == Nodetype.BASE:
         return 1, 1
@@ -50,9 +50,9 @@ def _extent(
     element, count = detail
     parts, filled = _extent(element, types, known)
     if kind == Nodetype.SEQUENCE:
-        # A message can claim any number of elements; those without bytes do not use it up.
+        # A message can claim any number of elements that take no bytes.
         if parts > _MAX_PARTS_FOR_BYTES * filled:
-            raise ValueError('a sequence of messages with hardly any bytes in them')
+            raise ValueError('a sequence of nearly empty messages')
         return 1 + parts, 1
     if element[0] == Nodetype.BASE and element[1][0] not in _TEXTS:
         return 1, 1

@@ -1,4 +1,4 @@
-"""When which of a bag's messages is due in a replay, and when to tell of it; no ROS."""
+"""The time at which each message is due in a replay, without ROS."""
 
 import math
 import time
@@ -20,11 +20,11 @@ def due_messages(
     *,
     loop: bool = False,
 ) -> Iterator[tuple[float, Message]]:
-    """Give messages with the time at which each is due, s from the first; see `play`.
+    """Yield messages with the time at which each is due, s from the first; see `play`.
 
     Raises:
-        BagError: at once, if there is nothing to play; for damage behind what can be read.
-        ValueError: at once, if the rate is out of its range.
+        BagError: at once, if there is nothing to play; later for damage.
+        ValueError: at once, if the rate is not positive and finite.
     """
     if not 0.0 < rate < math.inf:
         raise ValueError(f'rate must be positive and finite, but is {rate:g}')
@@ -48,7 +48,7 @@ def _rounds(
             _, received, _ = message
             if first is None:
                 first = received
-            elapsed = received - first - start_offset * SECOND + 0.5  # ns; half of one to round
+            elapsed = received - first - start_offset * SECOND + 0.5  # ns, rounded
             if elapsed > duration * SECOND + 1.0:
                 break
             if elapsed < 0.0:
@@ -62,12 +62,12 @@ def _rounds(
             raise BagError(f'{source.path}: nothing to play on {", ".join(topics)}')
         if not loop:
             return
-        # What takes no time, such as a single message, comes every second.
+        # A loop that takes no time, such as a single message, is repeated every second.
         round_start = due + ((due - round_start) / max(count - 1, 1) or 1.0 / rate)
 
 
 def throttled(progress: ReportProgress) -> ReportProgress:
-    """The same, at most ten times a second."""
+    """Limit the calls to ten a second."""
     next_call = 0.0
 
     def call(done: int, total: int | None) -> None:

@@ -1,4 +1,4 @@
-"""sqlite3 files."""
+"""Reads sqlite3 files."""
 
 import os
 import shutil
@@ -15,7 +15,7 @@ from gear_kinematics.bag.topics import Topic
 
 _STEPS = 1000
 _REASONS = {
-    sqlite3.SQLITE_AUTH: 'a view stands where a table should be',
+    sqlite3.SQLITE_AUTH: 'a view in place of a table',
     sqlite3.SQLITE_INTERRUPT: 'there are more rows than a file of this size can hold',
 }
 
@@ -27,21 +27,21 @@ class Sqlite(Storage):
         super().__init__(budget)
         with ExitStack() as stack:
             path = _whole_pages(path, stack)
-            # Without a journal nothing changes: no need for locks, which read-only media lack.
+            # Without a journal nothing changes, so no locks are needed; read-only media have none.
             journal = path.with_name(f'{path.name}-wal')
             options = '?mode=ro' if journal.exists() else '?mode=ro&immutable=1'
             uri = path.absolute().as_uri() + options
             self._database = sqlite3.connect(uri, uri=True, check_same_thread=False)
             stack.enter_context(closing(self._database))
             self._database.set_authorizer(_only_tables)
-            # Pages that are in a tree again and again make more rows than anybody can read.
+            # Pages that occur repeatedly in a tree make an endless number of rows.
             self._size = sum(file.stat().st_size for file in (path, journal) if file.exists())
             self._steps = 100_000 + 10 * self._size
             self._database.set_progress_handler(self._spend, _STEPS)
             for table in ('topics', 'message_definitions', 'messages'):
                 columns = self._execute(f'PRAGMA table_xinfo({table})')
                 if any(hidden for *_, hidden in columns):
-                    raise ValueError(f'{table} has columns that are computed')
+                    raise ValueError(f'{table} has computed columns')
             self._resources = stack.pop_all()
 
     def close(self) -> None:
@@ -49,7 +49,7 @@ class Sqlite(Storage):
         self._resources.close()
 
     def _execute(self, query: str, parameters: Collection[object] = ()) -> sqlite3.Cursor:
-        # So asked, sqlite reads a file that is shorter than it should be as far as it goes.
+        # With this, sqlite reads as much as possible of a truncated file.
         self._database.execute('PRAGMA writable_schema=ON')
         return self._database.execute(query, tuple(parameters))
 
@@ -64,17 +64,17 @@ class Sqlite(Storage):
         return rows
 
     def _spend(self) -> bool:
-        """Count steps of sqlite's machine, and tell it to stop when they are used up."""
+        """Count steps of sqlite's virtual machine; returns True to stop it at the limit."""
         self._steps -= _STEPS
         return self._steps < 0
 
     def topics(self) -> list[Topic]:
-        """Give the rows of the table of topics."""
+        """Return the rows of the table of topics."""
         return list(self._topics().values())
 
     def _topics(self) -> dict[int, Topic]:
         definitions = {}
-        with suppress(sqlite3.Error):  # there were none before version 4 of the schema
+        with suppress(sqlite3.Error):  # absent before version 4 of the schema
             definitions = {row['topic_type']: row for row in self._rows('message_definitions')}
         topics = {}
         for row in self._rows('topics'):
@@ -89,14 +89,14 @@ class Sqlite(Storage):
                 known.get('offered_qos_profiles', ''),
             )
             if not all(isinstance(text, str) for text in topic):
-                raise ValueError('a topic is not described by texts')
+                raise ValueError('the description of a topic is not text')
             topics[known['id']] = topic
         return topics
 
     def count(self) -> int | None:
-        """Count the rows; None where the file is too damaged for it."""
+        """Count the rows; None if the file is too damaged."""
         with suppress(sqlite3.Error):
-            # Of a column: rows as such are counted in a single step, which nothing stops.
+            # Of a column: count(*) takes a single step, which cannot be stopped.
             return int(self._execute('SELECT count(timestamp) FROM messages').fetchone()[0])
         return None
 
@@ -111,14 +111,14 @@ class Sqlite(Storage):
         try:
             with _reasons():
                 for key, received, data in self._execute(
-                    'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, question marks
+                    'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, placeholders
                     f' WHERE topic_id IN ({places}) ORDER BY timestamp',
                     names,
                 ):
                     if type(data) is not bytes or type(received) is not int:
                         raise ValueError('a message without a time or data')
                     left -= len(data)
-                    if left < 0:  # pages that are in message after message
+                    if left < 0:  # messages that share pages
                         raise ValueError('the messages are longer than the file')
                     yield names[key], received, data
                     number += 1
@@ -127,13 +127,13 @@ class Sqlite(Storage):
 
 
 def _only_tables(_action: int, _1: object, _2: object, _database: object, view: object) -> int:
-    """Refuse views: what a file makes up while it is read may have no end."""
+    """Refuse views, whose rows are computed and may be endless."""
     return sqlite3.SQLITE_DENY if view else sqlite3.SQLITE_OK
 
 
 @contextmanager
 def _reasons() -> Iterator[None]:
-    """Say what is wrong with a file where sqlite was told to stop."""
+    """Name the cause where sqlite was stopped."""
     try:
         yield
     except sqlite3.DatabaseError as error:
@@ -144,9 +144,9 @@ def _reasons() -> Iterator[None]:
 
 
 def _whole_pages(path: Path, stack: ExitStack) -> Path:
-    """Give the path of a copy without the last page if that is cut off.
+    """Return the path, or that of a copy without the last page if that is truncated.
 
-    sqlite would fill it up with zeros, and messages with them.
+    sqlite would pad the page, and thus messages, with zeros.
     """
     with path.open('rb') as source:
         (page_size,) = struct.unpack('>16xH', source.read(18))

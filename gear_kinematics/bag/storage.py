@@ -1,8 +1,7 @@
-"""What the files of a bag have in common: their interface, compression, and bounds of both.
+"""The interface of a file of a bag, and decompression within limits set by its size on disk.
 
-What comes out of a bag is what its size on disk explains, and little more. Chunks of a recording
-expand to up to 20 times their size, and a message takes a byte of a compressed file or more. What
-expands further is blank images and maps: few, or small.
+Chunks of a recording expand to up to 20 times their size, and a message takes at least a byte of a
+compressed file. Only blank images and maps expand further: they are few, or small.
 """
 
 import os
@@ -22,76 +21,75 @@ else:
     from backports import zstd
 
 Message = tuple[str, int, bytes]
-"""Topic, reception in ns, CDR. A named tuple would take 15 times as long to make."""
+"""Topic, time of reception in ns, CDR. A named tuple would take 15 times as long to make."""
 Decompressor = Callable[[bytes, int], tuple[bytes, bool]]
-"""Decompresses at most so many bytes of a frame, and tells whether that was all of it."""
-
+"""From a frame and a limit to at most that many bytes, and whether they are all of it."""
 FileOpener = Callable[[IO[bytes]], Any]
 
 MAX_RECORD = 2**30
-"""Bytes of a record on disk."""
+"""Largest record on disk, bytes."""
 MAX_DEFINITIONS = 2**19
-"""Bytes of the types of ROS 1: rosbags takes 25 µs for each."""
+"""Largest type definitions of ROS 1, bytes: rosbags takes 25 µs for each."""
 CHUNK_EXPANSION, FILE_EXPANSION = 20, 100
-"""How many times its size a chunk or message, and a file, may expand to; see `expanded_size`."""
+"""Greatest expansion of a chunk or message, and of a file; see `expanded_size`."""
 
 _SPARE_SIZE = 2**25  # bytes
 _SPARE_TOTAL = 2**30  # bytes
 _SPARE_RECORDS = 100_000
 _MAX_DESCRIBED = 2**25  # bytes
-_DESCRIPTION = 256  # bytes that one counts for beside its texts
+_DESCRIPTION = 256  # bytes that a description counts for in addition to its texts
 
 
 def expanded_size(size: int, factor: int) -> int:
-    """The size in bytes that something compressed may expand to."""
+    """The size, bytes, to which compressed data may expand."""
     return _SPARE_SIZE + factor * size
 
 
 class Budget:
-    """What may come out of the files of a bag while they are read once."""
+    """The records and bytes that may still be read from the files of a bag."""
 
     def __init__(self, size: int) -> None:
-        """Begin with files of so many bytes on disk."""
+        """Start with the size of the files on disk, bytes."""
         self._records = _SPARE_RECORDS + size
         self._expanded = _SPARE_TOTAL + FILE_EXPANSION * size
 
     def count(self, records: int) -> None:
-        """Take records.
+        """Count records.
 
         Raises:
-            ValueError: if there are more than there may be.
+            ValueError: if the budget is exceeded.
         """
         self._records -= records
         if self._records < 0:
             raise ValueError('there are more records than a bag of this size can hold')
 
     def expand(self, size: int) -> None:
-        """Take bytes that were compressed.
+        """Count decompressed bytes.
 
         Raises:
-            ValueError: if there are more than there may be.
+            ValueError: if the budget is exceeded.
         """
         self._expanded -= size
         if self._expanded < 0:
-            raise ValueError('more is compressed in it than a bag of this size can hold')
+            raise ValueError('its compressed data expand to more than a bag of this size can hold')
 
 
 class Descriptions:
-    """The descriptions of topics and types, which are all kept."""
+    """Bounds the descriptions of topics and types, which are all kept in memory."""
 
     def __init__(self) -> None:
-        """Begin with none."""
+        """Start with none."""
         self._size = 0
 
     def add(self, size: int) -> None:
-        """Take one whose texts have so many bytes.
+        """Count a description whose texts have `size` bytes.
 
         Raises:
-            ValueError: if that makes more than any recorder writes.
+            ValueError: if they are larger than any recorder writes.
         """
         self._size += _DESCRIPTION + size
         if self._size > _MAX_DESCRIBED:
-            raise ValueError(f'it describes its topics by more than {_MAX_DESCRIBED} bytes')
+            raise ValueError(f'the descriptions of its topics exceed {_MAX_DESCRIBED} bytes')
 
 
 def _unzstd(data: bytes, limit: int) -> tuple[bytes, bool]:
@@ -100,16 +98,16 @@ def _unzstd(data: bytes, limit: int) -> tuple[bytes, bool]:
 
 
 def _unlz4(data: bytes, limit: int) -> tuple[bytes, bool]:
-    # The format cannot do better than 255 to 1, and lz4 allocates the limit at once.
+    # The format expands to 255 times the size at most, and lz4 allocates the limit at once.
     decompressor = lz4.frame.LZ4FrameDecompressor()
     return decompressor.decompress(data, min(limit, 256 * len(data))), decompressor.eof
 
 
 def expanded(decompress: Decompressor, data: bytes, budget: Budget) -> tuple[bytes, bool]:
-    """Decompress a chunk or message as far as it may expand, and tell whether that was all.
+    """Decompress a chunk or message up to its limit; also returns whether that was all.
 
     Raises:
-        ValueError: if the bag holds too much.
+        ValueError: if the bag expands too far.
     """
     content, whole = decompress(data, expanded_size(len(data), CHUNK_EXPANSION))
     budget.expand(len(content))
@@ -117,15 +115,15 @@ def expanded(decompress: Decompressor, data: bytes, budget: Budget) -> tuple[byt
 
 
 def decompress_file(source: IO[bytes], target: Path, opener: FileOpener) -> str:
-    """Decompress as much as there is, and tell what stopped it early, if anything."""
+    """Decompress as much as possible; returns the cause of an early end, or an empty text."""
     limit = left = expanded_size(os.fstat(source.fileno()).st_size, FILE_EXPANSION)
     with target.open('wb') as output, opener(source) as expanded:
         try:
-            while piece := expanded.read1(2**18):  # what there is, unlike read()
+            while piece := expanded.read1(2**18):  # returns partial data, unlike read()
                 left -= output.write(piece)
                 if left < 0:
                     raise ValueError(f'it expands to more than {limit} bytes')
-        except Exception as error:  # noqa: BLE001, of two libraries
+        except Exception as error:  # noqa: BLE001, raised by two libraries
             return cause(error)
     return ''
 
@@ -133,42 +131,40 @@ def decompress_file(source: IO[bytes], target: Path, opener: FileOpener) -> str:
 _ZSTD_MAGIC, _LZ4_MAGIC = b'\x28\xb5\x2f\xfd', b'\x04\x22\x4d\x18'
 
 DECOMPRESSORS: Mapping[str, Decompressor] = {'zstd': _unzstd, 'lz4': _unlz4}
-"""By their names in bags."""
-
+"""Decompressors by their names in bags."""
 MESSAGE_DECOMPRESSORS: Mapping[bytes, Decompressor] = {_ZSTD_MAGIC: _unzstd, _LZ4_MAGIC: _unlz4}
-"""By the first bytes of a message, which are never those of CDR: it begins with a zero."""
-
+"""Decompressors by the first bytes of a message; CDR differs, as it begins with a zero."""
 FILE_OPENERS: Mapping[bytes, FileOpener] = {
     _ZSTD_MAGIC: zstd.ZstdFile,
     _LZ4_MAGIC: lz4.frame.LZ4FrameFile,
 }
-"""By the first bytes of a file."""
+"""Openers by the first bytes of a file."""
 
 
 class Storage:
     """A file of a bag."""
 
     def __init__(self, budget: Budget) -> None:
-        """Begin.
+        """Start without messages read.
 
         Args:
-            budget: what may come out of the files of the bag.
+            budget: limits on the files of the bag.
         """
         self.budget = budget
         self.descriptions = Descriptions()
         self.read = 0
-        """Messages that have been taken out; up to date whenever an error is raised."""
+        """Number of messages read; up to date whenever an error is raised."""
 
     def topics(self) -> list[Topic]:
-        """Give what the file says about its topics."""
+        """Return the topics of the file."""
         raise NotImplementedError
 
     def count(self) -> int | None:
-        """Count the messages; None where only reading all of them would tell."""
+        """Return the number of messages; None if unknown without reading all of them."""
         raise NotImplementedError
 
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
-        """Read the messages on topics in the order of reception, as far as there are any."""
+        """Read the messages on the given topics, in the order of reception."""
         raise NotImplementedError
 
     def close(self) -> None:
@@ -176,7 +172,7 @@ class Storage:
         raise NotImplementedError
 
     def position(self) -> str:
-        """Tell where reading is, for errors."""
+        """Position of reading, for error messages."""
         return f'after message {self.read}: ' if self.read else ''
 
     def decompressed(

@@ -1,6 +1,6 @@
-"""The writers of rosbags, with what they lack: many messages at a time, types without definition.
+"""The writers of rosbags, extended to write many messages at a time and types without definition.
 
-Whatever rosbags can write itself has the same bytes here.
+Everything else has the same bytes as written by rosbags.
 """
 
 import struct
@@ -30,7 +30,7 @@ _FORMATS = {
     'ros2idl': MessageDefinitionFormat.IDL,
     '': MessageDefinitionFormat.NONE,
 }
-_MAX_CHUNK = 2**20  # bytes; rosbags ends a chunk behind the message that exceeds it
+_MAX_CHUNK = 2**20  # bytes; rosbags ends a chunk after the message that exceeds it
 _MESSAGE_START = struct.Struct('<BQHIQQ')  # opcode, length, channel, number, two times
 
 
@@ -39,7 +39,7 @@ class _McapWriter(McapWriter):
         if connection.msgdef.format != MessageDefinitionFormat.NONE:
             super().add_msgtype(connection)
             return
-        # rosbags would claim a definition in IDL, where rosbag2 gives the name of the type alone.
+        # rosbags would write a definition in IDL, but rosbag2 writes the name of the type alone.
         self.schemas.append(Schema(len(self.schemas) + 1, connection.msgtype, '', ''))
         write_schema(self.chunk.bio, self.schemas[-1])
 
@@ -92,7 +92,7 @@ class BulkWriter(Writer):
         return cast('_McapWriter | _SqliteWriter', self.storage)
 
     def add_topic(self, topic: Topic, qos: Sequence[Qos]) -> int:
-        """Add a topic, whose definition and hash may be empty, and give its number."""
+        """Add a topic, whose definition and hash may be empty; returns its number."""
         connection = Connection(
             len(self.connections) + 1,
             topic.name,
@@ -114,7 +114,7 @@ class BulkWriter(Writer):
     def write_all(
         self, topics: Sequence[int], times: Sequence[int], data: Sequence[bytes]
     ) -> None:
-        """Write messages: the number of the topic, the reception in ns and the CDR of each."""
+        """Write messages by topic number, time of reception in ns, and CDR."""
         self._file.write_all(topics, times, data)
         for topic, count in Counter(topics).items():
             self.counts[topic] += count

@@ -1,4 +1,4 @@
-"""Topics: what a bag says about them, and the definitions of their types."""
+"""Descriptions of topics, and the definitions of their types."""
 
 from collections.abc import Collection, Mapping
 from difflib import get_close_matches
@@ -11,31 +11,31 @@ from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.ros1_types import ros1_types
 
 _SHOWN = 10  # topics
-_COMPARED = 1000  # topics whose names are compared with one that is not there
+_COMPARED = 1000  # topics whose names are compared with a missing one
 
 
 class Topic(NamedTuple):
-    """What a bag says about a topic; a text that it lacks is empty."""
+    """The description of a topic in a bag; a missing text is empty."""
 
     name: str
     type: str
     """As in ROS 2: sensor_msgs/msg/JointState."""
     encoding: str
-    """Of the messages: cdr, or something that is of no use here."""
+    """Of the messages: cdr, or an unsupported one."""
     syntax: str = ''
-    """Of the type definition: ros2msg, ros2idl, ros1msg or unknown to rosbags."""
+    """Of the type definition: ros2msg, ros2idl, ros1msg or one unknown to rosbags."""
     definition: str = ''
     type_hash: str = ''
     qos: Any = ''
-    """The offered profiles, as a list or as YAML."""
+    """The offered QoS profiles, as a list or as YAML."""
 
 
 def listed(names: Collection[str], first: Collection[str] = ()) -> str:
-    """Name topics in a line, of many only the first: a bag can have tens of thousands.
+    """List topics in one line, only the first of many: a bag can have tens of thousands.
 
     Args:
-        names: of topics.
-        first: which of them to name before the others.
+        names: names of the topics.
+        first: those to list before the others.
     """
     shown, more = sorted(names, key=lambda name: (name not in first, name)), len(names) - _SHOWN
     text = ', '.join(f'{name:.100}' for name in shown[:_SHOWN])
@@ -45,14 +45,14 @@ def listed(names: Collection[str], first: Collection[str] = ()) -> str:
 def missing_topic(
     path: Path, topics: Mapping[str, str], name: str, wanted: str = '', *, suggest: bool = True
 ) -> BagError:
-    """Give the error for a topic that is not in a bag, or not of the type that is wanted.
+    """Return the error for a topic that is not in a bag, or not of the wanted type.
 
     Args:
-        path: of the bag.
-        topics: that are there: types by names.
-        name: of the topic.
-        wanted: its type; '' takes any.
-        suggest: whether to name the one that is spelled most like it.
+        path: path of the bag.
+        topics: its topics, types by name.
+        name: name of the topic.
+        wanted: its type; '' for any.
+        suggest: whether to name the topic whose name is nearest.
     """
     of_type = {topic for topic, kind in topics.items() if kind == wanted}
     text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'
@@ -66,7 +66,7 @@ def missing_topic(
 
 
 def jazzy_definition(message_type: str) -> tuple[str, str]:
-    """Give the definition and the hash of a type of ROS 2 Jazzy."""
+    """Return the definition and the hash of a type of ROS 2 Jazzy."""
     store = get_typestore(Stores.ROS2_JAZZY)
     if message_type not in store.fielddefs:
         raise ValueError(f'type {message_type} is not of ROS 2 Jazzy and needs a definition')
@@ -74,7 +74,7 @@ def jazzy_definition(message_type: str) -> tuple[str, str]:
 
 
 def as_ros2(topic: Topic) -> Topic:
-    """Give a topic as ROS 2 records it; of a type without a definition that is the name alone.
+    """Return a topic as ROS 2 records it; with the name of the type alone if it is undefined.
 
     Raises:
         ValueError: if the type is defined in a syntax that ROS 2 does not have.

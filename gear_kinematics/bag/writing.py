@@ -1,4 +1,4 @@
-"""Writing a recording."""
+"""Writes recordings."""
 
 import shutil
 import sqlite3
@@ -29,7 +29,7 @@ from gear_kinematics.bag.topics import Topic, as_ros2, jazzy_definition
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _BATCH = 1024  # messages
-_MAX_ENTRIES = 4000  # of metadata; rosbags takes 3 ms to write one
+_MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
 _FOREVER = QosTime(9223372036, 854775807)
 _RELIABLE = Qos(
     QosHistory.KEEP_LAST,
@@ -47,8 +47,8 @@ _RELIABLE = Qos(
 class BagWriter:
     """Writes a rosbag2 folder, version 9; the same messages always give the same bytes.
 
-    A context manager. The folder gets its name when it is whole; after an exception, an
-    interruption included, nothing is left.
+    A context manager. The folder is renamed to `path` when it is complete; after an exception or
+    an interruption, nothing is left.
     """
 
     def __init__(
@@ -57,12 +57,12 @@ class BagWriter:
         storage: Literal['mcap', 'sqlite3'] = 'mcap',
         compression: Literal['none', 'zstd'] = 'none',
     ) -> None:
-        """Say what to write.
+        """Define the recording; `__enter__` opens it.
 
         Args:
-            path: the folder to make, in one that exists.
-            storage: of the messages.
-            compression: zstd compresses the chunks of an mcap file, and an sqlite3 file whole.
+            path: the folder to create, in an existing one.
+            storage: format of the files.
+            compression: zstd compresses the chunks of an mcap file, or a whole sqlite3 file.
         """
         self.path = Path(path)
         self._storage = StoragePlugin[storage.upper()]
@@ -72,18 +72,18 @@ class BagWriter:
         self._entries = 0
 
     def __enter__(self) -> Self:
-        """Begin.
+        """Open a temporary folder.
 
         Raises:
-            BagError: if the path exists already or nothing can be written there.
+            BagError: if the path exists already or cannot be written.
         """
         with bag_errors(self.path), ExitStack() as stack:
             if self.path.exists() or self.path.is_symlink():
                 raise ValueError('exists already')
             folder = tempfile.mkdtemp(prefix=f'.{self.path.name}.', dir=self.path.parent)
             stack.callback(shutil.rmtree, folder)
-            # rosbags names the file after the folder it writes to. rosbag2 numbers the files of a
-            # bag, and its reindexer finds no others.
+            # rosbags names the file after its folder; rosbag2 finds only numbered files when it
+            # reindexes a bag.
             self._partial = Path(folder, f'{self.path.name}_0')
             self._writer = BulkWriter(self._partial, version=9, storage_plugin=self._storage)
             self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
@@ -97,7 +97,7 @@ class BagWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        """Finish, or clear away after an exception.
+        """Finish the recording, or remove it after an exception.
 
         Raises:
             BagError: if it cannot be finished.
@@ -118,13 +118,13 @@ class BagWriter:
             self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [_RELIABLE])
 
     def copy_topic(self, bag: Bag, name: str) -> Topic:
-        """Add a topic as it is in another bag, with its type definition, hash and QoS.
+        """Add a topic of another bag, with its type definition, hash and QoS.
 
         A type that neither the bag nor ROS 2 Jazzy defines is written without a definition, as
         rosbag2 does.
 
         Returns:
-            What is written about the topic.
+            The description of the topic as it is written.
 
         Raises:
             TopicError: if it cannot be copied.
@@ -143,8 +143,8 @@ class BagWriter:
         """Write a message.
 
         Args:
-            topic: one that has been added.
-            received: ns.
+            topic: name of an added topic.
+            received: time of reception, ns.
             data: CDR.
 
         Raises:
@@ -153,7 +153,7 @@ class BagWriter:
         self.write_all([(topic, received, data)])
 
     def write_all(self, messages: Sequence[Message]) -> None:
-        """Write messages, which is faster than one by one.
+        """Write many messages, which is faster than one by one.
 
         Raises:
             BagError: see `write`.
@@ -165,7 +165,7 @@ class BagWriter:
             raise BagError(f'{self.path}: topic {min(unknown)} has not been added')
         for time in (min(times), max(times)):
             if not 0 <= time < 2**63:
-                raise BagError(f'{self.path}: {time} is no time of reception')
+                raise BagError(f'{self.path}: the time of reception {time} is out of range')
         try:
             self._writer.write_all([self._numbers[topic] for topic in topics], times, data)
         except (OSError, sqlite3.Error) as error:
@@ -183,12 +183,12 @@ class BagWriter:
 def write_bag(
     path: Path, messages: Iterable[Message], *, storage: Literal['mcap', 'sqlite3'] = 'mcap'
 ) -> None:
-    """Write a rosbag2 recording, chunks compressed with zstd where the storage has chunks.
+    """Write a rosbag2 recording; chunks of mcap files are compressed with zstd.
 
     Args:
-        path: the folder to make, in one that exists.
+        path: the folder to create, in an existing one.
         messages: on topics of `RECORDED_TOPICS`.
-        storage: of the messages.
+        storage: format of the files.
 
     Raises:
         BagError: if it cannot be written.

@@ -73,7 +73,7 @@ def read(path: Path, topics: Iterable[str] = RECORDED_TOPICS) -> Messages:
 
 
 def read_up_to_damage(path: Path) -> tuple[Messages, BagError | None]:
-    """Return the messages, and the error that ended them, which is the right one of the two."""
+    """Return the messages, and the error that ended reading, after checking its type."""
     messages: Messages = []
     error = None
     try:
@@ -146,7 +146,7 @@ def mcap_file(
 
 
 def data_end(path: Path) -> int:
-    """Give the offset of the record that ends the data."""
+    """Find the offset of the record that ends the data."""
     return record_ends(path)[-1]
 
 
@@ -214,7 +214,7 @@ def without_metadata(folder: Path) -> Path:
 
 
 def renamed(folder: Path) -> Path:
-    """Name files as before version 4: below a folder, which has another name by now."""
+    """Name files as before version 4: with their folder, which has been renamed."""
     change_metadata(folder, version=3, relative_file_paths=[f'old_name/{single(folder).name}'])
     return folder
 
@@ -441,7 +441,7 @@ def test_reading_takes_little_memory(recorded, tmp_path):
 
 
 def record_ends(path: Path) -> list[int]:
-    """Give where the records of an mcap's data end, and where they begin."""
+    """Find the ends of the records in the data of an mcap, and the start of the first."""
     data, ends = path.read_bytes(), [8]
     while data[ends[-1]] != 15:
         ends.append(ends[-1] + 9 + struct.unpack_from('<Q', data, ends[-1] + 1)[0])
@@ -449,7 +449,7 @@ def record_ends(path: Path) -> list[int]:
 
 
 def offsets_of_messages(path: Path) -> list[int]:
-    """Give the ends of the messages of an uncompressed mcap, in chunks or not."""
+    """Find the ends of the messages of an uncompressed mcap, in chunks or not."""
     data, offset, ends = path.read_bytes(), 8, []
     while data[offset] != 15:
         (length,) = struct.unpack_from('<Q', data, offset + 1)
@@ -534,8 +534,8 @@ def test_a_damaged_chunk_is_located(recorded, tmp_path):
     assert str(error).startswith(f'{path}: at byte {index.chunk_start_offset}: ')
 
 
-def test_a_chunk_that_is_passed_over_is_missed(recorded, tmp_path):
-    """Its kind damaged, it looks like a record of the future; the index knows better."""
+def test_a_chunk_that_is_skipped_is_reported_as_missing(recorded, tmp_path):
+    """With its opcode damaged, it looks like an unknown record, but the index lists it."""
     path = mcap_file(tmp_path / 'b.mcap', recorded)
     data = bytearray(path.read_bytes())
     assert data[chunks(path)[3].chunk_start_offset] == 6
@@ -631,7 +631,7 @@ UNREADABLE: dict[str, tuple[str, Callable[[Path, Messages], Path]]] = {
         lambda p, _: database(p / 'b.db3', 'CREATE TABLE t(a); INSERT INTO t VALUES (1);'),
     ),
     'a column that is computed': (
-        'messages has columns that are computed',
+        'messages has computed columns',
         lambda p, m: database(
             single(rosbags_bag(p / 'b', m, 'sqlite3')),
             'ALTER TABLE messages ADD COLUMN more AS (zeroblob(1000000000));',
@@ -710,7 +710,7 @@ UNREADABLE: dict[str, tuple[str, Callable[[Path, Messages], Path]]] = {
         lambda p, m: claiming_chunk(p / 'b.mcap', m, 2**40),
     ),
     'chunk that claims too little': (
-        'not of the size that it should have',
+        'does not have the size that it states',
         lambda p, m: claiming_chunk(p / 'b.mcap', m, 100),
     ),
     'file that grows': (
@@ -768,7 +768,7 @@ def test_a_compressed_file_that_breaks_off_between_records_is_damaged(recorded, 
 
 
 @pytest.mark.parametrize('change', ["data = 'text'", 'data = 5', "timestamp = X'FF'"])
-def test_a_row_of_something_else_is_damage(recorded, tmp_path, change):
+def test_a_row_of_another_type_is_damage(recorded, tmp_path, change):
     path = single(rosbags_bag(tmp_path / 'bag', recorded, 'sqlite3'))
     database(path, f'UPDATE messages SET {change} WHERE id = 500')  # noqa: S608, from above
     messages, error = read_up_to_damage(path)
@@ -807,7 +807,7 @@ def test_a_message_that_grows_is_damage(recorded, tmp_path, storage, monkeypatch
     ],
 )
 def test_a_malformed_message_of_ros1_is_damage(recorded, tmp_path, topic, text, offset):
-    """A length in the 41st message is out of bounds, and found to be without counting so far."""
+    """A length in the 41st message is out of bounds, which is found without counting that far."""
     path = ros1_bag(tmp_path / 'b.bag', recorded)
     data = path.read_bytes()
     place = [found.start() for found in re.finditer(text, data)][40] + offset
@@ -818,7 +818,7 @@ def test_a_malformed_message_of_ros1_is_damage(recorded, tmp_path, topic, text, 
     assert f'after message {len(messages)}: ' in str(error)
 
 
-# Any bytes at all.
+# Random bytes.
 
 FUZZED: dict[str, Callable[[Path, Messages], Path]] = {
     'mcap': rosbags_bag,
@@ -837,7 +837,7 @@ FUZZED: dict[str, Callable[[Path, Messages], Path]] = {
 
 @pytest.fixture(scope='module', params=FUZZED)
 def fuzzed(request, recorded, tmp_path_factory) -> tuple[Path, dict[Path, bytes]]:
-    """Give a bag and its files with what was in them."""
+    """A bag, and its files with their contents."""
     path = FUZZED[request.param](tmp_path_factory.mktemp('fuzz') / 'bag', recorded[:60])
     return path, {p: p.read_bytes() for p in ([path] if path.is_file() else path.iterdir())}
 
@@ -950,7 +950,7 @@ def test_others_read_what_is_written(recorded, tmp_path, storage, compression):
 @WRITTEN
 @pytest.mark.parametrize('count', [1, 1000, 10**6])
 def test_files_are_those_of_rosbags(recorded, tmp_path, storage, compression, count):
-    """Whatever number of messages is written at a time, over several chunks."""
+    """For any number of messages written at a time, over several chunks."""
     messages = [
         (topic, received + turn, data)
         for turn in range(12)
@@ -1011,7 +1011,7 @@ with Bag(sys.argv[1]) as bag, BagWriter(*sys.argv[2:]) as writer:
 @pytest.mark.slow
 @WRITTEN
 def test_the_same_messages_give_the_same_bytes(recorded, tmp_path, storage, compression):
-    """In any folder and process, and when a copy is copied."""
+    """In any folder and process, and for the copy of a copy."""
     source = write_with(tmp_path / 'bag', recorded, storage, compression)
     files = {path.name: path.read_bytes() for path in source.iterdir()}
     assert len(files) == 2
@@ -1068,7 +1068,7 @@ def test_an_existing_target_is_left_alone(recorded, tmp_path):
         write_with(tmp_path / 'nowhere' / 'bag', recorded)
 
 
-def test_what_cannot_be_written_is_refused(tmp_path):
+def test_invalid_messages_are_refused(tmp_path):
     with BagWriter(tmp_path / 'bag') as writer:
         writer.add_topic('/a', 'sensor_msgs/msg/JointState')
         for attempt, cause in (
@@ -1130,7 +1130,7 @@ def described_mcap(path: Path) -> Path:
 
 
 @pytest.mark.parametrize('received', [2**63, 2**64 - 1])
-def test_a_time_beyond_what_ros_has_is_damage(tmp_path, received):
+def test_a_time_out_of_range_of_ros_is_damage(tmp_path, received):
     path = tmp_path / 'b.mcap'
     with path.open('wb') as stream:
         writer = mcap.writer.Writer(stream)
@@ -1147,7 +1147,7 @@ def test_a_time_beyond_what_ros_has_is_damage(tmp_path, received):
 
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
-def test_a_copied_topic_keeps_what_is_known_of_it(tmp_path, storage):
+def test_a_copied_topic_keeps_its_description(tmp_path, storage):
     names = ['/full', '/full_qos', '/idl', '/no_text', '/strange', '/unknown', '/broken']
     with Bag(described_mcap(tmp_path / 'b.mcap')) as bag:
         with BagWriter(tmp_path / 'copy', storage) as writer:
@@ -1171,7 +1171,7 @@ def test_a_copied_topic_keeps_what_is_known_of_it(tmp_path, storage):
     assert joint_state.definition == definition_of(kind)
     assert hashes['/no_text'] == JAZZY.hash_rihs01(kind)
     assert (hashes['/full'], hashes['/strange']) == ('RIHS01_x', 'RIHS01_y')
-    # What the bag does not say is not worked out.
+    # What the bag lacks is not added.
     assert {hashes[name] for name in ('/full_qos', '/idl', '/broken', '/unknown')} == {''}
 
 
@@ -1265,7 +1265,7 @@ def test_topics_of_ros1_are_copied_as_ros2(recorded, tmp_path):
     assert messages == recorded
 
 
-def test_short_forms_read_and_write(recorded, tmp_path):
+def test_read_bag_and_write_bag(recorded, tmp_path):
     for storage in ('mcap', 'sqlite3'):
         write_bag(tmp_path / storage, recorded, storage=storage)
         found = list(read_bag(tmp_path / storage, RECORDED_TOPICS))

@@ -1,4 +1,4 @@
-"""What a crafted bag cannot take: more than 300 MB and 20 s beyond what its size explains.
+"""A crafted bag must not take more than 300 MB or 20 s beyond what its size explains.
 
 Each bag goes through gearkin in a process of its own, whose processor time and peak of memory
 are measured. Bags are put together byte by byte here; most expand to gigabytes.
@@ -111,7 +111,7 @@ def chunk(*pieces: bytes | tuple[bytes, int]) -> bytes:
 
 
 def zeros(size: int) -> tuple[bytes, tuple[bytes, int]]:
-    """Give a message of so many bytes on /rotor_state as pieces of a chunk."""
+    """A message of `size` bytes on /rotor_state, as pieces of a chunk."""
     head = struct.pack('<BQHIQQ', 5, 22 + size, 1, 0, 1, 1)
     return head, (b'\0', size)
 
@@ -199,7 +199,7 @@ def varint(number: int) -> bytes:
 
 
 def shared_pages(path: Path) -> Path:
-    """Make messages of which each claims the pages of the first, 1 MB, to be its own."""
+    """Make messages that all share the pages of the first one, 1 MB."""
     page, small = 4096, 20_000
     large = small + 250 * (page - 4)
     marks = [b'MARK%4d' % number for number in range(200)]
@@ -260,7 +260,7 @@ def ros1_index_again_and_again(path: Path) -> Path:
 
 
 def ros1_chunks_in_turns(path: Path) -> Path:
-    """Make two chunks of 30 MB whose messages take turns."""
+    """Make two chunks of 30 MB whose messages alternate."""
     times = [*range(0, 6000, 2), *range(1, 6000, 2)]
     definition = 'uint8[10000] a\n'
     return ros1(path, definition, ((k, bytes(10_000)) for k in times), threshold=30 * MB)
@@ -275,7 +275,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: mcap(p / 'b.mcap', 60 * chunk(*zeros(2**30))),
     ),
     'chunks of 32 MiB': (
-        'more is compressed in it than a bag of this size can hold',
+        'compressed data expand to more than a bag of this size can hold',
         lambda p: mcap(p / 'b.mcap', 300 * chunk(*zeros(2**25 - 31))),
     ),
     'tiny messages': (
@@ -294,27 +294,27 @@ BAGS: dict[str, tuple[str, Maker]] = {
         }),
     ),
     'definitions of 16 MB': (
-        'describes its topics by more than',
+        'the descriptions of its topics exceed',
         lambda p: mcap(
             p / 'b.mcap',
             *(chunk(schema(number, 'a/msg/A', bytes(16 * MB))) for number in range(3, 9)),
         ),
     ),
     'metadata of channels': (
-        'describes its topics by more than',
+        'the descriptions of its topics exceed',
         lambda p: mcap(
             p / 'b.mcap',
             *(chunk(channel(number, 1, f'/{number}', bytes(8 * MB))) for number in range(4, 9)),
         ),
     ),
     'statistics in chunks': (
-        'more is compressed in it than a bag of this size can hold',
+        'compressed data expand to more than a bag of this size can hold',
         lambda p: mcap(p / 'b.mcap', 100 * chunk(
             struct.pack('<BQ42xI', 11, 46 + 30 * MB, 30 * MB), (struct.pack('<HQ', 1, 1), 3 * MB)
         )),
     ),
     'a compressed file of compressed chunks': (
-        'more is compressed in it than a bag of this size can hold',
+        'compressed data expand to more than a bag of this size can hold',
         lambda p: compressed(mcap(p / 'b.mcap', 300 * chunk((record(0x80, bytes(MB)), 33)))),
     ),
     '65 535 topics': (
@@ -322,7 +322,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: wide_mcap(p / 'b.mcap'),
     ),
     'metadata of 100 000 topics': (
-        'metadata.yaml: YAML has 17388999 bytes where there may be 4194304',
+        'metadata.yaml: YAML has 17388999 bytes, more than 4194304',
         lambda p: metadata(p / 'b', (f'/{number}' for number in range(100_000))),
     ),
     'metadata of small values': (
@@ -334,7 +334,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: folder(p / 'b', {'metadata.yaml': f'a: [{399_000 * "a,"}]'}),
     ),
     'metadata with a number of base 60': (
-        'metadata.yaml: YAML has 4000001 bytes where there may be 10000',
+        'metadata.yaml: YAML has 4000001 bytes, more than 10000',
         lambda p: folder(p / 'b', {'metadata.yaml': f'a: 1{2_000_000 * ":1"}'}),
     ),
     'metadata with numbers of one hash': (
@@ -360,11 +360,11 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: database(p / 'b.db3', [], 60 * [zstd.compress(bytes(2**30))]),
     ),
     'messages of 32 MiB': (
-        'more is compressed in it than a bag of this size can hold',
+        'compressed data expand to more than a bag of this size can hold',
         lambda p: database(p / 'b.db3', [], 300 * [zstd.compress(bytes(2**25))]),
     ),
     '300 000 topics in a database': (
-        'describes its topics by more than',
+        'the descriptions of its topics exceed',
         lambda p: database(p / 'b.db3', (f'/{k}/rotor_state' for k in range(300_000)), ()),
     ),
     'messages that share their pages': (
@@ -376,11 +376,11 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: ros1(p / 'b.bag', f'a/Nothing[1000000000] a\n{NOTHING}'),
     ),
     'a ROS 1 sequence of nothing': (
-        'a sequence of messages with hardly any bytes',
+        'a sequence of nearly empty messages',
         lambda p: ros1(p / 'b.bag', f'a/Nothing[] a\n{NOTHING}', [(1, bytes(MB))]),
     ),
     'a ROS 1 definition of 1 MB': (
-        'its types take more than 524288 bytes to define',
+        'its type definitions have more than 524288 bytes',
         lambda p: ros1(p / 'b.bag', ''.join(f'float64 a{k}\n' for k in range(70_000))),
     ),
     'a ROS 1 index that is there again and again': (
@@ -388,7 +388,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: ros1_index_again_and_again(p / 'b.bag'),
     ),
     'ROS 1 chunks that take turns': (
-        'more is compressed in it than a bag of this size can hold',
+        'compressed data expand to more than a bag of this size can hold',
         lambda p: ros1_chunks_in_turns(p / 'b.bag'),
     ),
 }  # fmt: skip

@@ -285,7 +285,7 @@ def test_a_database_is_not_asked_for_what_it_makes_up(table, tmp_path):
     with closing(sqlite3.connect(path)) as database:
         database.execute(f'ALTER TABLE {table} RENAME TO real')
         database.execute(f'CREATE VIEW {table} AS SELECT * FROM real')  # noqa: S608, our names
-    with pytest.raises(BagError, match='a view stands'), Bag(path) as bag:
+    with pytest.raises(BagError, match='a view in place of a table'), Bag(path) as bag:
         list(bag.messages(bag.topics))
 
 
