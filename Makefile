@@ -31,7 +31,7 @@ demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and valid
 	$(BIN)/gearkin demo
 
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
-	$(BIN)/python $(PYTEST) -m 'not live and not slow'
+	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'
 
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase

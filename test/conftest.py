@@ -47,6 +47,9 @@ hypothesis.settings.register_profile('default', deadline=None, max_examples=200)
 hypothesis.settings.register_profile(
     'ci', parent=hypothesis.settings.get_profile('default'), derandomize=True
 )
+hypothesis.settings.register_profile(
+    'quick', parent=hypothesis.settings.get_profile('ci'), max_examples=20
+)
 hypothesis.settings.load_profile('ci' if 'CI' in os.environ else 'default')
 
 
