@@ -24,7 +24,7 @@ from gear_kinematics.bag import ReportProgress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Document, printable
 from gear_kinematics.report.html import to_html
-from gear_kinematics.report.image import to_image
+from gear_kinematics.report.image import format_of, to_image
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.report.text import render
@@ -101,12 +101,15 @@ class Reporter:
         if self._plot:
             if sections > 1:
                 raise ValueError('--plot takes one recording')
-            import_module('matplotlib')
+            format_of(Path(self._plot))
         if 'html' in self._targets:
             import_module('plotly')
 
     def write(self, document: Document) -> None:
-        """Write the files, and print the document unless a form of it goes to stdout."""
+        """Print the document, unless a form of it goes to stdout, and write the files."""
+        if not self._silent:
+            with closed_pipe_ignored():
+                render(document, Console())
         if self._plot:
             figure = document.sections[0].figure
             if not figure:
@@ -114,9 +117,6 @@ class Reporter:
             write_file(self._plot, to_image(figure, Path(self._plot)))
         for form, target in self._targets.items():
             write(target, _FORMS[form](document))
-        if not self._silent:
-            with closed_pipe_ignored():
-                render(document, Console())
 
 
 def write(target: str, text: str) -> None:

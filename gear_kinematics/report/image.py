@@ -26,6 +26,9 @@ _STYLE = {
     'pdf.fonttype': 42,  # TrueType, which publishers ask for
 }
 _UNDATED = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
+_FOLDER = Path(__file__).parent
+"""To import matplotlib in: it obeys a matplotlibrc in the current folder, which may come with a
+recording."""
 _DPI = 150
 _PANEL = (6.0, 5.2)  # inches, side by side
 _STACKED = (7.5, 3.0)  # inches
@@ -51,13 +54,9 @@ def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -
         ValueError: if the suffix of the path is that of no format.
         ModuleNotFoundError: without matplotlib.
     """
-    kind = path.suffix[1:].lower()
+    kind = format_of(path)
 
     def make(figure: Any) -> bytes:
-        formats = figure.canvas.get_supported_filetypes()
-        if kind not in formats:
-            known = ', '.join(sorted(formats))
-            raise ValueError(f'{path}: the suffix of a plot is one of {known}')
         draw(figure)
         buffer = BytesIO()
         figure.savefig(buffer, format=kind, dpi=_DPI, metadata=_UNDATED.get(kind))
@@ -66,14 +65,29 @@ def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -
     return styled(size, make)
 
 
+def format_of(path: Path) -> str:
+    """Return the format of an image file, which is the suffix of its path.
+
+    Raises:
+        ValueError: if the suffix is that of no format.
+        ModuleNotFoundError: without matplotlib.
+    """
+    with chdir(_FOLDER):
+        from matplotlib.backend_bases import FigureCanvasBase  # noqa: PLC0415, an extra
+    formats = FigureCanvasBase.get_supported_filetypes()
+    if (kind := path.suffix[1:].lower()) not in formats:
+        known = ', '.join(sorted(formats))
+        raise ValueError(f'{path}: the suffix of a plot is one of {known}')
+    return kind
+
+
 def styled(size: tuple[float, float], use: Callable[[Any], bytes]) -> bytes:
     """Return what `use` makes of a new matplotlib figure of a size in inches, in our style.
 
     Raises:
         ModuleNotFoundError: without matplotlib.
     """
-    # matplotlib obeys a matplotlibrc in the current folder, which may come with a recording.
-    with chdir(Path(__file__).parent):
+    with chdir(_FOLDER):
         from matplotlib import rc_context  # noqa: PLC0415, an extra
         from matplotlib.figure import Figure  # noqa: PLC0415, an extra
     with rc_context(_STYLE):

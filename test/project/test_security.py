@@ -442,8 +442,9 @@ def test_nothing_in_the_current_folder_is_run_or_obeyed(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize('command', [['plot', 'scheme'], ['describe', '--plot']])
 @pytest.mark.parametrize('content', ['savefig.facecolor: ff0000', None], ids=['red', 'pipe'])
-def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, tmp_path):
+def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, command, tmp_path):
     pytest.importorskip('matplotlib')
     for folder in ('clean', 'trapped'):
         (tmp_path / folder).mkdir()
@@ -454,12 +455,13 @@ def test_matplotlibrc_in_the_current_folder_is_not_obeyed(content, tmp_path):
         os.mkfifo(trap)
     clean, trapped = (
         subprocess.run(
-            [sys.executable, '-c', GEARKIN, 'plot', 'scheme', 'scheme.svg'],
+            [sys.executable, '-c', GEARKIN, *command, 'figure.svg'],
             cwd=tmp_path / folder,
+            stdout=subprocess.DEVNULL,
             check=True,
             timeout=DEADLINE,
         )
-        and (tmp_path / folder / 'scheme.svg').read_bytes()
+        and (tmp_path / folder / 'figure.svg').read_bytes()
         for folder in ('clean', 'trapped')
     )
     assert clean == trapped
