@@ -1,7 +1,6 @@
 """Descriptions of topics, and the definitions of their types."""
 
 from collections.abc import Collection, Mapping
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,6 +8,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.ros1_types import ros1_types
+from gear_kinematics.wire.nearest import nearest
 
 _SHOWN = 10  # topics
 _COMPARED = 1000  # topics whose names are compared with a missing one
@@ -59,8 +59,7 @@ def missing_topic(
     if name in topics:
         text += f', it is of type {topics[name]}'
     elif suggest:
-        alike = get_close_matches(name, sorted(of_type or topics)[:_COMPARED], 1)
-        text += ''.join(f'; did you mean {topic}?' for topic in alike)
+        text += nearest(name, sorted(of_type or topics)[:_COMPARED])
     there = f'there are: {listed(topics, of_type)}' if topics else 'there are no topics'
     return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')
 

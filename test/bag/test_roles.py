@@ -122,7 +122,7 @@ def test_topics_are_found_by_name_then_by_type(joint_states, pose_arrays, given,
             '/body_poses',
             {'rotor': '/rotor_stat'},
             (
-                f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean /rotor_state? '
+                f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean `/rotor_state`? '
                 'there are: /output_state, /rotor_state, /body_poses, /rosout'
             ),
         ),
@@ -153,14 +153,14 @@ class Described:
     ('topics', 'name', 'kind', 'error'),
     [
         ([], '/a', '', 'no topic /a in it; there are no topics'),
-        (['/ab', '/c'], '/a', '', 'no topic /a in it; did you mean /ab? there are: /ab, /c'),
+        (['/ab', '/c'], '/a', '', 'no topic /a in it; did you mean `/ab`? there are: /ab, /c'),
         (['/grip', '/nod'], '/motor', '', 'no topic /motor in it; there are: /grip, /nod'),
         # Without the slash, and with another letter.
         (
             ['/motor', '/moto/r'],
             'motor',
             '',
-            'no topic motor in it; did you mean /motor? there are: /moto/r, /motor',
+            'no topic motor in it; did you mean `/motor`? there are: /moto/r, /motor',
         ),
         (
             [f'/{k:02}' for k in range(12)],
