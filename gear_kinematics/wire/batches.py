@@ -1,7 +1,7 @@
-"""Raw messages in batches: what `messages` reads and writes one by one, as arrays.
+"""Decodes and encodes batches of raw messages as arrays.
 
-Messages of one layout have everything at the same place, so that a batch of them is a table of
-bytes. A recording has one layout for a topic, or few; any others only cost time.
+Messages of the same layout have everything at the same place, so a batch of them is a table of
+bytes. A recording has few layouts per topic; more only cost time.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -35,7 +35,7 @@ class JointStates:
     unnormalised: Array
     """(n,): whether the stamp has a second or more of nanoseconds."""
     malformed: Array
-    """(n,): no such message; all else is without meaning there."""
+    """(n,): no such message; its other values have no meaning."""
     joint_found: Array
     """(n,): whether the joint is in the message."""
     present: Array
@@ -51,17 +51,17 @@ class PoseArrays:
     stamp: Array
     """(n,), ns."""
     malformed: Array
-    """(n,): no such message, or not of the number of poses that was asked for."""
+    """(n,): no such message, or another number of poses."""
     frame_ids: tuple[bytes, ...]
     """The frames that occur."""
     frame: Array
-    """(n,): which of them."""
+    """(n,): index of the frame in `frame_ids`."""
     poses: Array
     """(n, poses, 7), float64: x y z and quaternion x y z w."""
 
 
 def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
-    """Decode messages as far as a joint is concerned, which `joint_index` looks up."""
+    """Decode the values of one joint, which `joint_index` looks up."""
     count = len(messages)
     stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
     malformed, joint_found = np.ones(count, bool), np.zeros(count, bool)
@@ -82,7 +82,7 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
 
 
 def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:
-    """Decode messages that should have a number of poses."""
+    """Decode messages with a given number of poses."""
     count, numbers = len(messages), 7 * count_of_poses
     stamp, malformed = np.zeros(count, np.int64), np.ones(count, bool)
     frame_ids: list[bytes] = []
@@ -106,9 +106,9 @@ def encode(template: Template, stamps: Array, *arrays: Sequence[Array | float]) 
     """Encode n messages, as `template.encode` does one by one.
 
     Args:
-        template: what they have in common.
+        template: the layout and the texts of all messages.
         stamps: (n,), ns.
-        arrays: the numbers of each array, each number as an array (n,) or alike in all messages.
+        arrays: the numbers of each array, each as an array (n,) or a constant.
     """
     blank = template.encode(0, *(count * [0.0] for _, count in template.arrays))
     fields = {'seconds': ('<i4', STAMP_OFFSET), 'nanoseconds': ('<u4', STAMP_OFFSET + 4)}
@@ -130,10 +130,7 @@ def encode(template: Template, stamps: Array, *arrays: Sequence[Array | float]) 
 def _tables(
     messages: Sequence[bytes], find_layout: Callable[[bytes], Layout]
 ) -> Iterator[tuple[Array, Layout, Array]]:
-    """Give, layout by layout, the rows that have it and their bytes, (rows, size).
-
-    What is malformed is in no table.
-    """
+    """Yield each layout with its rows and their bytes, (rows, size), without malformed ones."""
     sizes = np.fromiter(map(len, messages), np.intp, len(messages))
     for size in np.unique(sizes):
         rows = np.flatnonzero(sizes == size)
@@ -156,7 +153,7 @@ def _tables(
 
 
 def _stamps(table: Array, layout: Layout) -> tuple[Array, Array]:
-    """The stamps in ns, and their part that is given in nanoseconds."""
+    """The stamps, ns, and their field `nanosec`."""
     words = np.ascontiguousarray(table[:, STAMP_OFFSET : STAMP_OFFSET + 8])
     seconds = words.view(f'{layout.order}i4')[:, 0].astype(np.int64)
     nanoseconds = words.view(f'{layout.order}u4')[:, 1]

@@ -1,13 +1,13 @@
 """The wire format (CDR) of sensor_msgs/JointState and geometry_msgs/PoseArray, without ROS.
 
 Both start with a std_msgs/Header. CDR (XCDR version 1, as ROS 2 writes it): four bytes of
-encapsulation, the second of which tells the byte order; then the fields, each aligned to its
-size as counted from behind the encapsulation.
+encapsulation, the second of which gives the byte order; then the fields, each aligned to its size,
+counted from the end of the encapsulation.
 
-Whatever rclpy's `deserialize_message` takes (Fast CDR 2.2) is a message here, with the same
-content: so the encapsulations of XCDR version 2 and of parameter lists change the alignment at
-most, a string may lack its terminating zero or be of length 0, as micro-ROS writes what is unset,
-and it ends at its first zero; bytes behind the message are ignored.
+This module reads whatever rclpy's `deserialize_message` reads (Fast CDR 2.2), with the same
+content: the encapsulations of XCDR version 2 and of parameter lists change at most the alignment,
+a string may lack its terminating zero or have length 0, as micro-ROS writes unset ones, and it
+ends at its first zero; bytes after the message are ignored.
 """
 
 import struct
@@ -15,25 +15,25 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 SECOND = 1_000_000_000  # ns
-STAMP_OFFSET = 4  # behind the encapsulation
+STAMP_OFFSET = 4  # after the encapsulation
 STAMP = struct.Struct('<iI')
 LATEST = 2**31 * SECOND - 1
-"""ns: beyond it a stamp's seconds do not fit into their 32 bits."""
+"""Latest stamp, ns, whose seconds fit into 32 bits."""
 _LITTLE_ENDIAN = b'\x00\x01'
 _ENCAPSULATIONS = {
     bytes((0, kind + little)): ('><'[little], alignment)
     for kind, alignment in ((0, 8), (2, 8), (6, 4), (8, 4), (10, 4))
     for little in (0, 1)
 }
-"""Byte order and alignment of float64, by the first two bytes: those that Fast CDR knows."""
+"""Byte order and alignment of float64 by the first two bytes, as Fast CDR defines them."""
 
 
 class MalformedMessageError(ValueError):
-    """Bytes that are no such message."""
+    """Bytes that are not a message of this type."""
 
 
 class Layout(NamedTuple):
-    """Where things are in a message; what is in no array is the same in all that share it."""
+    """Positions in a message; messages of one layout differ only in the stamp and the arrays."""
 
     order: str
     """Byte order as in `struct`: '<' or '>'."""
@@ -44,16 +44,16 @@ class Layout(NamedTuple):
     arrays: tuple[tuple[int, int], ...]
     """Offset and count of the float64 of each array."""
     fixed: tuple[tuple[int, int], ...]
-    """Spans (start, end) of the bytes that make the layout: encapsulation, lengths, strings."""
+    """Spans (start, end) of the bytes that define it: encapsulation, lengths, strings."""
 
 
 def joint_index(layout: Layout, joint: bytes) -> int | None:
-    """Where a joint is in the arrays of a JointState. None: nowhere.
+    """Index of a joint in the arrays of a JointState; None if it is not in the message.
 
     Args:
         layout: of the message.
-        joint: its name; b'' takes the only joint. Where no joint has a name, as in messages of
-            many drivers on micro-ROS, each goes by its index: b'0', b'1', ...
+        joint: its name; b'' for the only joint. If no joint has a name, as in messages of many
+            micro-ROS drivers, their indices are their names: b'0', b'1', ...
     """
     _, *names = layout.texts
     if not any(names):
@@ -92,7 +92,7 @@ def pose_array_layout(data: bytes) -> Layout:
 
 
 class _Reader:
-    """Goes through the primitives behind a header's stamp and keeps where they are."""
+    """Reads the primitives after a header's stamp and records their positions."""
 
     def __init__(self, data: bytes) -> None:
         self._data = data
@@ -124,7 +124,7 @@ class _Reader:
         self._offset = end
 
     def doubles(self, count: int) -> None:
-        if count:  # an empty array has not even the padding
+        if count:  # an empty array has no padding
             self._offset += -(self._offset - STAMP_OFFSET) % self._alignment
         self._arrays.append((self._offset, count))
         self._offset += 8 * count
@@ -142,7 +142,7 @@ class _Reader:
 
 
 class Template:
-    """A message laid out once; each encoding only writes the stamp and the numbers into it."""
+    """A message laid out once; encoding only writes the stamp and the numbers."""
 
     def __init__(self, frame_id: str) -> None:
         self._buffer = bytearray(_LITTLE_ENDIAN + bytes(2 + STAMP.size))
@@ -155,11 +155,11 @@ class Template:
         return [(offset, layout.size // 8) for offset, layout in self._arrays]
 
     def encode(self, stamp: int, *arrays: Sequence[float]) -> bytes:
-        """Give the message's bytes.
+        """Return the bytes of the message.
 
         Args:
             stamp: ns.
-            arrays: the numbers of each array, as many as were laid out.
+            arrays: the numbers of each array that was laid out.
         """
         STAMP.pack_into(self._buffer, STAMP_OFFSET, *divmod(stamp, SECOND))
         for (offset, layout), values in zip(self._arrays, arrays, strict=True):
@@ -191,7 +191,7 @@ class JointStateTemplate(Template):
     def __init__(
         self, names: Sequence[str], *, velocity: bool, effort: bool, position: bool = True
     ) -> None:
-        """Lay it out; an array that is not there takes no part in `encode`."""
+        """Lay the message out; `encode` takes only the arrays that are present."""
         super().__init__(frame_id='')
         self._count(len(names))
         for name in names:
@@ -203,10 +203,10 @@ class JointStateTemplate(Template):
 
 
 class PoseArrayTemplate(Template):
-    """A geometry_msgs/PoseArray: encode(stamp, numbers), x y z and quaternion x y z w a pose."""
+    """A geometry_msgs/PoseArray: encode(stamp, numbers), per pose x y z and quaternion x y z w."""
 
     def __init__(self, frame_id: str, poses: int) -> None:
-        """Lay it out for a number of poses."""
+        """Lay the message out for a number of poses."""
         super().__init__(frame_id)
         self._count(poses)
         self._doubles(7 * poses)

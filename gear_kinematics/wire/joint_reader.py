@@ -1,4 +1,4 @@
-"""One joint out of sensor_msgs/JointState messages, and why a message may be of no use."""
+"""Reads one joint from sensor_msgs/JointState messages; defines the causes of rejection."""
 
 import math
 import struct
@@ -27,17 +27,17 @@ POSITION_TOO_LARGE = 'position too large'
 OUT_OF_ORDER = 'out of order'
 
 GREATEST = 1e300
-"""Beyond it a velocity or effort counts as not finite: what is computed from it might not be."""
-_MAX_KEPT = 65_536  # bytes of a message whose layout is kept: far more than any driver sends
+"""Greatest velocity or effort; beyond, results could be infinite, so it counts as not finite."""
+_MAX_KEPT = 65_536  # bytes of a message whose layout is kept; drivers send far less
 
 
 class RejectedInputError(ValueError):
-    """A message that gives no output; the text says why and is one of few, to be counted by."""
+    """A message without an output; the text is one of the causes above, which are counted."""
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Parameters of the node that say how to read an input, each under its own name."""
+    """Parameters of the node on how to read an input, under the same names."""
 
     @classmethod
     def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
@@ -46,18 +46,18 @@ class Settings:
 
 
 class JointReader:
-    """Reads a joint from message after message.
+    """Reads a joint from one message after another.
 
-    The messages of a driver are all laid out alike. The layout of the last one is kept as one
-    struct, in which what makes the layout is a field beside the joint's numbers: each message is
-    held against it, and gone through anew where it differs.
+    The messages of a driver all have the same layout. The last layout is kept as a struct whose
+    fields are the bytes that define it and the joint's numbers: each message is compared with it,
+    and parsed again if it differs.
     """
 
     def __init__(self, joint: str) -> None:
-        """Start.
+        """Start without a known layout.
 
         Args:
-            joint: its name, or its index where no joint has a name; '' takes the only joint.
+            joint: its name, or its index if no joint has a name; '' for the only joint.
         """
         self._joint = joint.encode()
         self._size = -1  # of the messages whose layout is known
@@ -66,8 +66,8 @@ class JointReader:
         """Read a message.
 
         Returns:
-            Stamp (ns, 0 where there is none), whether it has a second or more of nanoseconds,
-            position, velocity and effort; None for what is absent or not finite.
+            Stamp (ns, 0 if absent), whether it has a second or more of nanoseconds, position,
+            velocity and effort; None for a value that is absent or not finite.
 
         Raises:
             RejectedInputError: if it has no usable position of the joint.
@@ -97,7 +97,7 @@ class JointReader:
         return stamp, nanoseconds >= SECOND, position, velocity, effort
 
     def _learn(self, data: bytes) -> None:
-        """Take the layout of a message as that of the next ones."""
+        """Keep the layout of a message for the next ones."""
         layout = joint_state_layout(data)
         index = joint_index(layout, self._joint)
         numbers = [
@@ -109,7 +109,7 @@ class JointReader:
         parts += [(start, end - start, f'{end - start}s') for start, end in layout.fixed]
         parts += [(offset, 8, 'd') for offset in numbers if offset is not None]
         code, end = layout.order, 0
-        field: dict[int | None, int] = {None: -1}  # what is absent is the None behind the fields
+        field: dict[int | None, int] = {None: -1}  # an absent value is the None after the fields
         for offset, size, item in sorted(parts):
             field[offset] = len(field) - 1 + (offset > STAMP_OFFSET)  # the stamp is two fields
             code += f'{offset - end}x{item}'

@@ -21,12 +21,12 @@ DIAGNOSTICS = '/diagnostics'
 
 
 class NodeTopic(NamedTuple):
-    """What is agreed on a topic."""
+    """Type, part and publisher of a topic."""
 
     type: str
     part: Literal['input', 'state', 'comparison', 'display', 'health']
-    """A `state` is published for every valid rotor_state, a `comparison` where there is an
-    output_encoder, and what is for `display` when somebody looks."""
+    """A `state` is published for every valid rotor_state, a `comparison` if there is an
+    output_encoder, and a `display` only for subscribers."""
     publisher: Literal['driver', 'node']
 
 
@@ -41,7 +41,7 @@ TOPICS: Mapping[str, NodeTopic] = {
     MARKERS: NodeTopic('visualization_msgs/msg/MarkerArray', 'display', 'node'),
     DIAGNOSTICS: NodeTopic('diagnostic_msgs/msg/DiagnosticArray', 'health', 'node'),
 }
-"""All of them, by their names."""
+"""All topics by name."""
 
 STATE_TOPICS: Mapping[str, str] = {
     name: topic.type for name, topic in TOPICS.items() if topic.part == 'state'
@@ -51,4 +51,4 @@ STATE_TOPICS: Mapping[str, str] = {
 RECORDED_TOPICS: Mapping[str, str] = {
     f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)
 }
-"""The topics that a recording is validated by, in the root namespace, and their types."""
+"""The topics in the root namespace that are validated in a recording, and their types."""
