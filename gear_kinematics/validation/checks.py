@@ -25,15 +25,15 @@ class Check:
     """Looks at a recording batch by batch and judges it at the end."""
 
     def __init__(self, parameters: Mapping[str, Any]) -> None:
-        """Begin with a recording.
+        """Start with a recording.
 
         Args:
-            parameters: of the node, as `parameters.load` gives them.
+            parameters: of the node, as `parameters.load` returns them.
         """
         self.parameters = parameters
 
     def update(self, output: Columns, poses: Columns) -> None:
-        """Take the compared messages of a batch.
+        """Process the compared messages of a batch.
 
         Args:
             output: of output_state: `stamp` (ns), `rotor_angle`, `output_angle` as recorded and
@@ -42,12 +42,12 @@ class Check:
         """
 
     def judge(self, rotor: InputReport) -> Iterator[Judgement]:
-        """Yield what was found in the whole recording."""
+        """Yield the findings about the whole recording."""
         raise NotImplementedError
 
 
 class MostlyRejected(Check):
-    """Fails a bag most of whose inputs the node rejects."""
+    """Fails a bag if the node rejects most of its inputs."""
 
     def judge(self, rotor: InputReport) -> Iterator[Judgement]:
         """Yield the causes of rejection."""
@@ -62,7 +62,7 @@ class MostlyRejected(Check):
 
 
 class InputCounts(Check):
-    """Tells of counts of the input that are not 0."""
+    """Explains the counts of the input that are not 0."""
 
     def judge(self, rotor: InputReport) -> Iterator[Judgement]:
         """Yield a sentence for each count."""
@@ -81,5 +81,6 @@ _SENTENCES = {
     'unnormalised_stamps': '{rotor.unnormalised_stamps} stamps of {rotor.topic} have a second or '
     'more of nanoseconds: the node stamps outputs with the same time, normalised',
 }
-"""By the names of the counts in `InputReport`."""
+"""Sentences by the names of the counts in `InputReport`."""
+
 CHECKS: Sequence[Callable[[Mapping[str, Any]], Check]] = (MostlyRejected, InputCounts)

@@ -174,16 +174,16 @@ class PoseOrder:
 class UnseenTurns:
     """The turns by which recorded outputs differ from recomputed ones, stretch by stretch.
 
-    Within a stretch of the recording the turns are counted without a doubt, so that they differ
-    by the same number; see `RotorSamples.stretch`. The first output that differs by whole turns
-    tells it. A stretch without any counts as not different.
+    Within a stretch of the recording the turns are certain, so the difference is constant; see
+    `RotorSamples.stretch`. It is taken from the first output that differs by whole turns, and is
+    0 in a stretch without one.
     """
 
     def __init__(self, mechanism: Mechanism, tolerance: float) -> None:
-        """Start with no stretch.
+        """Start without stretches.
 
         Args:
-            mechanism: that the encoder is at the rotor of.
+            mechanism: the mechanism with the encoder.
             tolerance: rad of the output, within which turns are whole.
         """
         self._ratio = mechanism.gear_ratio
@@ -193,24 +193,24 @@ class UnseenTurns:
         self.first = 0
         """Turns before the first stretch that has an output."""
         self.changes = 0
-        """How often the turns differed from those of the stretch before."""
+        """Stretches whose turns differ from those of the previous one."""
 
     def of(self, stretch: Stretches, otherwise: Array | float = 0.0) -> Array:
-        """The turns to add in stretches (n,), and something else where they are not known."""
+        """The turns to add in stretches (n,), or `otherwise` where they are not known."""
         if not len(self._stretches):
             return np.zeros(len(stretch)) + otherwise
         at = np.minimum(np.searchsorted(self._stretches, stretch), len(self._stretches) - 1)
         return np.where(self._stretches[at] == stretch, self._turns[at], otherwise)
 
     def learn_from_angles(self, stretch: Stretches, recorded: Array, expected: Array) -> None:
-        """Learn from output angles that count turns, (n,), rad."""
+        """Learn from output angles that include whole turns, (n,), rad."""
         self._learn(stretch, (recorded - expected) * float(self._ratio) / TURN)
 
     def learn_from_poses(self, stretch: Stretches, recorded: Array, expected: Array) -> None:
         """Learn from output angles within their turn, (n,), rad.
 
-        The output is back where it was after `numerator` turns of the rotor, and an angle of
-        1/`numerator` of its turn takes the rotor some whole turns, of which the least is enough.
+        The output repeats after `numerator` turns of the rotor, and any multiple of 1/`numerator`
+        of its turn corresponds to whole turns of the rotor, of which the least is taken.
         """
         steps = (recorded - expected) * self._ratio.numerator / TURN
         inverse = pow(self._ratio.denominator, -1, abs(self._ratio.numerator))
@@ -220,7 +220,7 @@ class UnseenTurns:
 
     def _learn(self, stretch: Stretches, turns: Array) -> None:
         whole = np.round(turns)
-        # Numbers so large that they have no fraction are garbage, whole or not.
+        # Numbers too large to have a fraction are garbage.
         wrong = np.maximum(np.abs(turns - whole), np.spacing(np.abs(turns)))
         fits = (wrong <= self._tolerance) & ~np.isin(stretch, self._stretches)
         stretches, rows = np.unique(stretch[fits], return_index=True)
@@ -237,7 +237,7 @@ class UnseenTurns:
         self._turns = np.append(self._turns, found)[latest]
 
     def findings(self) -> list[str]:
-        """Say what was learned, in sentences."""
+        """Describe the learned turns in sentences."""
         said = []
         if self.first:
             said.append(

@@ -42,7 +42,7 @@ def document(reports: Sequence[BagReport]) -> Document:
     """Return the document of a validation, with a section for each bag."""
     count = {verdict: sum(report.verdict == verdict for report in reports) for verdict in Verdict}
     counts = ', '.join(f'{count[verdict]} {OUTCOME[verdict]}' for verdict in Verdict)
-    # None at all are unusable.
+    # No bags at all count as unusable.
     verdict = next((v for v in reversed(Verdict) if count[v]), Verdict.UNUSABLE)
     return Document(
         'gearkin validate',
@@ -74,7 +74,7 @@ def _section(report: BagReport) -> Section:
 
 
 def _bag(report: BagReport) -> dict[str, Any]:
-    """Return what JSON says of a bag; docs/report.schema.json describes it."""
+    """Return the JSON content about a bag; docs/report.schema.json describes it."""
     content = asdict(report)
     for drawn in ('series', 'mechanism', 'module'):
         del content[drawn]
@@ -97,7 +97,7 @@ def _field(field: FieldReport) -> dict[str, Any]:
 def _cases(report: BagReport) -> Iterator[Case]:
     parts = list(_parts(report))
     if report.verdict == Verdict.UNUSABLE:
-        # Also where no error is given: the suite must not look like a passing one.
+        # Even without an error, the suite must not look as if it passed.
         yield Case('bag', (printable(report.error or 'the bag is unusable'),), 'error')
     elif report.verdict == Verdict.FAIL and not any(part.faults for part in parts):
         faults = tuple(finding.text for finding in findings(report))
@@ -109,7 +109,7 @@ def _cases(report: BagReport) -> Iterator[Case]:
 
 def _parts(report: BagReport) -> Iterator[Case]:
     if report.rotor:
-        # Never fails by itself: what makes outputs wrong or missing shows there.
+        # Never fails by itself: its faults appear as wrong or missing outputs.
         yield Case(printable(f'input {report.rotor.topic}'))
     for topic in report.topics:
         yield Case(printable(topic.topic), tuple(topic_faults(topic, report)))
@@ -180,7 +180,7 @@ def _moving(mechanism: Mechanism, module: float, series: Series) -> MovingMechan
 
 
 def _degrees(turns: Array, angle: Array) -> Array:
-    """Return angles in degrees, less the whole turns of the first sample."""
+    """Return angles in degrees, minus the whole turns of the first sample."""
     with np.errstate(invalid='ignore'):  # infinite turns
         degrees: Array = 360.0 * (turns - turns[0]) + np.degrees(angle)
     return degrees

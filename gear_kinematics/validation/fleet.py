@@ -1,4 +1,4 @@
-"""Validating bags: one, many in processes of this machine, or many on a Dask cluster."""
+"""Validates one bag, or many in processes of this machine or on a Dask cluster."""
 
 import concurrent.futures
 import logging
@@ -24,30 +24,30 @@ from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
 
 _TRIES = 3
-"""How often a bag is begun whose worker dies."""
+"""Attempts at a bag whose worker dies."""
 _CONNECT_TIMEOUT = 10.0  # s
-_PATIENCE = 60.0  # s, with a cluster that has no workers
+_PATIENCE = 60.0  # s to wait for a cluster without workers
 _TOPICS = Topics()
 
 
 @dataclass(frozen=True, slots=True)
 class Task:
-    """A bag, and what to validate it with."""
+    """A bag, and how to validate it."""
 
     bag: Path
     parameters: Mapping[str, Any]
-    """Of the node, as `parameters.load` gives them."""
+    """Parameters of the node, as `parameters.load` returns them."""
     config: str
-    """Where they are from."""
+    """Their file."""
     tolerances: Tolerances
     allow_offset: bool = False
     strict: bool = False
     rotor_topic: str | None = None
-    """None: found by type and name, and so are the others."""
+    """None, as for the other topics: found by type and name."""
     output_topic: str | None = None
     poses_topic: str | None = None
     debug: bool = False
-    """Whether tracebacks of unexpected errors go to stderr."""
+    """Whether to print tracebacks of unexpected errors to stderr."""
 
 
 class SchedulerError(ValueError):
@@ -59,13 +59,12 @@ def validate_bag(
     progress: ReportProgress | None = None,
     play: Callable[..., Iterable[Message]] | None = None,
 ) -> BagReport:
-    """Validate one bag. Whatever goes wrong with a recording is told in its report.
+    """Validate one bag; the report contains any error about the recording.
 
     Args:
-        task: the bag, and what to validate it with.
-        progress: told after each batch, with the messages on all topics of the bag.
-        play: `replay.live_messages`, to validate what it gives for the rotor topic and not what
-            was recorded.
+        task: the bag, and how to validate it.
+        progress: called after each batch; the total counts all topics of the bag.
+        play: `live_messages`, to validate the outputs of a live node instead of recorded ones.
 
     Raises:
         MechanismError: if the parameters describe no mechanism.
@@ -80,7 +79,7 @@ def validate_bag(
             topics = find_topics(bag, given, outputs=not play)
             if play:
                 messages = play(bag, task.parameters, rotor_topic=topics.rotor)
-                # Nothing gets lost on the way to what is recorded here.
+                # Nothing is lost by a recorder here.
                 return validate_messages(replace(task, strict=True), messages, progress)
             messages = bag.messages(topics)
             return validate_messages(task, messages, progress, topics, bag.message_count)
@@ -99,7 +98,7 @@ def validate_messages(
     topics: Topics = _TOPICS,
     total: int | None = None,
 ) -> BagReport:
-    """Validate messages of a bag, as far as they can be had; the rest as for `validate_bag`."""
+    """Validate the readable messages of a bag; otherwise like `validate_bag`."""
     validator = Validator(
         task.parameters,
         topics=topics,
@@ -116,9 +115,9 @@ def validate_messages(
 
 
 def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagReport]:
-    """Validate bags in several processes; gives the reports as they come.
+    """Validate bags in several processes; yields the reports as they are ready.
 
-    A bag whose process dies is begun again, and is reported as unusable if that goes on.
+    A bag whose process dies is tried again, and finally reported as unusable.
     """
     left = list(tasks)
     while left:
@@ -128,8 +127,8 @@ def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagRe
                 yield report
             else:
                 lost.append(task)
-        # A process that dies takes its pool with it. It was at one of the first bags of those
-        # that are left; whose fault it was shows when each of them is alone.
+        # A process that dies ends its pool. It was working on one of the first unfinished bags;
+        # to find out on which, each of them gets a pool of its own.
         numbers = {id(task): number for number, task in enumerate(left)}
         lost.sort(key=lambda task: numbers[id(task)])
         for task in lost[:jobs]:
@@ -140,8 +139,8 @@ def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagRe
 
 
 def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagReport | None]]:
-    """Each bag with its report, or None where a process died."""
-    # Forking would copy the threads of a progress bar in whatever state they are.
+    """Yield each bag with its report, or None if a process died."""
+    # Forking would copy the threads of a progress bar in an arbitrary state.
     context = multiprocessing.get_context('spawn')
     others = multiprocessing.active_children()
     with (
@@ -156,7 +155,7 @@ def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagRepo
                     yield futures[future], future.result()
                 except BrokenProcessPool:
                     yield futures[future], None
-        except BaseException:  # nobody waits for the reports any more
+        except BaseException:  # the remaining reports are not wanted
             for process in multiprocessing.active_children():
                 if process not in others:
                     process.terminate()
@@ -173,7 +172,7 @@ def _submit(pool: concurrent.futures.Executor, task: Task) -> concurrent.futures
 
 
 def _end_with_parent() -> None:
-    """See to it that nothing is left of a pool whose owner is killed."""
+    """End this process of a pool when its owner is killed."""
     if parent := multiprocessing.parent_process():
         threading.Thread(target=_end_after, args=[parent], daemon=True).start()
 
@@ -185,7 +184,7 @@ def _end_after(process: BaseProcess) -> None:
 
 @contextmanager
 def _interrupts_blocked() -> Iterator[None]:
-    """Start processes that Ctrl-C does not reach: it is for the one that ends them."""
+    """Start processes that ignore Ctrl-C, on which their owner ends them."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
@@ -195,9 +194,9 @@ def _interrupts_blocked() -> Iterator[None]:
 
 @contextmanager
 def _current_folder_shunned() -> Iterator[None]:
-    """Start processes, which begin as `python -c`, that import nothing from the current folder."""
+    """Start processes, run with `python -c`, that import nothing from the current folder."""
     name = 'PYTHONSAFEPATH'
-    before = os.environ.get(name, '')  # empty is not set
+    before = os.environ.get(name, '')  # an empty value means unset
     os.environ[name] = '1'
     try:
         yield
@@ -206,23 +205,23 @@ def _current_folder_shunned() -> Iterator[None]:
 
 
 def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagReport]:
-    """Validate bags on a Dask cluster; gives the reports as they come.
+    """Validate bags on a Dask cluster; yields the reports as they are ready.
 
-    This package is installed where the scheduler and the workers are, and the workers see the
-    bags under the same paths. A bag whose worker dies is begun again on another, and is reported
-    as unusable if that goes on.
+    This package must be installed on the scheduler and the workers, and the workers must see the
+    bags under the same paths. A bag whose worker dies is tried again on another, and finally
+    reported as unusable.
 
     Args:
         tasks: the bags.
         scheduler: such as tcp://host:8786.
 
     Raises:
-        SchedulerError: if there is no such cluster.
+        SchedulerError: if the cluster cannot be reached.
         ModuleNotFoundError: if dask is not installed.
     """
     import distributed  # noqa: PLC0415, an extra
 
-    for name in ('distributed', 'distributed.client'):  # what matters is in the reports
+    for name in ('distributed', 'distributed.client'):  # the reports have all that matters
         logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         distributed.comm.get_address_host_port(scheduler)  # a client would take long to close
@@ -236,19 +235,19 @@ def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagRe
                 yield report
             else:
                 lost.append(task)
-        # Dask blames every bag that a dead worker had before it; whose fault it was shows when
-        # each is alone.
+        # Dask gives up every bag that was assigned to a dead worker; to find the cause, each is
+        # tried alone.
         for task in lost:
             for _, report in _on_workers(client, [task]):
                 yield report or _lost(task)
 
 
 def _on_workers(client: Any, tasks: Sequence[Task]) -> Iterator[tuple[Task, BagReport | None]]:
-    """Each bag with its report, or None where workers died."""
+    """Yield each bag with its report, or None if workers died."""
     import distributed  # noqa: PLC0415, an extra
 
     waiting = {
-        # The workers' working directory is another.
+        # The workers have another working directory.
         client.submit(validate_bag, replace(task, bag=task.bag.absolute()), pure=False): task
         for task in tasks
     }
@@ -260,7 +259,7 @@ def _on_workers(client: Any, tasks: Sequence[Task]) -> Iterator[tuple[Task, BagR
                     yield task, replace(future.result(), bag=str(task.bag))
                 except distributed.KilledWorker:
                     yield task, None
-                except Exception as error:  # noqa: BLE001, of the cluster, not of the bag
+                except Exception as error:  # noqa: BLE001, of the cluster, not the bag
                     cause = ' '.join(str(error).split())
                     yield task, _unusable(task, f'{task.bag}: not done by the cluster: {cause}')
         if waiting and not client.scheduler_info()['workers']:

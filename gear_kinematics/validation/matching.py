@@ -1,4 +1,4 @@
-"""Matches streams of published messages with the samples they belong to, by header stamp.
+"""Matches published messages with their input samples by header stamp.
 
 A node publishes in the order of its inputs, so nearly all messages match in long runs; a single
 message is looked up only where a run ends. Memory is bounded by a window of samples.
@@ -23,12 +23,12 @@ Columns = dict[str, Array]
 Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
-"""Samples that are kept for late messages; still later ones count as extra."""
-_RESTART = 1_000_000_000  # ns: a stamp that is older by more is a restart, not disorder
+"""Samples kept for late messages; even later ones count as extra."""
+_RESTART = 1_000_000_000  # ns by which a stamp is older after a restart, not just out of order
 
 
 class Window:
-    """The samples that messages can still be matched with; columns by name, (n, ...)."""
+    """The samples with which messages can still be matched; columns by name, (n, ...)."""
 
     def __init__(self) -> None:
         """Start empty."""
@@ -46,7 +46,7 @@ class Window:
         }
 
     def rows(self, index: Array | slice) -> Columns:
-        """Give some of the samples."""
+        """Return some of the samples."""
         return {name: column[index] for name, column in self.columns.items()}
 
     def drop(self, count: int) -> None:
@@ -141,7 +141,7 @@ class Matcher:
 
 
 class Recomputed(NamedTuple):
-    """What samples call for."""
+    """The motion recomputed from samples."""
 
     state: MotionState
     rotor_angle: Array
@@ -149,19 +149,19 @@ class Recomputed(NamedTuple):
 
 
 class Faults:
-    """What is wrong with messages as such: how many have each fault, and which was the first."""
+    """Counts the faults of messages themselves, and keeps the first of each."""
 
     def __init__(self) -> None:
         self._found: dict[str, tuple[int, str]] = {}
 
     def add(self, fault: str, times: Array, moment: str = 'at stamp') -> None:
-        """Take the stamps, or times of another kind, of messages that have a fault, ns."""
+        """Add the stamps, or other times as `moment` says, of messages with a fault, ns."""
         if len(times):
             count, first = self._found.get(fault, (0, f'{moment} {times[0]}'))
             self._found[fault] = count + len(times), first
 
     def sentences(self) -> tuple[str, ...]:
-        """Tell of each fault."""
+        """Describe each fault."""
         return tuple(
             f'{fault}: {count} message{"s" * (count > 1)}, the first {first}'
             for fault, (count, first) in self._found.items()
@@ -169,19 +169,19 @@ class Faults:
 
 
 class OutputTopic:
-    """One output topic: matching, what is wrong with its messages as such, and late ones."""
+    """One output topic: matches its messages, holds back late ones and collects their faults."""
 
     def __init__(self, mechanism: Mechanism, solver: Solver, unseen: UnseenTurns | None) -> None:
-        """Start with no message.
+        """Start without messages.
 
         Args:
-            mechanism: whose outputs they are.
-            solver: what recomputes them.
-            unseen: of the encoder, if it is a single-turn one.
+            mechanism: the mechanism.
+            solver: recomputes its outputs.
+            unseen: unseen turns, if the rotor has a single-turn encoder.
         """
         self.matcher = Matcher()
         self.compared: dict[str, Array] = {}
-        """What the last batch compared, for the series."""
+        """Columns of the last compared batch, for checks and plots."""
         self._mechanism = mechanism
         self._solver = solver
         self._unseen = unseen
@@ -196,7 +196,7 @@ class OutputTopic:
 
         Args:
             messages: serialised.
-            received: when, ns.
+            received: times of reception, ns.
             window: the latest samples.
             inputs: the latest inputs, valid or not.
         """
@@ -209,7 +209,7 @@ class OutputTopic:
         usable = np.flatnonzero(~malformed)
         index = self.matcher.match(stamps[usable], window.columns['stamp'])
         found = index >= 0
-        # A message can be recorded before the input that it answers: it waits for one batch.
+        # A message can be recorded before its input: it waits for one batch.
         unmatched = usable[~found]
         given_up, waiting = unmatched[unmatched < late], unmatched[unmatched >= late].tolist()
         self._late = [messages[row] for row in waiting], [received[row] for row in waiting]
@@ -233,11 +233,11 @@ class OutputTopic:
         raise NotImplementedError
 
     def report(self, topic: str, missing: Missing) -> TopicReport:
-        """Report on everything so far.
+        """Return the report so far.
 
         Args:
-            topic: its name.
-            missing: what it lacks.
+            topic: name of the topic.
+            missing: its missing messages.
         """
         matcher = self.matcher
         return TopicReport(

@@ -1,4 +1,4 @@
-"""What is compared of each output topic: its fields, sample by sample, and their errors."""
+"""Compares the fields of each output topic with recomputed ones, sample by sample."""
 
 import math
 from dataclasses import replace
@@ -25,16 +25,16 @@ _NONE = np.zeros(0, np.int64)
 
 
 class Tolerances(NamedTuple):
-    """Greatest errors that pass."""
+    """Greatest accepted errors."""
 
     angle: float = 1e-9
-    """rad, of angles; rad/s of the velocity and N·m of the effort."""
+    """rad for angles, rad/s for the velocity, N·m for the effort."""
     position: float = 1e-9
     """m."""
 
 
 class FieldErrors:
-    """The errors of one field, gathered batch by batch."""
+    """Statistics of the errors of one field, collected batch by batch."""
 
     def __init__(self, name: str, unit: str, tolerance: float) -> None:
         self._report = FieldReport(name, unit, tolerance)
@@ -53,7 +53,7 @@ class FieldErrors:
     def update(
         self, error: Array, stamp: Array, rotor_angle: Array, absent: Array = _NONE
     ) -> None:
-        """Take absolute errors (n,), and the stamps of samples that lack the field, (m,)."""
+        """Add absolute errors (n,), and the stamps of samples that lack the field, (m,)."""
         report = self._report
         finite = np.isfinite(error)
         self._report = report = replace(
@@ -105,7 +105,7 @@ class OutputState(OutputTopic):
         super().__init__(mechanism, solver, unseen)
         self.fit = AngleFit()
         self.offset = 0.0
-        """rad, which the recorded angle is known to be off by."""
+        """Known offset of the recorded angle, rad."""
         self.joint = joint
         self._errors = tuple(
             FieldErrors(name, unit, tolerances.angle)
@@ -174,16 +174,16 @@ class BodyPoses(OutputTopic):
         self._orientation = FieldErrors('orientation', 'rad', tolerances.angle)
         self._order = PoseOrder(self._bodies, tolerances.position)
         self._turned_round = Faults()
-        # What this topic alone tells of the turns, which is less than output_state does.
+        # Learned from this topic alone, which is less certain than from output_state.
         self._own_unseen = UnseenTurns(mechanism, tolerances.angle)
 
     @property
     def worst_error(self) -> float:
-        """Of position, m."""
+        """Greatest position error, m."""
         return self._position.worst
 
     def findings(self) -> tuple[str, ...]:
-        """Say what is remarkable about the poses, in sentences."""
+        """Describe the order of the poses and the signs of quaternions, in sentences."""
         return (*self._order.findings(self.matcher.compared), *self._turned_round.sentences())
 
     def _fields(self) -> tuple[FieldReport, ...]:

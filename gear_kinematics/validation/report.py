@@ -1,4 +1,4 @@
-"""What a validation found out about a bag: plain data, without ROS, bags or numpy.
+"""The result of validating a bag, as plain data without ROS, bags or numpy.
 
 Stamps are ns, times in s, angles in rad, lengths in m.
 """
@@ -12,23 +12,23 @@ from gear_kinematics.report.document import Verdict
 
 @dataclass(frozen=True, slots=True)
 class FieldReport:
-    """One field of an output topic, sample by sample against the recomputed one."""
+    """Comparison of one field of an output topic with the recomputed one."""
 
     name: str
     """Such as `position` of output_state, or `orientation` of body_poses."""
     unit: str
     tolerance: float
-    """Greatest error that passes, in `unit`."""
+    """Greatest accepted error, in `unit`."""
     compared: int = 0
     """Samples with a recorded and a recomputed value."""
     non_finite: int = 0
-    """Samples whose recorded value is NaN or infinite; they are failures."""
+    """Samples whose recorded value is NaN or infinite, which fail."""
     absent: int = 0
-    """Samples that lack the field though the input has it, or the other way round."""
+    """Samples with the field in either the input or the output only."""
     max_error: float = 0.0
     rms_error: float = 0.0
     worst_stamp: int | None = None
-    """Of the sample with `max_error`; None where there is no error at all."""
+    """Of the sample with `max_error`; None without any error."""
     worst_rotor_angle: float | None = None
     first_non_finite: int | None = None
     """Stamp of the first sample that is not finite."""
@@ -37,7 +37,7 @@ class FieldReport:
 
     @property
     def budget_used(self) -> float:
-        """Share of the tolerance that the greatest error takes."""
+        """Greatest error / tolerance."""
         if self.max_error == 0.0:
             return 0.0
         return self.max_error / self.tolerance if self.tolerance else math.inf
@@ -57,13 +57,13 @@ class TopicReport:
     compared: int
     """Messages matched with an input."""
     missing: int
-    """Inputs that call for a message that is not there."""
+    """Inputs without their message."""
     extra: int
-    """Messages that no input calls for."""
+    """Messages without an input."""
     duplicates: int
-    """Messages with the stamp of the one before; no failure where the input has them too."""
+    """Messages with the stamp of the previous one; no failure if the input has them too."""
     out_of_order: int
-    """Messages with a stamp before that of the one before, unless the input starts anew there."""
+    """Messages with an earlier stamp than the previous one, unless the input restarts there."""
     fields: tuple[FieldReport, ...]
     first_missing: int | None = None
     """Stamp of the first input without a message."""
@@ -72,23 +72,23 @@ class TopicReport:
     first_out_of_order: int | None = None
     """Stamp of the first message out of order."""
     faults: tuple[str, ...] = ()
-    """What else is wrong, each with how often and where first: frame ids, names, layouts."""
+    """Other faults, such as wrong frame ids or joint names, with their number and first stamp."""
     left_out: dict[str, int] = field(default_factory=dict)
-    """Inputs without an output and outputs without an input that are the recorder's doing."""
+    """Inputs without an output and outputs without an input because of the recorder, by cause."""
 
     @property
     def passed(self) -> bool:
-        """Whether nothing is missing, too many, out of order or beyond its tolerance."""
+        """Whether nothing is missing, extra, out of order or beyond its tolerance."""
         complete = not (self.missing or self.extra or self.out_of_order or self.faults)
         return self.compared > 0 and complete and all(field.passed for field in self.fields)
 
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A silence of the rotor topic, or a jump of its position."""
+    """A gap between messages of the rotor topic."""
 
     stamp: int
-    """Of the sample after it."""
+    """Stamp of the sample after the gap."""
     seconds: float
     turned: float
     """rad, between the samples before and after it."""
@@ -96,18 +96,18 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class InputReport:
-    """The rotor topic: what was in it, and how healthy it is."""
+    """Contents and health of the rotor topic."""
 
     topic: str
     joint: str
     messages: int = 0
     valid: int = 0
     rejected: dict[str, int] = field(default_factory=dict)
-    """By cause."""
+    """Numbers of rejected messages by cause."""
     duplicates: int = 0
     zero_stamps: int = 0
     unnormalised_stamps: int = 0
-    """Stamps with a second or more of nanoseconds; they are read as the time that they mean."""
+    """Stamps with a second or more of nanoseconds; they are normalised."""
     resets: int = 0
     first_stamp: int | None = None
     rate: float = 0.0
@@ -115,7 +115,7 @@ class InputReport:
     duration: float = 0.0
     """s, from the first to the last stamp."""
     gaps: int = 0
-    """Silences longer than 5 median periods."""
+    """Gaps longer than 5 median periods."""
     jumps: int = 0
     """Gaps in which the rotor could have turned half a turn or more unseen."""
     overspeed: int = 0
@@ -123,14 +123,14 @@ class InputReport:
     max_speed: float = 0.0
     """rad/s, from position steps."""
     longest_gaps: tuple[Gap, ...] = ()
-    """At most ten, the longest first."""
+    """At most ten, longest first."""
     referenced: bool = True
     """Whether the turns of the encoder were known throughout."""
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """A thinned-out record over time for plots; all lists are of the same length."""
+    """A thinned-out record over time for plots; all lists have the same length."""
 
     time: list[float]
     """s, since the first sample."""
@@ -138,36 +138,37 @@ class Series:
     output_angle: list[float]
     """As recorded."""
     angle_error: list[float]
-    """Recorded less recomputed output angle; of each interval the worst."""
+    """Recorded minus recomputed output angle, the worst of each interval."""
     position_error: list[float]
     """m, the worst of all bodies and of each interval."""
 
 
 @dataclass(frozen=True, slots=True)
 class BagReport:
-    """The whole finding about one bag."""
+    """The result for one bag."""
 
     bag: str
     verdict: Verdict
     config: str = ''
-    """The parameter file that was used."""
+    """The parameter file."""
     gear_ratio: str = ''
     """Such as `-19` or `-58/3`."""
     error: str | None = None
-    """Why the bag is unusable, or what damage cut it short; the rest is of what came before."""
+    """Why the bag is unusable, or the damage at which reading ended; the rest describes the
+    messages before it."""
     messages: int = 0
-    """On the three topics."""
+    """Number on the three topics."""
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
     findings: tuple[str, ...] = ()
-    """Sentences: a constant offset, another mechanism, what the input's health means."""
+    """Sentences about a constant offset, another mechanism or the health of the input."""
     series: Series | None = None
     mechanism: Mechanism | None = None
-    """What the outputs were recomputed for."""
+    """The mechanism for which the outputs were recomputed."""
     module: float = 0.0
-    """Of its teeth, m, for the drawing."""
+    """Module of its teeth, m, for the drawing."""
 
     @property
     def passed(self) -> bool:
-        """Whether the recorded outputs are what they should be."""
+        """Whether the recorded outputs agree with the recomputed ones."""
         return self.verdict == Verdict.PASS

@@ -1,4 +1,4 @@
-"""The tables of a validation: for each a column's heading and what stands in it."""
+"""The tables of a validation, each defined by its headings and the contents of the columns."""
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -21,7 +21,7 @@ def bag_name(report: BagReport) -> str:
 
 
 def tables(report: BagReport) -> tuple[Table, ...]:
-    """Return all tables about a bag; the first says what it was compared with."""
+    """Return all tables about a bag; the first describes the reference of the comparison."""
     gaps = report.rotor.longest_gaps if report.rotor else ()
     fields = [_Field(report, topic, field) for topic in report.topics for field in topic.fields]
     worst = [row for row in fields if row.field.worst_stamp is not None]
@@ -101,7 +101,7 @@ def _input_table(rotor: InputReport) -> Table:
 def _budget(fields: Sequence[FieldReport]) -> str:
     """Return the greatest share of its tolerance that any field used, in percent."""
     used = [100 * field.budget_used for field in fields if field.compared]
-    # A NaN is the worst of all, and no maximum of the others.
+    # A NaN is the worst of all, but max() may return another.
     return number(math.nan if any(map(math.isnan, used)) else max(used)) if used else ''
 
 

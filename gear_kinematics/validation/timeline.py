@@ -1,4 +1,4 @@
-"""A recording over time: the rate, gaps and speed of its rotor topic, and a record for plots."""
+"""Rate, gaps and speed of the rotor topic, and a thinned-out record over time for plots."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,20 +9,20 @@ from gear_kinematics.validation.report import Gap, InputReport, Series
 Array = NDArray[np.float64]
 
 _GAP = 5.0  # median periods
-_LONGEST = 10  # gaps that are listed
+_LONGEST = 10  # listed gaps
 _PERIODS_FOR_MEDIAN = 65_536
-_MOST = 4000  # points of the record; half as many are kept when there are more
+_MOST = 4000  # points of the record, which is halved when there are more
 _SECOND = 1e9  # ns
 
 
 class InputHealth:
-    """Gathers what the samples tell, batch by batch, in bounded memory."""
+    """Collects statistics of the samples, batch by batch, in bounded memory."""
 
     def __init__(self, max_speed: float) -> None:
-        """Start with no sample.
+        """Start without samples.
 
         Args:
-            max_speed: rad/s, the fastest that the rotor can turn.
+            max_speed: greatest possible speed of the rotor, rad/s.
         """
         self._max_speed = max_speed
         self._first_stamp: int | None = None
@@ -38,7 +38,7 @@ class InputHealth:
         self._fastest = 0.0
 
     def update(self, stamp: NDArray[np.int64], rotor_angle: Array) -> None:
-        """Take the next samples: stamps in ns, angles in rad, (n,)."""
+        """Add the next samples: stamps in ns, angles in rad, (n,)."""
         if not len(stamp):
             return
         if self._last_stamp is None:
@@ -47,7 +47,7 @@ class InputHealth:
         period = np.diff(stamp, prepend=self._last_stamp) / _SECOND
         turned = np.diff(rotor_angle, prepend=self._last_angle)
         self._last_stamp, self._last_angle = int(stamp[-1]), float(rotor_angle[-1])
-        forward = period > 0.0  # neither a duplicate nor a new beginning
+        forward = period > 0.0  # neither a duplicate nor a restart
         period, turned, stamp = period[forward], turned[forward], stamp[forward]
         self._duration += float(period.sum())
         speed = np.abs(turned) / period
@@ -85,7 +85,7 @@ class InputHealth:
         )
 
     def _find_gaps(self) -> None:
-        """Look through the periods that wait, with the median of the first ones."""
+        """Find gaps in the waiting periods, compared with the median of the first ones."""
         if not self._waiting:
             return
         stamps, periods, angles = zip(*self._waiting, strict=True)
@@ -102,7 +102,7 @@ class InputHealth:
 
 
 class SeriesRecorder:
-    """Keeps, of each interval of samples, the one with the worst error."""
+    """Keeps the sample with the worst error of each interval."""
 
     def __init__(self) -> None:
         """Start empty."""
@@ -112,7 +112,7 @@ class SeriesRecorder:
         self._first: int | None = None
 
     def update(self, output: dict[str, Array], poses: dict[str, Array]) -> None:
-        """Take what was compared of output_state, and of body_poses at the same stamps."""
+        """Add the compared samples of output_state, with the pose errors at the same stamps."""
         if not output or not len(output['stamp']):
             return
         if self._first is None:
@@ -146,7 +146,7 @@ class SeriesRecorder:
             self._interval *= 2
 
     def series(self) -> Series | None:
-        """Give the record, or None where nothing was compared."""
+        """Return the record, or None if nothing was compared."""
         if self._first is None:
             return None
         rest = _worst(self._rest, max(self._rest.shape[1], 1))
@@ -154,7 +154,7 @@ class SeriesRecorder:
 
 
 def _worst(columns: Array, interval: int) -> Array:
-    """Of each interval the first three numbers of its middle, and the worst of each error."""
+    """For each interval, the time and angles of its middle and its worst errors."""
     table = columns.reshape(5, -1, interval)
     thinned = table[:, :, interval // 2].copy()
     for row in (3, 4):

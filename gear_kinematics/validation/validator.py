@@ -1,4 +1,4 @@
-"""What a node published, against what it should have published: one pass over a recording."""
+"""Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
@@ -51,13 +51,13 @@ class Validator:
         """Prepare for a recording.
 
         Args:
-            parameters: of the node, as `parameters.load` gives them.
-            topics: their names.
-            tolerances: greatest errors that pass.
-            allow_offset: accept a constant offset of the output angle, as homing leaves it.
-            strict: count everything that is missing or extra, also what may be the recorder's
-                doing; see `recorder`.
-            solver: what recomputes the motion: `solve`, or the matrix method's.
+            parameters: of the node, as `parameters.load` returns them.
+            topics: names of the topics.
+            tolerances: greatest accepted errors.
+            allow_offset: whether to accept a constant offset of the output angle, as after homing.
+            strict: whether to judge all missing and extra messages, even if the recorder may have
+                caused them; see `recorder`.
+            solver: recomputes the motion: `solve`, or that of the matrix method.
 
         Raises:
             MechanismError: if the parameters describe no mechanism.
@@ -92,27 +92,25 @@ class Validator:
         progress: ReportProgress | None = None,
         total: int | None = None,
     ) -> None:
-        """Take the messages of the recording, on the three topics.
-
-        What came before an exception of the iterable is taken all the same.
+        """Process messages on the three topics, up to an exception of the iterable, if any.
 
         Args:
             messages: in the order of their reception.
-            progress: told after each batch.
-            total: of the messages, if that is known.
+            progress: called after each batch.
+            total: number of the messages, if known.
         """
         for recorded in in_batches(messages, progress=progress, total=total):
             batch = _empty_batch()
             sort_by_topic(recorded, dict(zip(self._topics, batch, strict=True)))
             self._take(batch)
 
-    @np.errstate(all='ignore')  # recorded numbers can be anything; what overflows fails
+    @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
     def report(self, bag: str = '', *, error: str | None = None) -> BagReport:
-        """Report on everything that was fed; to be called once, at the end.
+        """Return the report on all messages; must be called once, at the end.
 
         Args:
-            bag: its name.
-            error: what cut the recording short, if anything did.
+            bag: name of the bag.
+            error: damage at which reading ended, if any.
         """
         self._close()
         rotor = self._health.report(self._input, self._topics.rotor)
@@ -166,7 +164,7 @@ class Validator:
         self._drop(max(settled, len(done) - WINDOW))
 
     def _add_samples(self, messages: TopicMessages) -> None:
-        """Put the rotor's samples into the window."""
+        """Add the rotor's samples to the window."""
         samples = self._input.accept_batch(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
@@ -191,14 +189,14 @@ class Validator:
             part.drop(count)
 
     def _close(self) -> None:
-        """Nothing comes any more: what waits is missing or extra."""
-        for _ in range(2):  # what was late waits for one batch more
+        """Count waiting samples and messages as missing and extra, at the end."""
+        for _ in range(2):  # late messages wait for one more batch
             self._take(_empty_batch())
         self._drop(len(self._window))
         self._absences.close()
 
     def _settle_prefix(self, batch: _Batch) -> None:
-        """Take the frame prefix from the first output, if that has one."""
+        """Adopt the frame prefix of the first output, if any."""
         joint = self._parameters['output_joint']
         _, output, poses = batch
         for (data, *_), layout_of, name in (
@@ -217,10 +215,10 @@ class Validator:
                 return
 
     def _settle_offset(self, batch: _Batch) -> None:
-        """Find out, from the first batch with outputs, whether there is an offset to accept.
+        """Determine the offset to accept, if any, from the first batch with outputs.
 
-        Homing moves the rotor's zero, and so the poses too; if the poses are better without that,
-        the output angle alone is offset.
+        Homing moves the rotor's zero and therefore the poses; if they agree better without that,
+        only the output angle has an offset.
         """
         trial = self._trial(batch, {})
         if not trial.output.fit.count:
@@ -231,7 +229,7 @@ class Validator:
             return
         direction, zero = self._parameters['rotor_direction'], self._parameters['rotor_zero']
         moved = {'rotor_zero': zero - direction * self._mechanism.rotor_angle(offset)}
-        if abs(moved['rotor_zero']) > LARGEST_ANGLE:  # garbage, which no homing leaves
+        if abs(moved['rotor_zero']) > LARGEST_ANGLE:  # garbage, not homing
             return
         homed = self._trial(batch, moved)
         if homed.poses.worst_error <= trial.poses.worst_error:
