@@ -1,7 +1,7 @@
-"""The entry points of the two programs, which import nothing heavy before they handle signals.
+"""The entry points of both programs, which handle signals before slow imports.
 
-Without this, a signal during the import of ROS or numpy would raise KeyboardInterrupt anywhere in
-it, where it ends in a traceback or is even swallowed.
+Otherwise a signal during the import of ROS or numpy would raise KeyboardInterrupt somewhere in it,
+which ends in a traceback or is even ignored.
 """
 
 import os
@@ -16,9 +16,9 @@ from types import FrameType
 from gear_kinematics.ros.shared_memory import SharedMemoryError, check_shared_memory
 
 _INTERRUPTED = 130
-"""Exit code, as shells have it."""
+"""Exit code, as in shells."""
 _UNUSABLE = 2
-"""Exit code: something that the program needs is missing."""
+"""Exit code: the program lacks a package or memory."""
 _NODE_HELP = """\
 usage: gear_state_publisher [--help] [--version] [--ros-args ...]
 
@@ -27,7 +27,7 @@ Publish the output angle and the body poses for every message on rotor_state.
 options:
   -h, --help       show this help and exit
   --version        show the version and exit
-  --ros-args ...   parameters, remappings and the rest of what every ROS 2 node takes, as in
+  --ros-args ...   parameters, remappings and other arguments of ROS 2 nodes, such as
                    --ros-args -p rotor_joint:=m1 -r rotor_state:=/motor/joint_states
                    --ros-args --params-file my_actuator.yaml
 
@@ -35,10 +35,10 @@ Exit codes: 0 ended by SIGINT or SIGTERM, 2 unusable parameters or arguments.
 """
 _STOP_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _PATIENCE = 2.0
-"""s in which an import may end, and in which another signal is a repetition: launchers signal a
-process and its group."""
+"""s to wait for the end of an import, and to ignore repeated signals: launchers signal a process
+and its group."""
 _RETRY = 0.01
-"""s from SIGALRM to SIGALRM, which tries again what could not be done."""
+"""Period of SIGALRM, which repeats an interruption without effect, s."""
 
 
 def gear_state_publisher() -> int:
@@ -63,7 +63,7 @@ def gear_state_publisher() -> int:
 
 def gearkin() -> int:
     """Run the command line; returns the exit code."""
-    # Shell scripts start background jobs with SIGINT ignored, which then holds.
+    # Shell scripts start background jobs with SIGINT ignored, which must remain so.
     heeded = [number for number in _STOP_SIGNALS if signal.getsignal(number) != signal.SIG_IGN]
     heeded.append(signal.SIGALRM)
 
@@ -86,7 +86,7 @@ def _run(
     stop_signals: Collection[signal.Signals],
 ) -> int:
     """Load a program and run it; returns its exit code, or `interrupted` after a signal."""
-    _handle(stop_signals, lambda *_: os._exit(interrupted))  # nothing has begun
+    _handle(stop_signals, lambda *_: os._exit(interrupted))  # nothing needs to be cleaned up yet
     _open_closed_streams()
     try:
         return load()()
@@ -101,7 +101,7 @@ def _run(
         print(f'{program}: {remedy(error)}', file=sys.stderr)
         return _UNUSABLE
     finally:
-        # Before it ends, Python restores the default, which kills, in place of other handlers.
+        # At exit, Python restores the default of other handlers, which kills the process.
         _handle(stop_signals, signal.SIG_IGN)
 
 
@@ -119,16 +119,16 @@ def _handle(
 
 
 class _Interruption:
-    """Raises KeyboardInterrupt once for signals that come together, and so that it has effect."""
+    """Raises KeyboardInterrupt once for repeated signals, and makes sure that it has effect."""
 
     def __init__(self) -> None:
         self._asked = -inf  # time.monotonic()
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """Raise KeyboardInterrupt, unless the clean-up after another signal is under way.
+        """Raise KeyboardInterrupt, unless the clean-up after another signal is in progress.
 
-        An import that is under way may end first: exceptions raised within are often dropped, or
-        turned into errors of another kind.
+        Wait for an import to end first: exceptions within are often dropped or converted to other
+        errors.
         """
         age = time.monotonic() - self._asked
         if number != signal.SIGALRM:
@@ -142,7 +142,7 @@ class _Interruption:
 
     @staticmethod
     def repeat(unraisable: 'sys.UnraisableHookArgs') -> None:
-        """Raise again what Python drops: exceptions in destructors and in callbacks."""
+        """Repeat an interruption that Python dropped in a destructor or a callback."""
         if unraisable.exc_type is KeyboardInterrupt:
             signal.setitimer(signal.ITIMER_REAL, _RETRY)
         else:
@@ -150,17 +150,17 @@ class _Interruption:
 
 
 def _imports(frame: FrameType | None) -> bool:
-    """Tell whether an import is going on."""
+    """Return whether an import is in progress."""
     while frame and frame.f_code.co_filename != '<frozen importlib._bootstrap>':
         frame = frame.f_back
     return frame is not None
 
 
 def _open_closed_streams() -> None:
-    """Open the null device for each standard stream that is closed (`2>&-`).
+    """Open the null device for each closed standard stream (`2>&-`).
 
-    Python has None in its place, and its file descriptor would go to the next file or socket
-    opened, into which libraries would then print.
+    Python sets it to None, and its file descriptor would be reused by the next file or socket, to
+    which libraries would then print.
     """
     for name, mode in (('stdin', 'r'), ('stdout', 'w'), ('stderr', 'w')):
         if getattr(sys, name) is None:

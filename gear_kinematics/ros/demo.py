@@ -73,7 +73,7 @@ def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> 
 
 
 def _current(received: list[Message], bodies: int) -> Table:
-    """A table of the latest message of each topic; poses are of so many bodies."""
+    """Return a table of the latest message of each topic."""
     table = Table('topic', 'now', box=None)
     latest = {topic: data for topic, _, data in received[-12:]}
     for topic, name in ((_TOPICS.rotor, 'rotor angle'), (_TOPICS.output, 'output angle')):

@@ -17,7 +17,7 @@ _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_l
 
 
 def diagnostic_array(node: Node, reports: Mapping[str, Report | None]) -> DiagnosticArray:
-    """Give the message for reports, by their subjects, as far as there are any."""
+    """Return the message for the reports that are not None, given by their subjects."""
     name = node.get_fully_qualified_name()
     message = DiagnosticArray()
     message.header.stamp = node.get_clock().now().to_msg()

@@ -1,4 +1,4 @@
-"""The inputs of the node: how it listens to a driver, and what gets lost on the way."""
+"""The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
 from collections.abc import Callable
 
@@ -16,15 +16,15 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 
 DEPTH = 2000
-"""Messages that wait on either side of a topic: what a driver at several kHz sends while the node
-is held up."""
+"""Queued messages on either side of a topic: those of a driver at several kHz while the node is
+blocked."""
 
 
 class DriverInput:
-    """Listens to the driver of an encoder.
+    """Subscribes to the driver of an encoder.
 
-    It does so reliably, unless there is a driver that only does best effort. That is what best
-    available means; it is decided when the subscription is made.
+    Its reliability is "best available": reliable unless a driver offers only best effort, which is
+    determined when the subscription is created.
     """
 
     def __init__(
@@ -37,10 +37,10 @@ class DriverInput:
         """Subscribe.
 
         Args:
-            node: that listens.
-            topic: of JointState.
-            on_message: takes the bytes of each message.
-            monitor: counts what is lost.
+            node: the subscribing node.
+            topic: name of a topic of type JointState.
+            on_message: called with the bytes of each message.
+            monitor: counts lost messages.
         """
         self._node = node
         self._topic = topic
@@ -50,7 +50,7 @@ class DriverInput:
 
     def _subscribe(self) -> None:
         self.unheard = True
-        """Whether the first message is still to come."""
+        """Whether no message has been received yet."""
         self.subscription = self._node.create_subscription(
             JointState,
             self._topic,
@@ -64,7 +64,7 @@ class DriverInput:
             self.losses = rclpy_implementation.EventHandle(
                 self.subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
             )
-            """What the middleware knows of messages that it did not deliver."""
+            """The middleware's status of lost messages."""
 
     def _on_incompatible(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
         name = self.subscription.topic_name
@@ -72,25 +72,22 @@ class DriverInput:
         asked_for = self._node.get_parameter(override).value
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
-            self._node.get_logger().info(f'a driver on {name} is best effort: listening likewise')
+            self._node.get_logger().info(f'{name}: subscribing with best effort, as a driver does')
             self.count_losses()
             self.losses.destroy_when_not_in_use()
             self._node.destroy_subscription(self.subscription)
             self._subscribe()
 
     def begin_to_count_losses(self) -> None:
-        """Forget what the middleware calls lost before the first message came.
-
-        It was sent before driver and node had found each other, or while they did.
-        """
+        """Ignore losses before the first message, from before or during discovery."""
         self.count_losses()
         self.unheard = False
 
     def count_losses(self) -> None:
-        """Ask the middleware what it has lost since the last time.
+        """Poll the middleware for the messages lost since the last call.
 
-        Were it told of each loss, as of other events, it could come to a deadlock between the
-        thread that takes the event and the one that receives: ros2/rmw_fastrtps#890.
+        A callback for each loss, as for other events, could deadlock the thread that takes the
+        event and the one that receives: ros2/rmw_fastrtps#890.
         """
         with self.losses:
             status = self.losses.take_event()

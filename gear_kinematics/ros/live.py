@@ -1,7 +1,6 @@
-"""A running node: its process, and the other end of its topics.
+"""Runs a node in its own process, as its driver and its recorder.
 
-`Replay` is a driver and a recorder in one; `live_messages` plays a bag into a node of its own and
-gives what it answers.
+`Replay` is both; `live_messages` plays a bag into a node and yields its outputs.
 """
 
 import os
@@ -44,32 +43,32 @@ from gear_kinematics.wire.topics import (
 )
 
 POLL = 0.1
-"""s: how late a signal can be noticed."""
+"""Greatest delay of the response to a signal, s."""
 
 _TOPICS = Topics()
 _MESSAGE_TYPES: Mapping[str, type] = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
 _STAMP = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
 _PROBE_PERIOD = 0.05  # s
-_AFTERWARDS = 0.1  # s: for messages that nobody expects
-_WINDOW = 500  # messages that the node may be behind: no queue of DEPTH runs over
-_QUIET = 5.0  # s of silence after which nothing more is to come; DDS repeats every 3 s
-_PROBE_SECOND = 2**31 - 1  # the last one that a stamp can name
+_AFTERWARDS = 0.1  # s to wait for unexpected messages
+_WINDOW = 500  # messages by which the node may lag; a queue of DEPTH does not overflow
+_QUIET = 5.0  # s without messages after which no more are expected; DDS repeats every 3 s
+_PROBE_SECOND = 2**31 - 1  # the latest in a stamp
 _PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
 
 
 class ReplayError(RuntimeError):
-    """A replay that cannot be done; the text says why."""
+    """A replay failed; the text gives the cause."""
 
 
 @contextmanager
 def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subprocess.Popen[str]]:
-    """Run gear_state_publisher as a process of its own and stop it at the end.
+    """Run gear_state_publisher in its own process, and stop it at the end.
 
     Args:
-        arguments: its command line, such as `--ros-args -p rotor_joint:=m1`.
+        arguments: of its command line, such as `--ros-args -p rotor_joint:=m1`.
         options: of `subprocess.Popen`.
     """
-    # -P: `-m` would import modules from the current folder.
+    # Without -P, `-m` would import modules from the current folder.
     command = [sys.executable, '-P', '-m', 'gear_kinematics.ros', *arguments]
     process = subprocess.Popen(command, text=True, **options)  # noqa: S603  # our own node
     try:
@@ -87,27 +86,28 @@ def live_messages(
     rate: float = 1.0,
     progress: ReportProgress = lambda _done, _total: None,
 ) -> Iterator[Message]:
-    """Play a bag's rotor topic into a node process of its own and give what it publishes.
+    """Play a bag's rotor topic into a node process and yield what it publishes.
 
-    The node runs in a private namespace and talks to this machine only. It is never sent more
-    than it can keep up with, so that nothing gets lost on the way, whatever the rate. Rotor
-    messages without a stamp are given the time of their reception as a stamp: the node would take
-    the clock, which nobody could tell afterwards.
+    The node runs in a private namespace and communicates on this machine only. Messages are sent
+    only as fast as it processes them, so that none is lost at any rate. Rotor messages without a
+    stamp get their time of reception: the node would use its clock, and the outputs could not be
+    matched.
 
     Args:
         source: an open bag.
-        parameters: of the node, as `parameters.load` gives them.
+        parameters: of the node, as `parameters.load` returns them.
         rotor_topic: name of the rotor topic in the bag.
-        rate: bag time per real time.
-        progress: told of the rotor messages sent, at most ten times a second and at the end.
+        rate: bag time / real time.
+        progress: called with the number of rotor messages sent, at most ten times a second and at
+            the end.
 
     Yields:
         Messages on /rotor_state, /output_state and /body_poses in the order of their reception.
 
     Raises:
-        BagError: if the bag has no such topic or nothing on it; if it is damaged, then after what
-            the node made of what could be read.
-        ReplayError: if the node ends, or does not answer at all.
+        BagError: if the topic is missing or empty; if the bag is damaged, after the outputs for
+            the readable messages.
+        ReplayError: if the node ends or never answers.
     """
     expected = RotorInput(InputSettings.from_mapping(parameters))
     source.type_of(rotor_topic, JOINT_STATE)
@@ -129,7 +129,7 @@ def live_messages(
                     expected.accept(data, partial(int, received))
                     wanted.update(_TOPICS[1:])
                 if not replay.receive(wanted, but=_WINDOW):
-                    wanted = replay.counts.copy()  # what has not come by now does not come
+                    wanted = replay.counts.copy()  # missing messages will not come any more
                 report(expected.received, None)
                 yield from replay.take()
         except DamagedBagError as error:
@@ -143,10 +143,10 @@ def live_messages(
 
 
 class Replay:
-    """A driver on rotor_state and a recorder of rotor_state and of the node's outputs, in one.
+    """A driver on rotor_state, and a recorder of it and of the node's outputs.
 
-    A context manager with a ROS context of its own. Nothing runs in the background: messages are
-    received within `receive_until` and the waits.
+    A context manager with its own ROS context. Nothing runs in the background: messages are
+    received only within `receive_until` and the waits.
     """
 
     def __init__(self, namespace: str = '', alive: Callable[[], bool] = lambda: True) -> None:
@@ -154,11 +154,11 @@ class Replay:
 
         Args:
             namespace: of the topics.
-            alive: whether the node can still answer.
+            alive: returns whether the node can still answer.
         """
         self.received: list[Message] = []
         self.counts: Counter[str] = Counter()
-        """Of the messages received so far, by topic."""
+        """Numbers of messages received so far, by topic."""
         self._alive = alive
         self._probed: set[str] = set()
         self._resources = ExitStack()
@@ -182,17 +182,17 @@ class Replay:
         self._resources.close()
 
     def wait_for_node(self, joint: str, timeout: float = 20.0) -> None:
-        """Wait until probes are answered here, which the ends of topics seen here cannot tell.
+        """Wait until probes are answered, since discovery on this side does not suffice.
 
-        The probes are stamped with the far future, and are not recorded. Older messages than that
-        let the node start anew.
+        The probes have a stamp in the far future and are not recorded; the node restarts at the
+        older stamps after them.
 
         Args:
-            joint: the rotor's, or '' for the only one.
+            joint: name of the rotor's joint; '' for the only one.
             timeout: s.
 
         Raises:
-            ReplayError: if nothing arrives.
+            ReplayError: if there is no answer in time.
         """
         template = JointStateTemplate([joint or 'rotor'], velocity=False, effort=False)
         message = template.encode(_PROBE_SECOND * SECOND, [0.0])
@@ -208,7 +208,7 @@ class Replay:
         self.wait_until(answered, timeout)
 
     def receive_until(self, moment: float) -> None:
-        """Receive until a `time.monotonic()`."""
+        """Receive until a moment of `time.monotonic()`."""
         while (left := moment - time.monotonic()) > 0.0:
             self._executor.spin_once(timeout_sec=min(left, POLL))  # no signal interrupts it
 
@@ -217,7 +217,7 @@ class Replay:
         self._publisher.publish(data)
 
     def take(self) -> list[Message]:
-        """Take what was received out of `received`."""
+        """Remove and return the messages in `received`."""
         taken, self.received = self.received, []
         return taken
 
@@ -225,7 +225,7 @@ class Replay:
         """Receive until a condition holds.
 
         Raises:
-            ReplayError: if it does not after `timeout` s, or the node has ended.
+            ReplayError: after `timeout` s, or if the node has ended.
         """
         deadline = time.monotonic() + timeout
         while not condition():
@@ -234,17 +234,17 @@ class Replay:
             self._spin()
 
     def receive(self, wanted: Counter[str], but: int = 0) -> bool:
-        """Receive until so many messages of each topic are there, but for a few.
+        """Receive until each topic has its number of messages, except for a few.
 
         Args:
-            wanted: numbers of messages by topic, counted from the beginning.
-            but: how many of a topic may be missing.
+            wanted: numbers of messages by topic, counted from the start.
+            but: number of messages that each topic may lack.
 
         Returns:
-            Whether they came; False when nothing has come for some seconds.
+            Whether they arrived; False after some seconds without any message.
 
         Raises:
-            ReplayError: if the node has ended before.
+            ReplayError: if the node has ended.
         """
         total, deadline = -1, 0.0
         while max((wanted - self.counts).values(), default=0) > but:
@@ -274,9 +274,9 @@ class Replay:
 
 @contextmanager
 def replay_node(namespace: str) -> Iterator[Node]:
-    """A ROS node in a context of its own, which leaves the process's signals alone.
+    """Create a ROS node in its own context, without signal handlers.
 
-    It offers no services: nobody answers them while messages are played.
+    It has no services, as nothing would answer them while messages are played.
     """
     context = Context()
     rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
@@ -295,15 +295,15 @@ def replay_node(namespace: str) -> Iterator[Node]:
 
 @contextmanager
 def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
-    """A node process that nobody else is connected with, and its other end."""
-    # Read by the middleware when a context begins, here and in the node's process.
+    """Run a node process that is isolated from all others, and connect to it."""
+    # The middleware reads these when a context is created, here and in the node's process.
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
-    os.environ['SKIP_DEFAULT_XML_FILE'] = '1'  # Fast DDS obeys one in the current folder
+    os.environ['SKIP_DEFAULT_XML_FILE'] = '1'  # Fast DDS would read one in the current folder
     namespace = f'/gear_kinematics_{os.getpid()}'
     with TemporaryDirectory() as folder:
         config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
         config.write_text(yaml.safe_dump({'/**': {'ros__parameters': dict(parameters)}}), 'utf-8')
-        # Diagnostics have an absolute name.
+        # The topic of diagnostics has an absolute name.
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
                      '-r', '/diagnostics:=diagnostics']  # fmt: skip
         with (
@@ -325,7 +325,7 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
 
 
 def _stamped(data: bytes, received: int) -> bytes:
-    """The same message, with its time of reception as stamp if it has none."""
+    """Return the message, with its time of reception as stamp if it has none."""
     if any(data[_STAMP]) or len(data) < _STAMP.stop:
         return data
     layout = '<iI' if data[1] else '>iI'

@@ -59,13 +59,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         """Declare the parameters and open the topics.
 
         Args:
-            parameter_files: those of the arguments, to check that they are of use to this node.
-            options: of every node.
+            parameter_files: from the command line, to check that they contain this node.
+            options: of `Node`.
 
         Raises:
             ParameterException: if a parameter is refused.
             ValueError: if the parameters describe no mechanism, one is unknown, or the files have
-                none of this node.
+                none for this node.
         """
         super().__init__(parameters.NODE, **options)
         parameters.require_any(parameter_files, self.get_fully_qualified_name())
@@ -75,7 +75,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         branches = self._value('branches')
         for name, (parameter, default) in parameters.branch_parameters(branches).items():
             self._declare(name, parameter, default)
-        # rclpy ignores what is given but not declared, and has no public way to ask for it.
+        # rclpy ignores undeclared parameters, and has no public access to them.
         given = getattr(self, '_parameter_overrides', ())
         if faults := parameters.unknown_parameters(given, branches):
             raise ValueError('; '.join(faults))
@@ -96,7 +96,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=DEPTH))
             for topic, name in topics.STATE_TOPICS.items()
         }
-        self._listened_to: list[str] = []  # what nobody listens to is not computed
+        self._listened_to: list[str] = []  # only outputs with subscribers are computed
         self._transmission_error = self._create_output(
             JointState, topics.TRANSMISSION_ERROR, QoSProfile(depth=DEPTH)
         )
@@ -106,7 +106,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._configure()
         self.add_post_set_parameters_callback(lambda _: self._configure())
         self.create_service(Trigger, '~/home', self._home)
-        # Silence is silence also while a simulated clock stands still.
+        # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
@@ -134,7 +134,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         )
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
-        """Set parameters as every node does; a refusal always names the parameter."""
+        """Set parameters; the reason of a refusal always names the parameter."""
         result = super().set_parameters_atomically(parameter_list)
         names = ', '.join(parameter.name for parameter in parameter_list)
         if not result.successful and names not in result.reason:
@@ -167,7 +167,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             qos,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=PublisherEventCallbacks(
-                incompatible_qos=lambda _: None,  # the next report names the listener
+                incompatible_qos=lambda _: None,  # the next report names the subscriber
                 matched=matched or (lambda _: self._note_listeners()),
             ),
         )
@@ -175,7 +175,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return publisher
 
     def _note_listeners(self) -> None:
-        """Note which outputs have listeners."""
+        """Update the list of outputs with subscribers."""
         self._listened_to = [
             topic
             for topic, publisher in self._outputs.items()
@@ -183,7 +183,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         ]
 
     def destroy_node(self) -> None:
-        """Let go of what the middleware holds for this node."""
+        """Destroy the event handles too, which rclpy does not know."""
         for driver in self._drivers:
             driver.losses.destroy_when_not_in_use()
         super().destroy_node()
@@ -199,7 +199,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
-        """Refuse what types and ranges, which rclpy checks, cannot say."""
+        """Refuse values that are invalid beyond type and range, which rclpy checks."""
         for parameter in changed:
             known = parameters.PARAMETERS.get(parameter.name)
             if known and known.choices and parameter.value not in known.choices:
@@ -208,7 +208,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
                 reason = f'{parameter.name} must be between 0 and {_MAX_DEPTH}'
                 return SetParametersResult(successful=False, reason=reason)
-            # The first declaration comes before the mechanism, which then checks it itself.
+            # At declaration there is no mechanism yet; `_configure` checks the names then.
             if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_mechanism'):
                 names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
                 try:
@@ -218,11 +218,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return SetParametersResult(successful=True)
 
     def _configure(self) -> None:
-        """Take the parameters over; called again after every change."""
+        """Apply the parameters, at the start and after every change."""
         if (settings := self._settings_of_inputs()) != self._settings:
             self._settings = settings
             self._input.settings, encoder = settings
-            self._encoder = OutputEncoder(self._mechanism, encoder)  # errors begin anew
+            self._encoder = OutputEncoder(self._mechanism, encoder)  # discards earlier errors
         names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
         self._messages = StateMessages(self._mechanism, **names)
         description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
@@ -245,7 +245,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
         self._monitor.published += 1
-        # Without an encoder there is nothing to compare with.
         if self._encoder.received and self._input.referenced:
             self._publish_errors(self._encoder.follow(sample))
 
@@ -264,8 +263,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self._publish(self._transmission_error, self._messages.transmission_error(sample))
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
-        """Let the timer of the markers run while somebody looks, and serve who has just come."""
-        # Not the change of the count: some executors report 0 for a viewer older than the node.
+        """Run the timer of the markers while there are subscribers; resend for a new one."""
+        # Not the change of the count: some executors report 0 for an earlier subscriber.
         if event.current_count:
             self._markers.repeat()
             self._marker_timer.reset()
@@ -280,7 +279,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         try:
             publisher.publish(message)
         except rclpy_implementation.RCLError as error:
-            # As with history keep_all, and a listener that is stuck.
+            # For example, with history keep_all and a blocked subscriber.
             self._monitor.unsent += 1
             self._warn(f'{publisher.topic_name} not sent: {error}')
 
@@ -290,10 +289,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _warn(self, text: str) -> None:
         if time.monotonic() >= self._next_warning:
             self.get_logger().warning(text)
-            self._next_warning = time.monotonic() + _WARNING_PERIOD  # from its stamp in the log on
+            self._next_warning = time.monotonic() + _WARNING_PERIOD  # after logging, not before
 
     def wait_for_delivery(self, timeout: float) -> None:
-        """Wait until the reliable listeners have what was published; `timeout` is in s."""
+        """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
         deadline = time.monotonic() + timeout
         for publisher in (*self._outputs.values(), self._transmission_error):
             left = max(0.0, deadline - time.monotonic())
@@ -330,7 +329,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._publish(self._diagnostics, diagnostic_array(self, reports))
 
     def _look_at_graph(self) -> None:
-        """Note what is wrong between this node and others, and log what was not before."""
+        """Check the connections with other nodes, and log new faults."""
         known = self._monitor.graph
         inputs = (driver.subscription for driver in self._drivers)
         found = self._monitor.graph = find_faults(
@@ -342,5 +341,5 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
 
 def _latched() -> QoSProfile:
-    """A profile of its own for each topic, since overrides of QoS change it."""
+    """Create a new profile for each topic, since QoS overrides change it."""
     return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

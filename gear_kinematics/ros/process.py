@@ -1,4 +1,4 @@
-"""The process of the node: its executor, its signals and its end."""
+"""The process of the node: executor, signals and shutdown."""
 
 import os
 import signal
@@ -21,21 +21,21 @@ from rclpy.task import Future
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.node import GearStatePublisher
 
-_SPIN_TIMEOUT = 3600.0  # s; without any, the EventsExecutor of some releases does nothing
-_STOP_TIMEOUT = 1.0  # s, to answer what was received
-_DELIVERY_TIMEOUT = 0.1  # s, for listeners to get it; those behind Fast DDS tell every 3 s only
-_UNUSABLE = 2  # exit code: parameters or arguments that cannot be used
+_SPIN_TIMEOUT = 3600.0  # s; without a timeout, the EventsExecutor of some releases does nothing
+_STOP_TIMEOUT = 1.0  # s to process received messages
+_DELIVERY_TIMEOUT = 0.1  # s to deliver outputs; some subscribers acknowledge only every 3 s
+_UNUSABLE = 2  # exit code: unusable parameters or arguments
 
 
 def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:
-    """The executor that the parameter `executor` asks for.
+    """Create the executor that the parameter `executor` selects.
 
     Raises:
-        ValueError: if this rclpy does not have it.
+        ValueError: if this rclpy lacks it.
     """
     if kind != 'single_threaded':
         try:
-            # Not in every release of Jazzy.
+            # Some releases of Jazzy lack it.
             from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415
         except ImportError:
             if kind == 'events':
@@ -66,7 +66,7 @@ def main(args: list[str] | None = None) -> int:
         rclpy.try_shutdown()
         return _UNUSABLE
     executor.add_node(node)
-    # What ends in another way is that somebody else in this process has shut rclpy down.
+    # ExternalShutdownException: other code in this process has shut rclpy down.
     with suppress(ExternalShutdownException), _stopped(executor, signals) as stopped:
         while not stopped.done():
             executor.spin_until_future_complete(stopped, timeout_sec=_SPIN_TIMEOUT)
@@ -77,14 +77,14 @@ def main(args: list[str] | None = None) -> int:
 
 
 class _Pipe(NamedTuple):
-    """Its file descriptors."""
+    """File descriptors of a pipe."""
 
     reader: int
     writer: int
 
 
 def _caught_signals() -> _Pipe:
-    """A pipe from which SIGINT and SIGTERM, which do nothing else, can be read."""
+    """Create a pipe to which SIGINT and SIGTERM are written, without any other effect."""
     pipe = _Pipe(*os.pipe())
     os.set_blocking(pipe.writer, False)
     signal.set_wakeup_fd(pipe.writer)
@@ -95,9 +95,9 @@ def _caught_signals() -> _Pipe:
 
 @contextmanager
 def _stopped(executor: Executor, signals: _Pipe) -> Iterator[Future]:
-    """A future that is done after the first signal: when what was received before is answered.
+    """Create a future that is done after the first signal and the messages received before it.
 
-    A thread waits for it, since the main thread is not in Python while it waits for messages.
+    A thread waits for the signal, as the main thread runs no Python while it waits for messages.
     """
     stopped, ended = Future(), Event()
 
@@ -113,5 +113,5 @@ def _stopped(executor: Executor, signals: _Pipe) -> Iterator[Future]:
         yield stopped
     finally:
         ended.set()
-        os.write(signals.writer, b'\0')  # in case that there was no signal
+        os.write(signals.writer, b'\0')  # ends the thread if there was no signal
         thread.join()

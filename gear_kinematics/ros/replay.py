@@ -72,7 +72,7 @@ def play(
 
     Args:
         source: an open bag.
-        topics: the names to publish under, by the names in the bag.
+        topics: published names by the names in the bag.
         rate: bag time / real time.
         loop: whether to restart at the end, a mean period after the last message, until stopped.
             Header stamps and /clock then jump back.
@@ -80,8 +80,8 @@ def play(
         duration: s of bag time to play in each loop.
         clock: rate of the bag's time on /clock, Hz; 0 for none.
         wait: s to wait until every topic has a subscriber; 0 does not wait.
-        stopped: asked at least every 0.1 s whether to stop.
-        progress: told of the messages sent: when the wait is over, then at most ten times a
+        stopped: returns whether to stop; called at least every 0.1 s.
+        progress: called with the number of messages sent after the wait, then at most ten times a
             second, and at the end.
 
     Raises:
