@@ -454,7 +454,7 @@ def test_neighbours_of_a_pin_setting_are_bounded(tmp_path):
     assert refused.text == 'gearkin: --neighbours must be 0 to 1000, not 100000\n'
     done = measure(tmp_path, *given, 1000)
     assert done.code == 0
-    assert len(re.findall(r'^ *[+-]\d+ ', done.text, re.MULTILINE)) == 2000
+    assert len(re.findall(r'^steps [+-]\d+: tooth: ', done.text, re.MULTILINE)) == 2000
     for measured in (refused, done):
         assert measured.memory <= MAX_MEMORY
         assert measured.seconds <= MAX_TIME
