@@ -1,6 +1,6 @@
-"""What a report consists of, whatever renders it: the same content for a terminal and for a page.
+"""The contents of a report, independent of how it is rendered.
 
-Texts are safe to print on a terminal, yet not escaped for markup, HTML or XML.
+Texts are safe to print on a terminal, but not escaped for markup, HTML or XML.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -26,7 +26,7 @@ OUTCOME = {Verdict.PASS: 'passed', Verdict.FAIL: 'failed', Verdict.UNUSABLE: 'un
 
 
 class Tone(StrEnum):
-    """How a value is set off from the others."""
+    """Emphasis of a value."""
 
     PLAIN = ''
     CHOSEN = 'chosen'
@@ -41,7 +41,7 @@ class Cell:
     text: str
     tone: Tone = Tone.PLAIN
     unit: str = ''
-    """Of the value; of all values of a row where it stands with the first cell."""
+    """Unit of the value; in the first cell of a row, of all its values."""
 
     def with_unit(self) -> str:
         """Return the value with its unit."""
@@ -61,24 +61,24 @@ def _cell(value: str | Cell) -> Cell:
 
 
 class Layout(StrEnum):
-    """How a table is set where there is room."""
+    """Layout of a table, where there is room."""
 
     ROWS = 'rows'
     """Rows below headings."""
     INLINE = 'inline'
-    """A single row as labelled values beside each other."""
+    """A single row, as labelled values side by side."""
     LINES = 'lines'
-    """A single row as labelled values below each other."""
+    """A single row, as labelled values one per line."""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows of values; the first value of a row says what the row is about."""
+    """Rows of values; the first value of a row is its subject."""
 
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
     words: tuple[str, ...] = ('',)
-    """Columns that hold words, where '' is the first; all others hold numbers."""
+    """Columns of words, of which '' is the first; all others hold numbers."""
     layout: Layout = Layout.ROWS
 
     @classmethod
@@ -100,7 +100,7 @@ class Table:
 
         Args:
             layout: `INLINE` or `LINES`.
-            values: each behind its label.
+            values: labels and values.
             about: heading and text of the first cell.
         """
         heading, subject = about
@@ -130,14 +130,14 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A sentence that bears on the verdict."""
+    """A sentence that explains the verdict."""
 
     kind: Literal['error', 'finding']
     text: str
 
 
 class Pen(StrEnum):
-    """What a line is drawn with; the names of the colours in page.css."""
+    """Style of a line; the names of the colours in page.css."""
 
     FIRST = 'first'
     SECOND = 'second'
@@ -151,13 +151,13 @@ class Line:
     """One line of a panel."""
 
     name: str
-    """Lines of one name share an entry of the legend."""
+    """Lines of the same name share an entry in the legend."""
     pen: Pen
     x: Array
     y: Array
     """NaN leaves a gap."""
     points: bool = False
-    """Whether the points alone are drawn."""
+    """Whether to draw only points."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -170,15 +170,15 @@ class Panel:
     """With units, as text."""
     lines: tuple[Line, ...]
     marks: tuple[tuple[float, str], ...] = ()
-    """Places on the x axis, each with a text."""
+    """Positions on the x axis, each with a text."""
     levels: tuple[tuple[float, str], ...] = ()
-    """Places on the y axis, each with a text."""
+    """Positions on the y axis, each with a text."""
     scale: Literal['linear', 'log', 'symlog'] = 'linear'
-    """Of the y axis, and of the x axis where it is `log`."""
+    """Scale of the y axis; `log` applies to the x axis too."""
     low: float | None = None
     """Lower end of a logarithmic y axis."""
     equal: bool = False
-    """Whether both axes have the same scale, as a drawing does."""
+    """Whether both axes have the same scale, as in a drawing."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -197,29 +197,29 @@ class DrawnBranch:
     cam_phase: float
     """rad."""
     shapes: Mapping[str, tuple[Array, ...]]
-    """Closed polygons (n, 2) in m, in the frame of their body, by the classes of page.css."""
+    """Closed polygons (n, 2), m, in the frame of their body, by classes of page.css."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MovingMechanism:
-    """A mechanism that moves along the x axis of the figure, which is time in s."""
+    """A mechanism that moves with the x axis of the figure, time in s."""
 
     branches: tuple[DrawnBranch, ...]
     body_names: Mapping[str, str]
-    """For the legend, by the classes of page.css."""
+    """Names in the legend by classes of page.css."""
     eccentricity: float
     """m."""
     time: Array
     """(n,), s."""
     rotor: Array
-    """(n,), degrees that the rotor has turned."""
+    """Angle of the rotor, (n,), degrees."""
     output: Array
-    """(n,), degrees that the output shaft has turned."""
+    """Angle of the output shaft, (n,), degrees."""
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A test case of JUnit: failed if there are faults."""
+    """A test case of JUnit, failed if it has faults."""
 
     name: str
     faults: tuple[str, ...] = ()
@@ -231,13 +231,13 @@ class Section:
     """The report on one recording, or on one mechanism."""
 
     name: str
-    """Empty where a document has one section only that needs none."""
+    """May be empty in a document of one section."""
     tables: tuple[Table, ...]
-    """The first says what the report is about."""
+    """The first describes the subject of the report."""
     verdict: Verdict | None = None
     findings: tuple[Finding, ...] = ()
     remarks: tuple[str, ...] = ()
-    """How the values are to be read."""
+    """Notes on the interpretation of the values."""
     figure: Figure | None = None
     mechanism: MovingMechanism | None = None
     drawing: str = ''
@@ -253,19 +253,19 @@ class Document:
     """Such as `gearkin validate`."""
     sections: tuple[Section, ...]
     data: Mapping[str, Any] = field(default_factory=dict)
-    """For JSON: the results' own numbers."""
+    """Contents of the JSON: the numbers of the results."""
     verdict: Verdict | None = None
     summary: Table | None = None
-    """A row for each section; shown where there are several."""
+    """A row for each section; shown if there are several."""
     totals: str = ''
-    """The sections in a sentence."""
+    """Summary of the sections in one line."""
 
 
 def printable(text: str) -> str:
-    """Escape what no terminal, log or XML file should get: control characters and the like.
+    """Escape characters that are unsafe in terminals, logs and XML files.
 
-    Names come from bags and file systems: they may hold line ends, escape sequences, marks that
-    turn the direction of writing, and bytes that are no text.
+    Names from bags and file systems may contain line ends, escape sequences, marks that change the
+    direction of writing, and bytes that are not text.
     """
     return ''.join(
         char if char.isprintable() else char.encode('unicode_escape').decode() for char in text

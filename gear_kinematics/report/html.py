@@ -1,4 +1,4 @@
-"""A report as one page, which needs neither network nor server."""
+"""Writes a report as a self-contained HTML page."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -22,10 +22,10 @@ _HEIGHT = 34.0  # rem
 
 
 def to_html(document: Document) -> str:
-    """Write a report as a page that holds all it needs, plotly.js included.
+    """Write a report as a self-contained page, with plotly.js if it has figures.
 
     Raises:
-        ModuleNotFoundError: if there is something to plot, and plotly is not installed.
+        ModuleNotFoundError: if it has figures and plotly is not installed.
     """
     sections = document.sections
     scripts = ['page.js'] if any(section.figure for section in sections) else []
@@ -85,14 +85,14 @@ def _sentences(sentences: Sequence[str], kind: str) -> str:
 
 
 def _figure(section: Section, name: str) -> Iterator[str]:
-    """Write a figure for page.js to draw, as a script element that is no program."""
+    """Write the data of a figure, which page.js draws, in a script element."""
     figure = section.figure
     if not figure:
         return
     data = json.dumps(
         interactive(figure, section.mechanism), allow_nan=False, separators=(',', ':')
     )
-    # Nothing in it may look like the end of the script element.
+    # It must not contain the end tag of the script element.
     for char in '<>&':
         data = data.replace(char, f'\\u{ord(char):04x}')
     height = max(_HEIGHT, _STACKED_HEIGHT * len(figure.panels) if figure.stacked else 0.0)
@@ -120,7 +120,7 @@ def _values(table: Table) -> str:
 
 
 def _rows(table: Table, links: Sequence[str] = ()) -> str:
-    """Write a table, with the first cell of each row as a link where there are any."""
+    """Write a table; the first cells of rows are links, if any are given."""
     table = table.without_empty_columns()
     classes = ['words' if table.is_words(k) else 'number' for k in range(len(table.columns))]
     head = ''.join(

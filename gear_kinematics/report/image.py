@@ -1,4 +1,4 @@
-"""Figures as image files, by matplotlib."""
+"""Writes figures as image files, with matplotlib."""
 
 from collections.abc import Callable
 from contextlib import chdir
@@ -12,7 +12,7 @@ from gear_kinematics.report.interactive import FEW, SymmetricLog
 
 INK, FAINT = '#24292f', '#8c959f'
 SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df')
-"""Colours of lines that are plotted together; more take them in turn."""
+"""Colours of lines in a plot, reused in turn for more lines."""
 _PENS = {Pen.FIRST: SERIES[0], Pen.SECOND: SERIES[1], Pen.MODEL: INK, Pen.FAINT: FAINT}
 _STYLE = {
     'font.size': 9.0,
@@ -22,8 +22,8 @@ _STYLE = {
     'grid.linewidth': 0.3,
     'legend.frameon': False,
     'lines.linewidth': 1.2,
-    'svg.hashsalt': 'gear_kinematics',  # the same figure gives the same bytes
-    'pdf.fonttype': 42,  # TrueType, which publishers ask for
+    'svg.hashsalt': 'gear_kinematics',  # for reproducible files
+    'pdf.fonttype': 42,  # TrueType, which publishers require
 }
 _UNDATED = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
 _FOLDER = Path(__file__).parent
@@ -35,10 +35,10 @@ _STACKED = (7.5, 3.0)  # inches
 
 
 def to_image(figure: Figure, path: Path) -> bytes:
-    """Draw a figure for a file; the suffix of its path is the format.
+    """Draw a figure for a file, in the format of the suffix of its path.
 
     Raises:
-        ValueError: if the suffix of the path is that of no format.
+        ValueError: if the suffix is unknown.
         ModuleNotFoundError: without matplotlib.
     """
     count = len(figure.panels)
@@ -48,10 +48,10 @@ def to_image(figure: Figure, path: Path) -> bytes:
 
 
 def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -> bytes:
-    """Draw on a matplotlib figure of a size in inches and return the bytes of its file.
+    """Draw on a matplotlib figure, with its size in inches, and return the bytes of its file.
 
     Raises:
-        ValueError: if the suffix of the path is that of no format.
+        ValueError: if the suffix is unknown.
         ModuleNotFoundError: without matplotlib.
     """
     kind = format_of(path)
@@ -69,7 +69,7 @@ def format_of(path: Path) -> str:
     """Return the format of an image file, which is the suffix of its path.
 
     Raises:
-        ValueError: if the suffix is that of no format.
+        ValueError: if the suffix is unknown.
         ModuleNotFoundError: without matplotlib.
     """
     with chdir(_FOLDER):
@@ -77,12 +77,12 @@ def format_of(path: Path) -> str:
     formats = FigureCanvasBase.get_supported_filetypes()
     if (kind := path.suffix[1:].lower()) not in formats:
         known = ', '.join(sorted(formats))
-        raise ValueError(f'{path}: the suffix of a plot is one of {known}')
+        raise ValueError(f'{path}: the suffix of a plot must be one of {known}')
     return kind
 
 
 def styled(size: tuple[float, float], use: Callable[[Any], bytes]) -> bytes:
-    """Return what `use` makes of a new matplotlib figure of a size in inches, in our style.
+    """Return the result of `use` for a new figure in our style, with its size in inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib.

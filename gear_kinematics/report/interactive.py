@@ -1,4 +1,4 @@
-"""A figure as plotly takes it, without colours, which page.js adds from the style sheet."""
+"""Converts figures for plotly, without colours, which page.js adds from the style sheet."""
 
 import math
 from collections.abc import Sequence
@@ -19,15 +19,15 @@ from gear_kinematics.report.document import (
 )
 
 _GAP = 0.12
-"""Between panels side by side, of the figure's width."""
+"""Gap between panels side by side / width of the figure."""
 _STACK_GAP = 0.05
-"""Between stacked panels, of the figure's height."""
+"""Gap between stacked panels / height of the figure."""
 _TICKS = 4
-"""At most, to each side of zero."""
+"""Most ticks on each side of zero."""
 FEW = 100
-"""Points, up to which they are drawn large."""
+"""Most points that are drawn large."""
 _SMALLEST = 1e-300
-"""Below are numbers that nothing can be divided by."""
+"""Smallest divisor without overflow."""
 _CURSOR = {
     'type': 'line',
     'meta': 'text',
@@ -45,12 +45,12 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
     """Return the data and the layout of a figure.
 
     Args:
-        figure: if it is stacked, its lines have the same x.
-        mechanism: that moves along the x axis of the figure.
+        figure: the figure; if it is stacked, its lines have the same x.
+        mechanism: moves with the x axis of the figure.
 
     Returns:
-        `data` and `layout` of plotly; `time`, the x of all lines, where the panels are stacked;
-        `turned`, the angles of rotor and output in degrees, where a mechanism moves.
+        `data` and `layout` of plotly; `time`, the x of all lines, if the panels are stacked;
+        `turned`, the angles of rotor and output in degrees, if there is a mechanism.
     """
     panels = figure.panels
     several = any(len({line.name for line in panel.lines}) > 1 for panel in panels)
@@ -95,7 +95,7 @@ def _axes(
     count = len(figure.panels)
     kind = 'log' if panel.scale == 'log' else 'linear'
     x: dict[str, Any] = {'title': {'text': escape(panel.x_label)}, 'type': kind}
-    # In a narrow margin the unit stands below the name.
+    # The margin is narrow: the unit is below the name.
     y: dict[str, Any] = {'title': {'text': escape(panel.y_label).replace(' [', '<br>[')}}
     if scale:
         y |= scale.axis(panel)
@@ -147,10 +147,10 @@ def _styled(trace: dict[str, Any], line: Line) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class SymmetricLog:
-    """A scale that is logarithmic to both sides of zero, and linear next to it."""
+    """A scale that is logarithmic on both sides of zero, and linear near zero."""
 
     smallest: float
-    """The power of ten from which on it is logarithmic."""
+    """The power of ten at which the logarithmic part starts."""
     greatest: float
 
     @classmethod
@@ -162,11 +162,11 @@ class SymmetricLog:
 
     @classmethod
     def fit(cls, values: Sequence[float]) -> 'SymmetricLog':
-        """Choose the scale on which all values can be told apart, within twelve decades."""
+        """Choose the scale that shows all magnitudes within twelve decades."""
         magnitudes = [abs(value) for value in values if value]
         greatest = max(max(magnitudes, default=1.0), _SMALLEST)
         least = max(min(magnitudes, default=1.0), 1e-12 * greatest, _SMALLEST)
-        # With a decade to show where only one magnitude is there.
+        # At least one decade, even for a single magnitude.
         return cls(10.0 ** (_decade(least) - (_decade(least) == _decade(greatest))), greatest)
 
     def __call__(self, value: float) -> float:
@@ -193,7 +193,7 @@ class SymmetricLog:
 
 
 def _decade(value: float) -> int:
-    # As written, for 1e-9 may have a logarithm of slightly less than -9.
+    # From the text, as the logarithm of 1e-9 may be slightly less than -9.
     return int(f'{value:e}'.partition('e')[2])
 
 
@@ -219,7 +219,7 @@ def _level(height: float, text: str, k: int) -> dict[str, Any]:
         'yref': f'y{k}',
         'y0': height,
         'y1': height,
-        # Inside, where the plot always has room.
+        # Inside the plot, where there is always room.
         'label': {'text': escape(text), 'textposition': 'start', 'yanchor': 'top'},
     }
 
@@ -253,7 +253,7 @@ def _title(text: str, x: str, k: int) -> dict[str, Any]:
 
 
 def _rounded(values: Array | Sequence[float], digits: int = 8) -> list[float | None]:
-    """Drop the digits that no plot shows; NaN and infinities become gaps."""
+    """Round to the digits that a plot can show; NaN and infinities become gaps."""
     return [
         float(f'{value:.{digits}g}') if math.isfinite(value) else None
         for value in np.asarray(values).tolist()

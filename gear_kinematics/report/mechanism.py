@@ -1,4 +1,4 @@
-"""A mechanism that moves in a page: drawn here, posed by page.css, driven by motion.js."""
+"""Draws a moving mechanism for a page; page.css positions its bodies, motion.js moves it."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 from gear_kinematics.report.document import Array, MovingMechanism
 
 _RADIUS = 500.0
-"""Of the drawing, in units of which no screen shows a tenth."""
+"""Radius of the drawing, in units of which no screen shows a tenth."""
 _VIEW = _RADIUS + 5.0
 _CENTRE = 7.0
 """Radius of the dots that mark centres."""
@@ -22,11 +22,11 @@ _SPEEDS = {
     100.0: '100 × real time',
 }
 """Factors of the playing speed."""
-_FOLLOWED = 360.0  # degrees of the rotor in a second, which the eye can follow
+_FOLLOWED = 360.0  # degrees of the rotor per second, which the eye can follow
 
 
 class Drawings:
-    """The mechanisms of a page. A shape that several bodies have is in the page once."""
+    """The mechanisms of a page, which contains each common shape once."""
 
     def __init__(self) -> None:
         """Start with none."""
@@ -36,8 +36,8 @@ class Drawings:
         """Write a mechanism branch by branch, with a slider for the time and a play button.
 
         Args:
-            mechanism: to be drawn.
-            figure: name of the figure along which it moves.
+            mechanism: the mechanism.
+            figure: name of the figure with whose x axis it moves.
         """
         shapes = [branch.shapes for branch in mechanism.branches]
         reach = max(float(np.max(np.abs(outline))) for outline in shapes[0]['stator'])
@@ -63,7 +63,7 @@ class Drawings:
         yield f'</div>\n<ul class="legend">{legend}</ul>\n</div>\n'
 
     def shapes(self) -> str:
-        """Write the shapes of all that was drawn, to stand anywhere in the page."""
+        """Write the shapes of all drawn mechanisms, for any place in the page."""
         paths = ''.join(f'<path id="{name}" d="{path}"/>\n' for path, name in self._names.items())
         return f'<svg class="shapes" aria-hidden="true">\n{paths}</svg>\n' if paths else ''
 

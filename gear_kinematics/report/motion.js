@@ -1,5 +1,5 @@
 // Moves each mechanism with its slider, its play button and the cursor of its plots. The poses are
-// in page.css. A position counts samples; between two of them the rotor is taken to turn evenly.
+// in page.css. A position counts samples; between them, angles are interpolated linearly.
 'use strict';
 (() => {
   function connect(view, figure, {time, turned, layout}) {
@@ -9,7 +9,7 @@
     const cursor = `shapes[${layout.shapes.length - 1}]`;
     const end = time.length - 1;
     let position = 0;
-    let shown = 0; // animation frame that is waited for, and likewise:
+    let shown = 0; // requested animation frames, if any
     let played = 0;
 
     function at(values) {
@@ -38,7 +38,7 @@
         const step = time[k + 1] - time[k];
         const rest = (k + 1 - to) * step;
         to = rest > seconds ? to + seconds / step : k + 1;
-        seconds -= Math.max(rest, 0); // stamps can step back
+        seconds -= Math.max(rest, 0); // stamps can decrease
       }
       move(to);
     }

@@ -1,4 +1,4 @@
-// Draws each figure when it comes into view: a fleet's page has hundreds.
+// Draws each figure when it comes into view: the page of a fleet has hundreds.
 'use strict';
 (() => {
   const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -33,7 +33,7 @@
       line: {color: colour('--' + trace.meta), width: 1.5, ...trace.line},
       marker: {color: colour('--' + trace.meta), ...trace.marker},
     }));
-    // Named one by one: others send the data to a server.
+    // Only these buttons: some others would send the data to a server.
     const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];
     const config = {responsive: true, displaylogo: false, modeBarButtons: buttons};
     Plotly.react(element, traces, themed, config);

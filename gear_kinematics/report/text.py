@@ -1,4 +1,4 @@
-"""A report on a terminal, and as plain lines in a pipe."""
+"""Prints a report as tables on a terminal, or as plain lines in a pipe."""
 
 from collections.abc import Iterable, Iterator
 
@@ -20,7 +20,7 @@ from gear_kinematics.report.document import (
 )
 
 _NARROWEST = 80
-"""Columns of a terminal from which on tables are not cut."""
+"""Least width of a terminal for tables, columns."""
 _VERDICT_STYLES = {
     None: '',
     Verdict.PASS: 'bold green',
@@ -70,7 +70,7 @@ def section_lines(section: Section) -> Iterator[str]:
 
 def _print_lines(lines: Iterable[str], console: Console) -> None:
     for line in lines:
-        # A name must not stop the report where the pipe's encoding cannot express it.
+        # The pipe's encoding may lack characters of a name.
         written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
         console.print(Text(written), soft_wrap=True)
 
@@ -96,7 +96,7 @@ def _render_section(section: Section, console: Console) -> None:
 
 
 def _bullet(sentence: str, style: str = '') -> RichTable:
-    """Set a sentence beside a bullet, so that its lines begin below each other."""
+    """Return a sentence with a bullet and a hanging indent."""
     item = RichTable.grid(padding=(0, 1))
     item.add_row(Text('•', style), Text(sentence, overflow='fold'))
     return item
@@ -119,7 +119,7 @@ def _lines(table: Table) -> RenderableType:
 
 
 def _rows(table: Table) -> RenderableType:
-    """Set rows below headings; numbers are never broken, words and headings are."""
+    """Return rows below headings; words and headings may wrap, numbers do not."""
     table = table.without_empty_columns()
     rich_table = RichTable(
         box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0), header_style='dim'
