@@ -1,4 +1,4 @@
-"""What to draw of lost motion, whatever draws it: panels of lines, in arc minutes."""
+"""The panels of a report on lost motion, in arc minutes."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,13 +14,13 @@ from gear_kinematics.report.document import Array, Line, Panel, Pen
 
 _MOST = 2000  # points of a line
 _TOGETHER = 1.1
-"""Orders of so small a ratio share a mark."""
+"""Greatest ratio of orders that share a mark."""
 _DECADES = 4
-"""That a spectrum shows below its greatest amplitude."""
+"""Decades of a spectrum below its greatest amplitude."""
 
 
 def panels(report: LostMotionReport) -> list[Panel]:
-    """Give the plots of a report."""
+    """Return the plots of a report."""
     return [*_hysteresis(report), *_transmission(report)]
 
 
@@ -57,7 +57,7 @@ def _centre(ramps: Ramps) -> float:
 
 
 def _half_loop(name: str, pen: Pen, half: HalfLoop, centre: float, ramps: Ramps) -> Line:
-    # A ramp may go on to a larger amplitude, which is another panel's.
+    # A ramp may continue to a larger amplitude, which has its own panel.
     inside = np.abs(half.torque) <= 1.02 * ramps.amplitude
     load, angle = (_thinned(values[inside]) for values in (half.torque, half.angle))
     return Line(name, pen, load, (angle - centre) * ARC_MINUTES)
@@ -104,7 +104,7 @@ def _transmission(report: LostMotionReport) -> Iterator[Panel]:
 
 
 def _marks(orders: Sequence[Order], highest: float) -> Iterator[tuple[float, str]]:
-    """The orders up to the highest; those next to each other share a name."""
+    """Yield marks for the orders up to the highest; neighbouring orders share a mark."""
     near: list[Order] = []
     for order in sorted(orders, key=lambda order: order.cycles):
         if near and order.cycles > _TOGETHER * near[0].cycles:
@@ -121,7 +121,7 @@ def _mark(orders: Sequence[Order]) -> tuple[float, str]:
 
 
 def _envelope(x: Array, y: Array) -> tuple[Array, Array]:
-    """The least and the greatest of what is too dense to be drawn one by one."""
+    """Reduce points that are too dense for a plot to their minima and maxima."""
     order = np.argsort(x, kind='stable')
     x, y = x[order], y[order]
     if len(x) <= _MOST:
@@ -132,7 +132,7 @@ def _envelope(x: Array, y: Array) -> tuple[Array, Array]:
 
 
 def _peaks(x: Array, y: Array) -> tuple[Array, Array]:
-    """The greatest of what is too dense to be drawn one by one on a logarithmic axis."""
+    """Reduce points that are too dense for a logarithmic axis to their maxima."""
     starts = np.unique(np.geomspace(1, len(x), _MOST).astype(np.intp) - 1)
     return x[starts], np.maximum.reduceat(y, starts)
 

@@ -1,4 +1,4 @@
-"""Lost motion as a document. Its JSON, in rad, N·m and N·m/rad, is described in docs."""
+"""The report on lost motion as a document; docs/lost_motion.md describes its JSON."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -92,7 +92,7 @@ def _without(content: Any, curves: str) -> Any:
 
 
 def _plain(value: Any) -> Any:
-    """Turn dataclasses into mappings; curves are for plots, not for here."""
+    """Convert dataclasses to mappings, without arrays."""
     match value:
         case Estimate():
             return {
@@ -128,7 +128,7 @@ def _head(report: LostMotionReport) -> Table:
 
 
 def _tables(report: LostMotionReport) -> Iterator[Table]:
-    """Yield the tables that have something in them."""
+    """Yield the tables for the available results."""
     if found := report.hysteresis:
         yield _figure_table(found)
         if len(found.figures) > 1:
@@ -140,7 +140,7 @@ def _tables(report: LostMotionReport) -> Iterator[Table]:
 
 
 def _figure_table(found: HysteresisReport) -> Table:
-    """Return the figures, those of the play from the smallest ramps, others from the largest."""
+    """Return the figures: of the play from the smallest ramps, others from the largest."""
     smallest, largest = found.smallest, found.largest
     small, large = (f'{_loops(f)} to {torque(f.amplitude)} N·m' for f in (smallest, largest))
     at = torque(LOST_MOTION_SHARE * found.settings.rated_torque)
@@ -176,7 +176,7 @@ def _amplitude_table(found: HysteresisReport) -> Table:
 
 
 def _stiffness_table(found: HysteresisReport) -> Table:
-    """Return the stiffness under torque of either sign."""
+    """Return the stiffness for positive, negative and both signs of torque."""
     return Table.of_items(
         {
             'stiffness [N·m/rad]': lambda row: (

@@ -1,4 +1,4 @@
-"""What a recording tells about lost motion: figures, and the curves that they are read from."""
+"""Lost motion of a recording: figures and the curves behind them."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -17,27 +17,27 @@ class HysteresisReport:
 
     settings: Settings
     rated_by: Literal['given', 'largest ramps']
-    """What the rated torque is."""
+    """Source of the rated torque."""
     measured: bool
-    """Whether an encoder saw the output; else the figures are inferred from the motor's."""
+    """Whether an encoder measured the output; if not, figures are inferred from the motor's."""
     figures: tuple[Figures, ...]
     ramps: tuple[Ramps, ...]
-    """Their curves."""
+    """Curves of the figures."""
 
     @property
     def smallest(self) -> Figures:
-        """Of the smallest ramps: those of the play."""
+        """Figures of the smallest ramps, for the play."""
         return self.figures[0]
 
     @property
     def largest(self) -> Figures:
-        """Of the largest ramps: those of the gear under load."""
+        """Figures of the largest ramps, for the gear under load."""
         return self.figures[-1]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LostMotionReport:
-    """The whole finding about one recording."""
+    """The results for one recording."""
 
     recording: Recording
     hysteresis: HysteresisReport | None = None
@@ -52,16 +52,16 @@ def measure(
     rated_torque: float | None = None,
     corners: tuple[float, ...] | None = None,
 ) -> LostMotionReport:
-    """Measure what a recording shows.
+    """Measure lost motion in a recording.
 
     Args:
-        recording: of torque ramps, or of both encoders, or of both.
-        mechanism: whose orders to look for.
+        recording: torque ramps, the motion of both encoders, or both.
+        mechanism: the mechanism whose orders to look for.
         rated_torque: N·m at the output; None: the amplitude of the largest ramps.
         corners: N·m, rising, between ranges of stiffness; None: shares of the rated torque.
 
     Raises:
-        RampError, MotionError: if it shows nothing.
+        RampError, MotionError: if nothing can be measured.
     """
     remarks = list(recording.remarks)
     found = None

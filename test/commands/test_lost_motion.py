@@ -154,7 +154,7 @@ def test_several_recordings_are_compared(recording, motion, capsys, monkeypatch)
         (['nowhere.csv'], 'nowhere.csv: No such file'),
         (['nowhere'], 'nowhere: no such file or folder'),
         (['{recording}', '{motion}', '--plot', 'x.png'], '--plot takes one recording'),
-        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot is one of'),
+        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot must be one of'),
         (['{recording}', '--json', '--html'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are rotor, output"),
     ],
@@ -293,10 +293,10 @@ def test_remarks_tell_where_the_spring_is_not_clear_of_the_play(tmp_path, capsys
     angle = creep(Gear(play=0.02, stiffness=300.0, friction=2.5), torque)
     path = write_csv(tmp_path / 'sticky.csv', angle=angle, torque=torque)
     assert main(['lost-motion', str(path)]) == 0
-    assert 'The friction is more than the 2 N·m from which on' in capsys.readouterr().out
+    assert 'The friction exceeds 2 N·m, from which' in capsys.readouterr().out
     assert main(['lost-motion', str(path), '--rated-torque', '40']) == 0
     told = capsys.readouterr().out
-    assert 'No range of stiffness is clear of zero torque' in told
+    assert 'no range of stiffness excludes zero torque' in told
     assert 'backlash (play model)' not in told
 
 
@@ -305,7 +305,7 @@ def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
     path = write_csv(tmp_path / 'one.csv', angle=creep(GEAR, torque), torque=torque)
     assert main(['lost-motion', str(path)]) == 0
     told = capsys.readouterr().out
-    assert 'Where nothing was repeated there is no uncertainty.' in told
+    assert 'There is no uncertainty where nothing was repeated.' in told
     assert 'All ramps have about the same amplitude' in told
-    assert 'The friction is more than the ±0.12 N·m' in told
+    assert 'The friction exceeds ±0.12 N·m' in told
     assert '± (95 %)' not in told
