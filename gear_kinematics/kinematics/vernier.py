@@ -2,8 +2,8 @@
 
 A ring gear has zk teeth and zk + 1 pin holes, the chassis zk + 2 holes; one pin goes through a
 ring hole and a chassis hole. Seen against the z axis, teeth and chassis holes are numbered
-anticlockwise from the zero marks of ring gear and chassis, ring holes clockwise. A setting puts
-its tooth, in turns anticlockwise from the chassis's zero mark, at
+counterclockwise from the zero marks of ring gear and chassis, ring holes clockwise. A setting puts
+its tooth, in turns counterclockwise from the chassis's zero mark, at
 
     tooth/zk + ring_hole/(zk + 1) + chassis_hole/(zk + 2)      (mod 1)
 

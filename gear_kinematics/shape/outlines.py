@@ -18,8 +18,8 @@ from gear_kinematics.shape import teeth
 
 Array = NDArray[np.float64]
 Outlines = tuple[Array, ...]
-"""Closed polygons (n, 2), m, in the frame of their body: an anticlockwise border, then its holes,
-clockwise, so that the nonzero and the even-odd fill rule give the same."""
+"""Closed polygons (n, 2), m, in the frame of their body: a counterclockwise border, then clockwise
+holes, so that the nonzero and the even-odd fill rule agree."""
 
 NAMES = {
     'stator': 'ring gear',

@@ -32,15 +32,15 @@ class _Row(NamedTuple):
     holes: int
     pinned: int
     zero: Fraction
-    """Position of its zero mark, turns anticlockwise from the chassis's."""
+    """Position of its zero mark, turns counterclockwise from the chassis's."""
     direction: int
-    """1 if the holes count anticlockwise, else -1."""
+    """1 if the holes count counterclockwise, else -1."""
     radius: float
     outwards: int
     """1 if the numbers are outside the holes, else -1."""
 
     def turn(self, hole: int) -> Fraction:
-        """Position of a hole, turns anticlockwise from the chassis's zero mark."""
+        """Position of a hole, turns counterclockwise from the chassis's zero mark."""
         return self.zero + Fraction(self.direction * hole, self.holes)
 
 
@@ -97,7 +97,9 @@ def _words(ring_teeth: int, setting: PinSetting, *, mirrored: bool) -> Iterator[
         (24.0, 4.5, f'tooth {setting.tooth}'),
     ):
         yield _text((x, y + dy), size, line, _INK, bold=size > 5.0)  # noqa: PLR2004
-    onward, back = ('clockwise', 'anticlockwise') if mirrored else ('anticlockwise', 'clockwise')
+    onward, back = (
+        ('clockwise', 'counterclockwise') if mirrored else ('counterclockwise', 'clockwise')
+    )
     side = 'along' if mirrored else 'against'
     lines = (
         f'Seen {side} the z axis. Black triangles are the zero marks, at hole 0.',

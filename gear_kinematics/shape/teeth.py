@@ -50,7 +50,7 @@ class InterferenceError(ValueError):
 
 
 class Outlines(NamedTuple):
-    """Closed anticlockwise polygons, m, without repeating the first point."""
+    """Closed counterclockwise polygons, m, without repeating the first point."""
 
     ring: Array
     """(n, 2), in the stator's frame, before a turn by `ring_phase`; the material is outside."""
@@ -279,7 +279,7 @@ class Involute(NamedTuple):
         if root_radius < start:
             radii = np.append(root_radius, radii)
         half_angles = np.array([self.half_angle(radius) for radius in radii])
-        # A tooth, anticlockwise: up one flank, down the other.
+        # A tooth, counterclockwise: up one flank, down the other.
         radius = np.concatenate([radii, radii[::-1]])
         angle = 0.5 * math.pi + np.concatenate([-half_angles, half_angles[::-1]])
         pitches = 2.0 * math.pi / self.teeth * np.arange(self.teeth)[:, np.newaxis]

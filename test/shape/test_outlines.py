@@ -60,14 +60,14 @@ def test_poses_take_arrays_and_whole_turns(actuator):
             assert many[body].centre[i, j].tolist() == one[body].centre.tolist()
 
 
-def test_place_turns_anticlockwise_and_then_moves(actuator):
+def test_place_turns_counterclockwise_and_then_moves(actuator):
     quarter = poses(actuator, -19.0 * math.pi / 2)['satellite']  # the output turns by π/2
     [placed] = quarter.place(np.array([[2.0, 1.0]]))
-    # The rotor has turned 4 3/4 times clockwise: the cam points from +y to 90° anticlockwise.
+    # The rotor has turned 4 3/4 times clockwise: the cam points from +y to 90° counterclockwise.
     assert placed == pytest.approx([-1.0 - 0.0011, 2.0], abs=1e-12)
 
 
-def test_borders_are_anticlockwise_and_holes_in_them_are_not(mechanism):
+def test_borders_are_counterclockwise_and_holes_in_them_are_not(mechanism):
     for k in range(len(mechanism.branches)):
         for border, *holes in bodies(mechanism, MODULE, k).values():
             assert area(border) > 0.0

@@ -26,7 +26,7 @@ def pinned(circles: list[ET.Element]) -> list[int]:
 
 
 def angles(circles: list[ET.Element], centre: tuple[float, float]) -> list[float]:
-    """Turns anticlockwise from the top of the page, in [0, 1)."""
+    """Turns counterclockwise from the top of the page, in [0, 1)."""
     offsets = (
         (float(circle.get('cx')) - centre[0], centre[1] - float(circle.get('cy')))
         for circle in circles
@@ -104,11 +104,11 @@ def test_the_page_says_what_to_pin_and_how_holes_are_counted():
     assert '3 < 4 & 5' in words
     assert 'tooth 23' in words
     assert any(line.startswith('Seen against the z axis.') for line in words)
-    assert 'Chassis holes and teeth count anticlockwise, ring holes clockwise.' in words
+    assert 'Chassis holes and teeth count counterclockwise, ring holes clockwise.' in words
     assert {str(number) for number in range(82)} <= set(words)
     mirrored = texts(parse(draw(80, pin_setting(80, 23, 17, 5), mirrored=True)))
     assert any(line.startswith('Seen along the z axis.') for line in mirrored)
-    assert 'Chassis holes and teeth count clockwise, ring holes anticlockwise.' in mirrored
+    assert 'Chassis holes and teeth count clockwise, ring holes counterclockwise.' in mirrored
 
 
 def test_only_some_holes_are_numbered_if_there_is_no_room_for_all():
