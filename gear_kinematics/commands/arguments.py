@@ -40,7 +40,7 @@ def add_config(parser: argparse.ArgumentParser) -> None:
 
 
 def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) -> None:
-    """Take the files for the report; see `output.Reporter`."""
+    """Add the options for files of the report; see `output.Reporter`."""
     for form in ('json', *(['junit'] if junit else []), 'html'):
         parser.add_argument(
             f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'

@@ -1,4 +1,7 @@
-"""The program `gearkin`. Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments."""
+"""Kinematics, validation and preload of hypocycloidal gears with Oldham couplings.
+
+Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
+"""
 
 import argparse
 import sys
@@ -65,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (ValueError, OSError, RuntimeError) as error:
         complain(error)
         code = ExitCode.UNUSABLE
-    except ImportError as error:  # of an optional package, on first use
+    except ImportError as error:  # an optional package, on first use
         complain(remedy(error))
         code = ExitCode.UNUSABLE
     except Exception as error:  # noqa: BLE001, the traceback is shown with --debug

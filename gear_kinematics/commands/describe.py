@@ -1,4 +1,4 @@
-"""`gearkin describe`: what follows from the mechanism and the module of its teeth."""
+"""`gearkin describe`: properties of the mechanism and of its teeth."""
 
 import argparse
 import math
@@ -23,17 +23,17 @@ _DIGITS = 6
 
 
 class _Fact(NamedTuple):
-    """A value (None: there is none) with its key in JSON and its unit."""
+    """A value (None if it does not exist) with its key in JSON and its unit."""
 
     key: str
     value: Any
     unit: str = ''
     label: str = ''
-    """For people, where the key does not say it."""
+    """Label in tables, if not the key."""
 
     @property
     def cell(self) -> Cell:
-        """The value for people: with the digits that matter, and angles in degrees."""
+        """The value in tables: rounded, and angles in degrees."""
         value, unit = self.value, self.unit
         if value is None:
             return Cell('')
@@ -45,7 +45,7 @@ class _Fact(NamedTuple):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     add_mechanism(parser)
     add_sizes(parser)
     add_report_forms(parser)
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _facts(mechanism: Mechanism) -> list[_Fact]:
-    """What follows from the mechanism alone."""
+    """Properties of the mechanism alone."""
     zk = mechanism.ring_teeth
     return [
         _Fact('ring_teeth', zk),
@@ -90,7 +90,7 @@ def _facts(mechanism: Mechanism) -> list[_Fact]:
 
 
 def _tooth_facts(mechanism: Mechanism, module: float) -> list[_Fact]:
-    """What follows for involute teeth of a module."""
+    """Properties of involute teeth of the module."""
     try:
         pair, interference = tooth_pair(mechanism, module), None
     except InterferenceError as error:

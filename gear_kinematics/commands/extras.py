@@ -1,4 +1,4 @@
-"""Packages that pip installs only with an extra, and the remedy if one is missing."""
+"""Packages that pip installs only with an extra, and the error if one is missing."""
 
 EXTRAS = {
     'rclpy': 'ros',
@@ -11,7 +11,7 @@ EXTRAS = {
 
 
 def remedy(error: ImportError) -> str:
-    """Say in one line what is missing and how to install it."""
+    """Describe in one line what is missing and how to install it."""
     package = (error.name or '').partition('.')[0]
     if not (isinstance(error, ModuleNotFoundError) and package in EXTRAS):
         return ' '.join(str(error).split())

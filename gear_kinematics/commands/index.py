@@ -40,31 +40,31 @@ from gear_kinematics.shape.pin_sheet import MOST_TEETH, draw
 
 _MAX_NEIGHBOURS = 1000
 _SENSES = (
-    'Seen against the z axis, angles, teeth and chassis holes count anticlockwise, ring holes '
+    'Seen against the z axis, angles, teeth and chassis holes count counterclockwise, ring holes '
     'clockwise, from 0 at the zero marks.'
 )
 HELP = 'pin holes for a turn of the ring gear, a preload or the phase of branch B'
 
 
 class _Row(NamedTuple):
-    """A position, and the preload that it gives."""
+    """A position of the ring gear and its preload."""
 
     choice: Choice
     preload: float | None
-    """N·m; None where no stiffness is known."""
+    """N·m; None without a stiffness."""
 
 
 class _Answer(NamedTuple):
-    """What is wanted, and what the vernier can do about it."""
+    """The wanted turn, and the nearest positions of the vernier."""
 
     ring_teeth: int
     start: PinSetting
     phase: float | None
-    """The part of the turn that the cam of branch B calls for, rad; None if not asked for."""
+    """Part of the turn that the cam phase of branch B requires, rad; None if not requested."""
     ring_turn: float
     """The wanted turn, rad."""
     preload: float | None
-    """What that gives, N·m; None where no stiffness is known."""
+    """Preload at the wanted turn, N·m; None without a stiffness."""
     rows: tuple[_Row, ...]
 
     @property
@@ -74,7 +74,7 @@ class _Answer(NamedTuple):
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     add_mechanism(parser)
     ways = parser.add_mutually_exclusive_group()
     add_ring_turn(ways)
@@ -82,18 +82,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--preload',
         type=float,
         metavar='N·m',
-        help='what the turn should brace the branches with; negative: turned the other way',
+        help='wanted preload of the branches; negative: by turning the other way',
     )
     parser.add_argument(
-        '--phase-b', action='store_true', help='turn by what the cam of branch B calls for, too'
+        '--phase-b', action='store_true', help='add the turn for the cam phase of branch B'
     )
-    add_setting(parser, '--from', 'start', 'the setting to turn from (default: 0 0 0)')
+    add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
     parser.add_argument(
         '--neighbours', type=int, default=3, metavar='N', help='on either side (default: 3)'
     )
     add_report_forms(parser)
     parser.add_argument(
-        '--drawing', metavar='FILE', help='of the holes, an SVG for a page of A4 (-: stdout)'
+        '--drawing', metavar='FILE', help='draw the holes as SVG on a page of A4 (-: stdout)'
     )
     parser.add_argument(
         '--mirrored', action='store_true', help='draw as seen along the z axis, not against it'
@@ -104,7 +104,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Report the setting and its neighbours, and draw it."""
     if options.mirrored and not options.drawing:
-        raise ValueError('--mirrored is of use with --drawing only')
+        raise ValueError('--mirrored needs --drawing')
     reporter = Reporter(options, drawing=options.drawing)
     answer = _answer(options)
     drawing = ''
@@ -121,10 +121,10 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _answer(options: argparse.Namespace) -> _Answer:
     known, bracing, backlash = stiffness(options), ring_turn(options), options.backlash or 0.0
     if bracing is None and options.preload is None and not options.phase_b:
-        raise ValueError('nothing is wanted: give --angle, --degrees, --preload or --phase-b')
+        raise ValueError('give --angle, --degrees, --preload or --phase-b')
     if not 0 <= options.neighbours <= _MAX_NEIGHBOURS:
         raise ValueError(f'--neighbours must be 0 to {_MAX_NEIGHBOURS}, not {options.neighbours}')
-    # The vernier alone needs no satellite.
+    # The vernier alone does not depend on the satellite.
     pair = mechanism(options) if known or options.phase_b or not options.ring_teeth else None
     ring_teeth = pair.ring_teeth if pair else options.ring_teeth
     phase = ring_phase(pair) if pair and options.phase_b else None

@@ -26,7 +26,7 @@ _CSV = {'.csv', '.tsv', '.txt'}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     shares = ' and '.join(f'{100.0 * share:g}' for share in STIFFNESS_SHARES)
     parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
     add_config(parser)
@@ -41,23 +41,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=positive,
         nargs='+',
         metavar='N·m',
-        help=f'where ranges of stiffness meet (default: {shares} %% of the rated torque)',
+        help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
     )
-    columns = parser.add_argument_group('columns of a CSV', 'by default found by their names')
+    columns = parser.add_argument_group('columns of a CSV', 'by default found by name')
     for role, text in (
         ('angle', 'under torque'),
         ('torque', 'N·m'),
         ('rotor', 'angle of the rotor'),
-        ('output', "angle of the output's encoder"),
+        ('output', 'angle of the output encoder'),
     ):
         columns.add_argument(f'--{role}-column', metavar='NAME', help=text)
     columns.add_argument(
-        '--angle-unit', choices=tuple(UNITS), help='of all angles (default: by the names, or rad)'
+        '--angle-unit', choices=tuple(UNITS), help='of all angles (default: by name, or rad)'
     )
     columns.add_argument(
         '--on-rotor',
         action='store_true',
-        help="angle and torque are the rotor's, not the output's",
+        help='angle and torque are of the rotor, not the output',
     )
     topics = parser.add_argument_group('topics of a bag')
     for topic in ('rotor', 'encoder'):
@@ -66,24 +66,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--max-gap',
         type=positive,
         metavar='S',
-        help='between rotor states, to interpolate in (default: transmission_error_max_gap)',
+        help='between interpolated rotor states (default: transmission_error_max_gap)',
     )
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(
         '--counts',
         type=_counts,
         metavar='N',
-        help='steps in a turn of the rotor, or of the angle column (default: from the readings)',
+        help='steps per turn of the rotor, or of the angle column (default: from the readings)',
     )
     encoders.add_argument(
-        '--output-counts', type=_counts, metavar='N', help="of the output's encoder"
+        '--output-counts', type=_counts, metavar='N', help='steps per turn of the output encoder'
     )
     encoders.add_argument(
         '--travel',
         type=positive,
         metavar='DEG',
-        help='of the output after a reversal until the direction counts '
-        '(default: transmission_error_travel)',
+        help='of the output that confirms a reversal (default: transmission_error_travel)',
     )
     add_report_forms(parser)
 
@@ -95,7 +94,7 @@ def _counts(text: str) -> int:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Measure every recording; one that is unusable does not keep the others."""
+    """Measure every recording, even if others are unusable."""
     reporter = Reporter(options, len(options.recordings))
     reports, code = [], ExitCode.DONE
     for path in options.recordings:

@@ -1,4 +1,4 @@
-"""Where commands write and in which form: the terminal or a pipe, files, bars of progress."""
+"""Output of commands to terminals, pipes and files, and progress bars."""
 
 import argparse
 import os
@@ -39,13 +39,13 @@ _FORMS: Mapping[str, Callable[[Document], str]] = {
 
 
 def complain(error: object) -> None:
-    """Say in one line on stderr what is wrong, whatever names come up in it."""
-    with suppress(OSError):  # a full disk or a closed pipe; the exit code still tells
+    """Print an error in one line to stderr, with unsafe characters escaped."""
+    with suppress(OSError):  # a full disk or a closed pipe; there is still the exit code
         print(f'gearkin: {printable(" ".join(str(error).split()))}', file=sys.stderr)
 
 
 def warn_of_shared_memory(participants: int) -> None:
-    """Say on stderr if there is little for so many DDS participants, before ROS is imported.
+    """Warn if there is little shared memory for the DDS participants, before importing ROS.
 
     Raises:
         SharedMemoryError: if there is too little to import it.
@@ -56,7 +56,7 @@ def warn_of_shared_memory(participants: int) -> None:
 
 @contextmanager
 def closed_pipe_ignored() -> Iterator[None]:
-    """Print to a pipe whose reader may have seen enough."""
+    """Allow the reader of stdout to close the pipe early."""
     try:
         yield
         sys.stdout.flush()
@@ -65,28 +65,28 @@ def closed_pipe_ignored() -> Iterator[None]:
 
 
 class Console(console.Console):
-    """Raises BrokenPipeError, where rich ends the process."""
+    """Raises BrokenPipeError, instead of ending the process as rich does."""
 
     def on_broken_pipe(self) -> None:
-        """Leave it to `closed_pipe_ignored`."""
+        """Raise the error for `closed_pipe_ignored`."""
         raise BrokenPipeError
 
 
 class Reporter:
-    """Writes a document in the forms that were asked for; see `arguments.add_report_forms`."""
+    """Writes a document in the forms given by options; see `arguments.add_report_forms`."""
 
     def __init__(
         self, options: argparse.Namespace, sections: int = 1, drawing: str | None = None
     ) -> None:
-        """Look whether everything can be written, before any work is done.
+        """Check that everything can be written, before any other work.
 
         Args:
-            options: as given.
-            sections: number of sections that the document will have.
-            drawing: where `--drawing` goes, if the command has it.
+            options: the parsed arguments.
+            sections: number of sections of the document.
+            drawing: target of `--drawing`, if any.
 
         Raises:
-            ValueError: if the options contradict each other.
+            ValueError: if options exclude each other.
             ModuleNotFoundError: if a form needs a package that is not installed.
         """
         self._targets = {
@@ -120,10 +120,10 @@ class Reporter:
 
 
 def write(target: str, text: str) -> None:
-    """Write a file that is whole or not there at all; '-' is stdout.
+    """Write a file completely or not at all; '-' is stdout.
 
     Raises:
-        ValueError: if it cannot be written, naming it.
+        ValueError: if the file cannot be written, naming it.
     """
     if target == '-':
         with closed_pipe_ignored():
@@ -133,19 +133,19 @@ def write(target: str, text: str) -> None:
 
 
 def write_file(target: str, content: bytes) -> None:
-    """Write a file that is whole or not there at all.
+    """Write a file completely or not at all.
 
     Raises:
-        ValueError: if it cannot be written, naming it.
+        ValueError: if the file cannot be written, naming it.
     """
     given = Path(target)
     path = given.resolve()
-    unfinished = path.with_name(f'.gearkin.{os.getpid()}.tmp')  # of a length that always fits
+    unfinished = path.with_name(f'.gearkin.{os.getpid()}.tmp')  # never too long a name
     try:
-        if given.exists() and not given.is_file():  # a pipe, perhaps: nothing to put in its place
+        if given.exists() and not given.is_file():  # such as a pipe, which must not be replaced
             given.write_bytes(content)
             return
-        with unfinished.open('xb') as file:  # follows no link that is there
+        with unfinished.open('xb') as file:  # follows no existing link
             if path.exists():
                 os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
             file.write(content)
@@ -158,7 +158,7 @@ def write_file(target: str, content: bytes) -> None:
 
 
 def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:
-    """Say why the gears of a drawing have no teeth, where they cannot mesh; module in m."""
+    """Print why gears are drawn without teeth, if these cannot mesh; module in m."""
     try:
         tooth_pair(mechanism, module)
     except InterferenceError as error:
@@ -167,7 +167,7 @@ def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:
 
 @contextmanager
 def message_progress(name: str) -> Iterator[ReportProgress]:
-    """Show messages/s and the remaining time; gives what is told after each batch."""
+    """Show messages/s and the remaining time; yields the function to report progress."""
     with progress('messages') as bars:
         task = bars.add_task(printable(name), total=None)
 
@@ -178,7 +178,7 @@ def message_progress(name: str) -> Iterator[ReportProgress]:
 
 
 def progress(unit: str) -> Progress:
-    """A progress bar on the terminal, on stderr so that stdout stays clean."""
+    """Create a progress bar on the terminal, on stderr to keep stdout clean."""
     return Progress(
         TextColumn('{task.description}', markup=False),
         BarColumn(),
@@ -192,7 +192,7 @@ def progress(unit: str) -> Progress:
 
 
 class _Speed(TextColumn):
-    """How many come in a second."""
+    """Units per second."""
 
     def __init__(self, unit: str) -> None:
         super().__init__('')

@@ -1,4 +1,4 @@
-"""`gearkin preload`: what bracing the branches against each other gives, and what it takes."""
+"""`gearkin preload`: preload of the branches, and the ring turn and pin setting for it."""
 
 import argparse
 import math
@@ -29,14 +29,13 @@ from gear_kinematics.shape.angles import arc, arc_seconds
 
 HELP = 'preload, torque limits and torque split, and the ring turn for them'
 _LOADS = 4
-"""Rows of the table on either side of no load, besides the thresholds."""
+"""Rows of the table on either side of zero load, in addition to the thresholds."""
 _NEAT = (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)
-"""What the loads of the table are spaced by, times a power of ten."""
+"""Spacings of the loads in the table, times a power of ten."""
 _BEYOND = 1.2
-"""Times the farther threshold: how far table and plot go at least."""
-
+"""Least range of table and plot / greater threshold."""
 _DECIMALS = 9
-"""The most that the table gives."""
+"""Most decimals in the table."""
 
 
 class _Answer(NamedTuple):
@@ -44,42 +43,42 @@ class _Answer(NamedTuple):
 
     mechanism: Mechanism
     names: tuple[str, str]
-    """Of branches A and B."""
+    """Names of branches A and B."""
     backlash: float
     ring_turn: float
     preload: Preload
     setting: PinSetting
-    """The one asked for, or the nearest."""
+    """The given setting, or the nearest one."""
     pinned_turn: float
-    """Ring turn that the setting gives, rad."""
+    """Ring turn of the setting, rad."""
     pinned: Preload
-    """What the setting gives."""
+    """Preload of the setting."""
     max_load: float
-    """How far table and plot go, N·m."""
+    """Range of table and plot, N·m."""
 
     @property
     def loads(self) -> list[float]:
-        """Those of the table, N·m: evenly spaced, and the thresholds among them."""
+        """Loads of the table, N·m: evenly spaced, with the thresholds in between."""
         even = np.linspace(-self.max_load, self.max_load, 2 * _LOADS + 1).tolist()
         thresholds = (self.preload.threshold_a, self.preload.threshold_b)
         return sorted({*even, *(load for load in thresholds if abs(load) < self.max_load)})
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     add_mechanism(parser)
     ways = parser.add_mutually_exclusive_group(required=True)
     add_ring_turn(ways)
-    add_setting(ways, '--setting', 'setting', 'what the ring gear is pinned at')
+    add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
     ways.add_argument(
-        '--wanted-preload', type=float, metavar='N·m', help='in both branches without a load'
+        '--wanted-preload', type=float, metavar='N·m', help='of both branches without a load'
     )
     ways.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    add_setting(parser, '--from', 'start', 'where the turn starts (default: 0 0 0)')
+    add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
     parser.add_argument(
-        '--max-load', type=float, metavar='N·m', help='how far table and plot go, either way'
+        '--max-load', type=float, metavar='N·m', help='range of table and plot, on either side'
     )
     add_report_forms(parser)
     add_stiffness(parser)
@@ -91,8 +90,8 @@ def run(options: argparse.Namespace) -> ExitCode:
     answer = _answer(options)
     a, b = answer.names
     senses = (
-        f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load '
-        f'counts positive in the sense in which ring gear {a} is turned against ring gear {b}.'
+        f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load is '
+        f'positive in the direction in which ring gear {a} is turned relative to ring gear {b}.'
     )
     section = Section(
         '',
@@ -107,7 +106,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _answer(options: argparse.Namespace) -> _Answer:
     pair, known, backlash = mechanism(options), stiffness(options), options.backlash or 0.0
     if known is None:
-        raise ValueError('the stiffness of branches and shaft is missing; --help lists the ways')
+        raise ValueError('the stiffness of branches and shaft is missing; see --help')
     start = vernier.pin_setting(pair.ring_teeth, *(options.start or (0, 0, 0)))
     if options.setting:
         setting = vernier.pin_setting(pair.ring_teeth, *options.setting)

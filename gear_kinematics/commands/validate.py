@@ -1,4 +1,4 @@
-"""`gearkin validate`: whether the recorded outputs are what the rotor topic calls for."""
+"""`gearkin validate`: compare recorded outputs with outputs recomputed from the rotor topic."""
 
 import argparse
 from collections.abc import Iterator, Sequence
@@ -32,7 +32,7 @@ from gear_kinematics.validation.fleet import (
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 
-HELP = 'recorded outputs against recomputed ones'
+HELP = 'compare recorded outputs with recomputed ones'
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
     Verdict.FAIL: ExitCode.FAILED,
@@ -41,7 +41,7 @@ _EXIT_CODES = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    """Say which arguments the command takes."""
+    """Add the arguments of the command."""
     add_config(parser)
     add_topics(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
@@ -49,17 +49,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--tolerance-angle', type=float, default=angle, metavar='RAD')
     parser.add_argument('--tolerance-position', type=float, default=position, metavar='M')
     parser.add_argument(
-        '--allow-offset', action='store_true', help='accept a constant offset, as homing leaves it'
+        '--allow-offset', action='store_true', help='accept a constant offset, as after homing'
     )
     parser.add_argument(
         '--strict',
         action='store_true',
-        help='every input needs its output and every output its input, also while the recorder '
-        'subscribed to its topics and where it lost messages',
+        help='judge all messages, even where the recorder may have lost some',
     )
     way = parser.add_mutually_exclusive_group()
     way.add_argument(
-        '--live', action='store_true', help='play the rotor topic through the node, validate that'
+        '--live', action='store_true', help='validate the outputs of a live node instead'
     )
     way.add_argument('--jobs', type=_positive, default=1, metavar='N', help='processes')
     way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
@@ -73,7 +72,7 @@ def _positive(text: str) -> int:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Validate every bag; the worst verdict counts."""
+    """Validate every bag; the worst verdict gives the exit code."""
     tolerances = Tolerances(options.tolerance_angle, options.tolerance_position)
     if not (tolerances.angle >= 0.0 and tolerances.position >= 0.0):
         raise ValueError('a tolerance must not be negative')
@@ -83,7 +82,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for bag in bags:
         config = config_path(options, bag)
         loaded = parameters.load(config, options.node)
-        Mechanism.from_mapping(loaded)  # what is wrong with it is no fault of the bag
+        Mechanism.from_mapping(loaded)  # raises its errors here, not in the report on the bag
         tasks.append(
             Task(
                 bag,
@@ -125,7 +124,7 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
 
 
 def _validate_live(task: Task, progress: ReportProgress) -> BagReport:
-    # Needs ROS, which the validation of a recording does without.
+    # Needs ROS, unlike the validation of a recording.
     from gear_kinematics.ros.replay import live_messages  # noqa: PLC0415
 
     return validate_bag(task, progress, live_messages)

@@ -181,8 +181,8 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ('arguments', 'cause'),
     [
-        (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix of a plot is one of '),
-        (['plot', 'scheme', 'a'], 'a: the suffix of a plot is one of '),
+        (['plot', 'scheme', 'a.xyz'], 'a.xyz: the suffix of a plot must be one of '),
+        (['plot', 'scheme', 'a'], 'a: the suffix of a plot must be one of '),
         (['plot', 'scheme', 'none/a.png'], 'none/a.png: No such file or directory'),
         (
             ['plot', 'scheme', 'a.png', '--angle', 'nan'],

@@ -262,7 +262,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
 @pytest.mark.parametrize(
     ('arguments', 'cause'),
     [
-        (['index'], 'nothing is wanted: give --angle, --degrees, --preload or --phase-b'),
+        (['index'], 'give --angle, --degrees, --preload or --phase-b'),
         (['index', '--preload', '1'], '--preload needs the stiffness of branches and shaft'),
         (['index', '--angle', 'nan'], 'at most a whole turn, not by nan rad'),
         (['index', '--degrees', '361'], 'at most a whole turn, not by 6.30064 rad'),
@@ -272,7 +272,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         (['index', '--angle', '1', '--neighbours', '-1'], 'must be 0 to 1000, not -1'),
         (['index', '--angle', '1', '--backlash', '0.1'], '--branch-stiffness is missing'),
         (['index', '--angle', '1', '--config', 'none.yaml'], 'gearkin: none.yaml: No such file'),
-        (['index', '--angle', '1', '--mirrored'], 'of use with --drawing only'),
+        (['index', '--angle', '1', '--mirrored'], '--mirrored needs --drawing'),
         (['index', '--angle', '1', '--json', '--drawing', '-'], 'not --json and --drawing'),
         (['index', '--angle', '1', '--drawing', 'none/a.svg'], 'none/a.svg: No such file'),
         (['index', '--angle', '1', '--drawing', '.'], 'gearkin: .: Is a directory'),
