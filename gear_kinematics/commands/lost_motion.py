@@ -143,7 +143,7 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
             options.output_counts,
         )
     else:
-        with message_progress(path.name) as told:
+        with message_progress(path.name) as report_progress:
             recording = read_bag(
                 path,
                 config,
@@ -151,7 +151,7 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
                 options.encoder_topic,
                 options.counts,
                 options.output_counts,
-                told,
+                report_progress,
             )
     corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
     return measure(recording, mechanism, options.rated_torque, corners)

@@ -119,8 +119,8 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
             yield from bars.track(reports, total=len(tasks), description='bags')
         return
     for task in tasks:
-        with message_progress(task.bag.name) as told:
-            yield (_validate_live if options.live else validate_bag)(task, told)
+        with message_progress(task.bag.name) as report_progress:
+            yield (_validate_live if options.live else validate_bag)(task, report_progress)
 
 
 def _validate_live(task: Task, progress: ReportProgress) -> BagReport:

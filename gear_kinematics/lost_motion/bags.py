@@ -36,7 +36,7 @@ def read_bag(
 
     Args:
         path: of the bag.
-        parameters: of the node, as `parameters.load` gives them.
+        parameters: of the node, as `parameters.load` returns them.
         rotor_topic: of the rotor's states; None finds it by type and name.
         encoder_topic: of the output's encoder; None finds it by type and name, if recorded.
         counts: steps per turn of the rotor's encoder.

@@ -63,14 +63,14 @@ def compute(
     Args:
         source: an open bag.
         target: the folder to create.
-        parameters: of the node, as `parameters.load` gives them.
+        parameters: of the node, as `parameters.load` returns them.
         rotor_topic: name of the input in the bag.
         output_topic: name of the node's output_state in the bag.
         poses_topic: name of the node's body_poses in the bag.
         topics: other topics to copy; None copies all.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
-        progress: told after each batch, with the messages of the bag if all are read.
+        progress: called after each batch; the total is known if all topics are read.
 
     Raises:
         BagError: if the source lacks a topic, is damaged or has no valid rotor message, or if the
@@ -105,7 +105,7 @@ def compute(
             answered = [rotor[row] for row in samples.row.tolist()]
             computed += len(answered)
             copied += len(messages) - len(rotor)
-            # A stable sort by these puts each output directly behind its rotor message.
+            # A stable sort by these puts each output directly after its rotor message.
             places = [*range(len(messages)), *answered, *answered]
             received = [messages[place][1] for place in answered]
             for state, encoded in state_messages.encode_outputs(samples).items():

@@ -111,9 +111,9 @@ def read_trajectory(
 
     Args:
         path: of the bag.
-        parameters: of the node, as `parameters.load` gives them.
+        parameters: of the node, as `parameters.load` returns them.
         rotor_topic: its name; None: by type and name.
-        progress: told after each batch, with the messages on all topics of the bag.
+        progress: called after each batch; the total counts all topics of the bag.
 
     Returns:
         The motion; missing velocities are derived from the positions.
