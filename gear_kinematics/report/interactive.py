@@ -28,17 +28,6 @@ FEW = 100
 """Most points that are drawn large."""
 _SMALLEST = 1e-300
 """Smallest divisor without overflow."""
-_CURSOR = {
-    'type': 'line',
-    'meta': 'text',
-    'line': {'dash': 'solid'},
-    'x0': 0,
-    'x1': 0,
-    'yref': 'paper',
-    'y0': 0,
-    'y1': 1,
-}
-"""The last of the shapes, which motion.js moves."""
 
 
 def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dict[str, Any]:
@@ -84,7 +73,9 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
     if mechanism:
         turned = {'rotor': mechanism.rotor, 'output': mechanism.output}
         plots['turned'] = {name: _thousandths(angle) for name, angle in turned.items()}
-        layout['shapes'].append(_CURSOR)
+        # motion.js moves this one, the last of the shapes.
+        cursor = _line('x', (0, 0), 'paper', (0, 1), meta='text', line={'dash': 'solid'})
+        layout['shapes'].append(cursor)
     return plots
 
 
@@ -198,58 +189,38 @@ def _decade(value: float) -> int:
 
 
 def _mark(place: float, x: str, k: int) -> dict[str, Any]:
-    return {
-        'type': 'line',
-        'meta': 'faint',
-        'xref': x,
-        'x0': place,
-        'x1': place,
-        'yref': f'y{k} domain',
-        'y0': 0,
-        'y1': 1,
-    }
+    return _line(x, (place, place), f'y{k} domain', (0, 1), meta='faint')
 
 
 def _level(height: float, text: str, k: int) -> dict[str, Any]:
-    return {
-        'type': 'line',
-        'xref': 'paper',
-        'x0': 0,
-        'x1': 1,
-        'yref': f'y{k}',
-        'y0': height,
-        'y1': height,
-        # Inside the plot, where there is always room.
-        'label': {'text': escape(text), 'textposition': 'start', 'yanchor': 'top'},
-    }
+    # Inside the plot, where there is always room.
+    label = {'text': escape(text), 'textposition': 'start', 'yanchor': 'top'}
+    return _line('paper', (0, 1), f'y{k}', (height, height), label=label)
+
+
+def _line(
+    xref: str, x: tuple[float, float], yref: str, y: tuple[float, float], **others: Any
+) -> dict[str, Any]:
+    ends = {'x0': x[0], 'x1': x[1], 'y0': y[0], 'y1': y[1]}
+    return {'type': 'line', 'xref': xref, 'yref': yref, **ends, **others}
 
 
 def _note(place: float, text: str, x: str, k: int) -> dict[str, Any]:
     """Return the text at a mark, along its line."""
-    return {
-        'text': escape(text),
-        'textangle': -90,
-        'xref': x,
-        'x': place,
-        'yref': f'y{k} domain',
-        'y': 0.99,
-        'xanchor': 'right',
-        'yanchor': 'top',
-        'showarrow': False,
-    }
+    return _text(text, x, place, k, 0.99, ('right', 'top')) | {'textangle': -90}
 
 
 def _title(text: str, x: str, k: int) -> dict[str, Any]:
-    return {
-        'text': escape(text),
-        'xref': f'{x} domain',
-        'yref': f'y{k} domain',
-        'x': 0.0,
-        'y': 1.0,
-        'xanchor': 'left',
-        'yanchor': 'bottom',
-        'showarrow': False,
-    }
+    return _text(text, f'{x} domain', 0.0, k, 1.0, ('left', 'bottom'))
+
+
+def _text(
+    text: str, xref: str, x: float, k: int, y: float, anchors: tuple[str, str]
+) -> dict[str, Any]:
+    place = {'xref': xref, 'x': x, 'yref': f'y{k} domain', 'y': y}
+    xanchor, yanchor = anchors
+    alignment = {'xanchor': xanchor, 'yanchor': yanchor, 'showarrow': False}
+    return {'text': escape(text), **place, **alignment}
 
 
 def _rounded(values: Array | Sequence[float], digits: int = 8) -> list[float | None]:
