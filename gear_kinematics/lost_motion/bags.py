@@ -1,6 +1,8 @@
 """Recordings as bags: the rotor's states and, if recorded, the output's encoder."""
 
 from collections.abc import Mapping
+from heapq import merge
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -105,17 +107,14 @@ def _compare(
     measured: tuple[Array, Array],
 ) -> list[ErrorSample]:
     """Feed ideal (stamp, turns, angle) and measured (stamp, angle) in the order of stamps."""
-    coming = zip(*(column.tolist() for column in ideal), strict=True)
     samples: list[ErrorSample] = []
-    waiting = next(coming, None)
-    for stamp, position in zip(*(column.tolist() for column in measured), strict=True):
-        while waiting and waiting[0] <= stamp:
-            samples += comparison.add_ideal(waiting[0], int(waiting[1]), waiting[2])
-            waiting = next(coming, None)
-        samples += comparison.add_measured(stamp, position)
-    while waiting:
-        samples += comparison.add_ideal(waiting[0], int(waiting[1]), waiting[2])
-        waiting = next(coming, None)
+    rows = (zip(*(column.tolist() for column in part), strict=True) for part in (ideal, measured))
+    for stamp, *values in merge(*rows, key=itemgetter(0)):
+        if len(values) == 1:
+            samples += comparison.add_measured(stamp, *values)
+        else:
+            turns, angle = values
+            samples += comparison.add_ideal(stamp, int(turns), angle)
     return samples
 
 
