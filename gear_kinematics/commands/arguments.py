@@ -22,6 +22,13 @@ def positive(text: str) -> float:
     return number
 
 
+def count(text: str) -> int:
+    """Parse an integer of at least 1."""
+    if (number := int(text)) < 1:
+        raise argparse.ArgumentTypeError(f'must be at least 1, not {text}')
+    return number
+
+
 def add_config(parser: argparse.ArgumentParser) -> None:
     """Add the options for the parameters of the node."""
     parser.add_argument(
@@ -110,11 +117,6 @@ def add_sizes(parser: argparse.ArgumentParser) -> None:
     for name in ('eccentricity', 'module'):
         text = f'replaces the parameter {name}, m'
         parser.add_argument(f'--{name}', type=float, metavar='M', help=text)
-
-
-def module(options: argparse.Namespace) -> float:
-    """The module of the teeth given by the options, m."""
-    return float(node_parameters(options)['module'])
 
 
 def add_branch(parser: argparse.ArgumentParser) -> None:

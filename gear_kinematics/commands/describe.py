@@ -10,8 +10,7 @@ from gear_kinematics.commands.arguments import (
     add_mechanism,
     add_report_forms,
     add_sizes,
-    mechanism,
-    module,
+    node_parameters,
 )
 from gear_kinematics.commands.output import Reporter
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
@@ -54,7 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Report the facts."""
     reporter = Reporter(options)
-    described, size = mechanism(options), module(options)
+    config = node_parameters(options)
+    described, size = Mechanism.from_mapping(config), config['module']
     facts = [*_facts(described), *_tooth_facts(described, size)]
     values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)
     section = Section(

@@ -9,6 +9,7 @@ from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import (
     add_config,
     add_report_forms,
+    count,
     load_config,
     positive,
 )
@@ -71,12 +72,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(
         '--counts',
-        type=_counts,
+        type=count,
         metavar='N',
         help='steps per turn of the rotor, or of the angle column (default: from the readings)',
     )
     encoders.add_argument(
-        '--output-counts', type=_counts, metavar='N', help='steps per turn of the output encoder'
+        '--output-counts', type=count, metavar='N', help='steps per turn of the output encoder'
     )
     encoders.add_argument(
         '--travel',
@@ -87,35 +88,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_report_forms(parser)
 
 
-def _counts(text: str) -> int:
-    if (number := int(text)) < 1:
-        raise argparse.ArgumentTypeError(f'must be at least 1, not {text}')
-    return number
-
-
 def run(options: argparse.Namespace) -> ExitCode:
     """Measure every recording, even if others are unusable."""
     reporter = Reporter(options, len(options.recordings))
-    reports, code = [], ExitCode.DONE
+    reports = []
     for path in options.recordings:
         try:
             reports.append(_measure(path, options))
         except (RampError, MotionError) as error:
             complain(f'{path}: {error}')
-            code = ExitCode.UNUSABLE
         except (ValueError, OSError) as error:
             complain(error)
-            code = ExitCode.UNUSABLE
         except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
             complain(f'{path}: {unexpected(error, debug=options.debug)}')
-            code = ExitCode.UNUSABLE
-    for report in reports:
-        if report.recording.error:
-            complain(report.recording.error)
-            code = ExitCode.UNUSABLE
+    damage = [report.recording.error for report in reports if report.recording.error]
+    for text in damage:
+        complain(text)
     if reports:
         reporter.write(document(reports))
-    return code
+    complete = len(reports) == len(options.recordings) and not damage
+    return ExitCode.DONE if complete else ExitCode.UNUSABLE
 
 
 def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:

@@ -11,6 +11,7 @@ from gear_kinematics.commands.arguments import (
     add_report_forms,
     add_topics,
     config_path,
+    count,
 )
 from gear_kinematics.commands.output import (
     Reporter,
@@ -60,15 +61,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
-    way.add_argument('--jobs', type=_positive, default=1, metavar='N', help='processes')
+    way.add_argument('--jobs', type=count, default=1, metavar='N', help='processes')
     way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
     add_report_forms(parser, junit=True)
-
-
-def _positive(text: str) -> int:
-    if (number := int(text)) < 1:
-        raise argparse.ArgumentTypeError(f'must be at least 1, not {number}')
-    return number
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -125,6 +120,6 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
 
 def _validate_live(task: Task, progress: ReportProgress) -> BagReport:
     # Needs ROS, unlike the validation of a recording.
-    from gear_kinematics.ros.replay import live_messages  # noqa: PLC0415
+    from gear_kinematics.ros.live import live_messages  # noqa: PLC0415
 
     return validate_bag(task, progress, live_messages)

@@ -20,10 +20,8 @@ from rclpy.qos import QoSProfile
 from gear_kinematics.bag import Bag, ReportProgress
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.ros.drivers import DEPTH
-from gear_kinematics.ros.live import POLL, ReplayError, live_messages, replay_node
+from gear_kinematics.ros.live import POLL, ReplayError, replay_node
 from gear_kinematics.wire.cdr import SECOND
-
-__all__ = ['Played', 'ReplayError', 'live_messages', 'play', 'stopped_by_signals']
 
 _GRACE = 5.0  # s; subscribers acknowledge messages every 3 s
 
