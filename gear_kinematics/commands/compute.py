@@ -5,8 +5,7 @@ from pathlib import Path
 
 from gear_kinematics.bag import Bag, TopicError, listed
 from gear_kinematics.bag.roles import Topics, find_rotor_topic
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, add_topics, load_config
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.report.document import printable
 from gear_kinematics.state.compute import compute
@@ -16,8 +15,8 @@ HELP = 'write a bag with the outputs for a recorded rotor topic'
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_config(parser)
-    add_topics(parser)
+    arguments.add_config(parser)
+    arguments.add_topics(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     parser.add_argument(
@@ -29,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the bag and print the number of its messages."""
-    config = load_config(options, options.bag)
+    config = arguments.load_config(options, options.bag)
     with Bag(options.bag) as bag, message_progress(options.bag.name) as progress:
         rotor = options.rotor_topic or find_rotor_topic(bag)
         beside = Topics.beside(rotor)

@@ -5,13 +5,7 @@ import math
 from typing import Any, NamedTuple
 
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import (
-    add_mechanism,
-    add_report_forms,
-    add_sizes,
-    node_parameters,
-)
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table, number
@@ -45,15 +39,15 @@ class _Fact(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_mechanism(parser)
-    add_sizes(parser)
-    add_report_forms(parser)
+    arguments.add_mechanism(parser)
+    arguments.add_sizes(parser)
+    arguments.add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Report the facts."""
     reporter = Reporter(options)
-    config = node_parameters(options)
+    config = arguments.node_parameters(options)
     described, size = Mechanism.from_mapping(config), config['module']
     facts = [*_facts(described), *_tooth_facts(described, size)]
     values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)

@@ -7,18 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import (
-    add_mechanism,
-    add_report_forms,
-    add_ring_turn,
-    add_setting,
-    add_stiffness,
-    mechanism,
-    ring_turn,
-    stiffness,
-    within_a_turn,
-)
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, write
 from gear_kinematics.kinematics import vernier
 from gear_kinematics.kinematics.preload import Preload, ring_phase
@@ -75,9 +64,9 @@ class _Answer(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_mechanism(parser)
+    arguments.add_mechanism(parser)
     ways = parser.add_mutually_exclusive_group()
-    add_ring_turn(ways)
+    arguments.add_ring_turn(ways)
     ways.add_argument(
         '--preload',
         type=float,
@@ -87,18 +76,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--phase-b', action='store_true', help='add the turn for the cam phase of branch B'
     )
-    add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
+    arguments.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
     parser.add_argument(
         '--neighbours', type=int, default=3, metavar='N', help='on either side (default: 3)'
     )
-    add_report_forms(parser)
+    arguments.add_report_forms(parser)
     parser.add_argument(
         '--drawing', metavar='FILE', help='draw the holes as SVG on a page of A4 (-: stdout)'
     )
     parser.add_argument(
         '--mirrored', action='store_true', help='draw as seen along the z axis, not against it'
     )
-    add_stiffness(parser)
+    arguments.add_stiffness(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -119,13 +108,18 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _answer(options: argparse.Namespace) -> _Answer:
-    known, bracing, backlash = stiffness(options), ring_turn(options), options.backlash or 0.0
+    known, bracing = arguments.stiffness(options), arguments.ring_turn(options)
+    backlash = options.backlash or 0.0
     if bracing is None and options.preload is None and not options.phase_b:
         raise ValueError('give --angle, --degrees, --preload or --phase-b')
     if not 0 <= options.neighbours <= _MAX_NEIGHBOURS:
         raise ValueError(f'--neighbours must be 0 to {_MAX_NEIGHBOURS}, not {options.neighbours}')
     # The vernier alone does not depend on the satellite.
-    pair = mechanism(options) if known or options.phase_b or not options.ring_teeth else None
+    pair = (
+        arguments.mechanism(options)
+        if known or options.phase_b or not options.ring_teeth
+        else None
+    )
     ring_teeth = pair.ring_teeth if pair else options.ring_teeth
     phase = ring_phase(pair) if pair and options.phase_b else None
     if options.preload is not None:
@@ -134,7 +128,7 @@ def _answer(options: argparse.Namespace) -> _Answer:
         wanted = Preload.from_torque(known, abs(options.preload))
         bracing = math.copysign(wanted.ring_turn(pair, backlash), options.preload)
     in_phase = phase or 0.0
-    wanted_turn = within_a_turn(in_phase + (bracing or 0.0))
+    wanted_turn = arguments.within_a_turn(in_phase + (bracing or 0.0))
 
     def preload(turn: float) -> float | None:
         if not (pair and known):

@@ -5,14 +5,7 @@ import math
 from pathlib import Path
 
 from gear_kinematics.bag.errors import unexpected
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import (
-    add_config,
-    add_report_forms,
-    count,
-    load_config,
-    positive,
-)
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.lost_motion import Columns, LostMotionReport, measure, read_bag, read_csv
@@ -30,16 +23,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     shares = ' and '.join(f'{100.0 * share:g}' for share in STIFFNESS_SHARES)
     parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
-    add_config(parser)
+    arguments.add_config(parser)
     parser.add_argument(
         '--rated-torque',
-        type=positive,
+        type=arguments.positive,
         metavar='N·m',
         help='at the output (default: the amplitude of the largest ramps)',
     )
     parser.add_argument(
         '--stiffness-torques',
-        type=positive,
+        type=arguments.positive,
         nargs='+',
         metavar='N·m',
         help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
@@ -65,27 +58,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         topics.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
     topics.add_argument(
         '--max-gap',
-        type=positive,
+        type=arguments.positive,
         metavar='S',
         help='between interpolated rotor states (default: transmission_error_max_gap)',
     )
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(
         '--counts',
-        type=count,
+        type=arguments.count,
         metavar='N',
         help='steps per turn of the rotor, or of the angle column (default: from the readings)',
     )
     encoders.add_argument(
-        '--output-counts', type=count, metavar='N', help='steps per turn of the output encoder'
+        '--output-counts',
+        type=arguments.count,
+        metavar='N',
+        help='the same of the output encoder',
     )
     encoders.add_argument(
         '--travel',
-        type=positive,
+        type=arguments.positive,
         metavar='DEG',
         help='of the output that confirms a reversal (default: transmission_error_travel)',
     )
-    add_report_forms(parser)
+    arguments.add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -111,7 +107,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
-    config = load_config(options, path)
+    config = arguments.load_config(options, path)
     if options.max_gap is not None:
         config['transmission_error_max_gap'] = options.max_gap
     if options.travel is not None:

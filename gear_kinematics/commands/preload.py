@@ -8,18 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import (
-    add_mechanism,
-    add_report_forms,
-    add_ring_turn,
-    add_setting,
-    add_stiffness,
-    mechanism,
-    ring_turn,
-    stiffness,
-    within_a_turn,
-)
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter
 from gear_kinematics.kinematics import Mechanism, vernier
 from gear_kinematics.kinematics.preload import Preload, braced
@@ -66,22 +55,22 @@ class _Answer(NamedTuple):
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_mechanism(parser)
+    arguments.add_mechanism(parser)
     ways = parser.add_mutually_exclusive_group(required=True)
-    add_ring_turn(ways)
-    add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
+    arguments.add_ring_turn(ways)
+    arguments.add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
     ways.add_argument(
         '--wanted-preload', type=float, metavar='N·m', help='of both branches without a load'
     )
     ways.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
+    arguments.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
     parser.add_argument(
         '--max-load', type=float, metavar='N·m', help='range of table and plot, on either side'
     )
-    add_report_forms(parser)
-    add_stiffness(parser)
+    arguments.add_report_forms(parser)
+    arguments.add_stiffness(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -104,7 +93,8 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _answer(options: argparse.Namespace) -> _Answer:
-    pair, known, backlash = mechanism(options), stiffness(options), options.backlash or 0.0
+    pair, known = arguments.mechanism(options), arguments.stiffness(options)
+    backlash = options.backlash or 0.0
     if known is None:
         raise ValueError('the stiffness of branches and shaft is missing; see --help')
     start = vernier.pin_setting(pair.ring_teeth, *(options.start or (0, 0, 0)))
@@ -117,8 +107,8 @@ def _answer(options: argparse.Namespace) -> _Answer:
         elif options.wanted_threshold is not None:
             turn = Preload.from_limit(known, options.wanted_threshold).ring_turn(pair, backlash)
         else:
-            turn = ring_turn(options) or 0.0
-        turn = within_a_turn(turn)
+            turn = arguments.ring_turn(options) or 0.0
+        turn = arguments.within_a_turn(turn)
         [nearest] = vernier.choices(pair.ring_teeth, turn, start)
         setting, pinned_turn = nearest.settings[0], nearest.ring_turn
     preload, pinned = (

@@ -2,8 +2,7 @@
 
 import argparse
 
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import add_config, load_config
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.shape.urdf import urdf
 
@@ -12,12 +11,12 @@ HELP = 'print the URDF'
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_config(parser)
+    arguments.add_config(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Print the URDF."""
-    config = load_config(options)
+    config = arguments.load_config(options)
     names = {name: config[name] for name in ('module', 'output_joint', 'frame_prefix')}
     print(urdf(Mechanism.from_mapping(config), **names), end='')
     return ExitCode.DONE

@@ -5,14 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from gear_kinematics.bag import ReportProgress
 from gear_kinematics.bag.finding import find_bags
-from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.arguments import (
-    add_config,
-    add_report_forms,
-    add_topics,
-    config_path,
-    count,
-)
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import (
     Reporter,
     complain,
@@ -43,8 +36,8 @@ _EXIT_CODES = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_config(parser)
-    add_topics(parser)
+    arguments.add_config(parser)
+    arguments.add_topics(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     angle, position = Tolerances()
     parser.add_argument('--tolerance-angle', type=float, default=angle, metavar='RAD')
@@ -61,9 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
-    way.add_argument('--jobs', type=count, default=1, metavar='N', help='processes')
+    way.add_argument('--jobs', type=arguments.count, default=1, metavar='N', help='processes')
     way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
-    add_report_forms(parser, junit=True)
+    arguments.add_report_forms(parser, junit=True)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -75,7 +68,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     reporter = Reporter(options, len(bags))
     tasks = []
     for bag in bags:
-        config = config_path(options, bag)
+        config = arguments.config_path(options, bag)
         loaded = parameters.load(config, options.node)
         Mechanism.from_mapping(loaded)  # raises its errors here, not in the report on the bag
         tasks.append(
