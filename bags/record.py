@@ -16,10 +16,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from gear_kinematics.bag import write_bag
+from gear_kinematics.bag import BagWriter
 from gear_kinematics.ros.live import Replay, running_node
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.wire.cdr import JointStateTemplate
+from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _COUNTS = 2**20  # of the encoder, per turn
 _INERTIA = 2.0e-4  # kg m², of the rotor and what it moves
@@ -174,7 +175,11 @@ def record(path: Path, scenario: Scenario) -> None:
             lambda: sum(topic == '/rotor_state' for topic, *_ in replay.received) == sent, 5.0
         )
         replay.receive_until(time.monotonic() + 0.5)  # what the node still answers
-        write_bag(path, replay.received, storage=scenario.storage)
+        compression: Literal['zstd', 'none'] = 'zstd' if scenario.storage == 'mcap' else 'none'
+        with BagWriter(path, scenario.storage, compression) as writer:
+            for topic, message_type in RECORDED_TOPICS.items():
+                writer.add_topic(topic, message_type)
+            writer.write_all(replay.received)
 
 
 if __name__ == '__main__':

@@ -26,7 +26,7 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
-from gear_kinematics.bag import Message, read_bag, write_bag
+from gear_kinematics.bag import Bag, BagWriter, Message, in_batches
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.state.share import share_directory
@@ -51,13 +51,13 @@ def main() -> None:
         results = {}
         for storage in ('mcap', 'sqlite3'):
             bag = Path(folder, storage)
-            write_bag(bag, repeated(options.messages), storage=storage)
+            write_repeated(bag, options.messages, storage)
             ways = {way: partial(run, bag) for way, run in _ways(storage).items()}
             seconds, ratios = compare(ways, options.rounds)
             results[storage] = {'validate': seconds, **ratios}
         if options.memory:
             bag = Path(folder, 'large')
-            write_bag(bag, repeated(options.memory), storage='mcap')
+            write_repeated(bag, options.memory, 'mcap')
             results['memory'] = _memory(bag)
     if options.json:
         print(json.dumps(results, indent=2))
@@ -71,9 +71,19 @@ def main() -> None:
         print(f'{options.memory} messages: peak of resident memory {results["memory"]:.0f} MB')
 
 
+def write_repeated(path: Path, count: int, storage: str) -> None:
+    """Write a bag of `repeated` messages, compressed where the storage has chunks."""
+    with BagWriter(path, storage, 'zstd' if storage == 'mcap' else 'none') as writer:
+        for topic, message_type in RECORDED_TOPICS.items():
+            writer.add_topic(topic, message_type)
+        for batch in in_batches(repeated(count)):
+            writer.write_all(batch)
+
+
 def repeated(count: int) -> Iterator[Message]:
     """Give a number of messages of the source, repeated with stamps that go on."""
-    source = list(read_bag(share_directory() / 'bags' / _SOURCE, RECORDED_TOPICS))
+    with Bag(share_directory() / 'bags' / _SOURCE) as bag:
+        source = list(bag.messages(RECORDED_TOPICS))
     # Whole sets: an input without its outputs would be a failure.
     for number in range(count - count % len(RECORDED_TOPICS)):
         repetition, index = divmod(number, len(source))

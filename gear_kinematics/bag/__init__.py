@@ -10,12 +10,11 @@ from gear_kinematics.bag.reading import (
     ReportProgress,
     TopicMessages,
     in_batches,
-    read_bag,
     sort_by_topic,
 )
 from gear_kinematics.bag.storage import Message
 from gear_kinematics.bag.topics import Topic, listed
-from gear_kinematics.bag.writing import BagWriter, write_bag
+from gear_kinematics.bag.writing import BagWriter
 
 __all__ = [
     'Bag',
@@ -29,7 +28,5 @@ __all__ = [
     'TopicMessages',
     'in_batches',
     'listed',
-    'read_bag',
     'sort_by_topic',
-    'write_bag',
 ]

@@ -183,18 +183,6 @@ class Bag:
             read += storage.read
 
 
-def read_bag(path: Path, topics: Collection[str]) -> Iterator[Message]:
-    """Read the messages of a bag on topics, all of which must exist.
-
-    Raises:
-        BagError: if a topic is missing or the bag cannot be read; see `Bag.messages`.
-    """
-    with Bag(path) as bag:
-        for topic in topics:
-            bag.type_of(topic)
-        yield from bag.messages(topics)
-
-
 def in_batches(
     messages: Iterable[Message],
     size: int = _BATCH,

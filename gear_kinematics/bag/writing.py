@@ -3,7 +3,7 @@
 import shutil
 import sqlite3
 import tempfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
@@ -22,13 +22,11 @@ from rosbags.rosbag2.metadata import parse_qos
 
 from gear_kinematics.bag.contents import parse_yaml
 from gear_kinematics.bag.errors import BagError, TopicError, bag_errors, cause
-from gear_kinematics.bag.reading import Bag, in_batches
+from gear_kinematics.bag.reading import Bag
 from gear_kinematics.bag.storage import Message
 from gear_kinematics.bag.storage_writers import BulkWriter
 from gear_kinematics.bag.topics import Topic, as_ros2, jazzy_definition
-from gear_kinematics.wire.topics import RECORDED_TOPICS
 
-_BATCH = 1024  # messages
 _MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
 _FOREVER = QosTime(9223372036, 854775807)
 _RELIABLE = Qos(
@@ -178,23 +176,3 @@ class BagWriter:
         if self._entries > _MAX_ENTRIES:
             raise ValueError(f'there are more than {_MAX_ENTRIES} topics and QoS profiles')
         self._numbers[topic.name] = self._writer.add_topic(topic, qos)
-
-
-def write_bag(
-    path: Path, messages: Iterable[Message], *, storage: Literal['mcap', 'sqlite3'] = 'mcap'
-) -> None:
-    """Write a rosbag2 recording; chunks of mcap files are compressed with zstd.
-
-    Args:
-        path: the folder to create, in an existing one.
-        messages: on topics of `RECORDED_TOPICS`.
-        storage: format of the files.
-
-    Raises:
-        BagError: if it cannot be written.
-    """
-    with BagWriter(path, storage, 'zstd' if storage == 'mcap' else 'none') as writer:
-        for topic, message_type in RECORDED_TOPICS.items():
-            writer.add_topic(topic, message_type)
-        for batch in in_batches(messages, _BATCH):
-            writer.write_all(batch)
