@@ -1,8 +1,6 @@
 """Recordings as bags: the rotor's states and, if recorded, the output's encoder."""
 
 from collections.abc import Mapping
-from heapq import merge
-from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +16,6 @@ from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSamples
-from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
@@ -71,21 +68,21 @@ def read_bag(
     rotor_step = step_of(counts, positions) / abs(ratio)
     motion = None
     columns = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
-    errors: list[ErrorSample] = []
     if encoder:
         settings = EncoderSettings.from_mapping(parameters)
         states = decode_joint_states(messages[encoder].data, settings.output_encoder_joint)
-        comparison = settings.comparison()
         usable = ~states.malformed & states.present[:, 0]
         measured = settings.output_angle(states.values[usable, 0])
-        ideal = (samples.stamp, turns, angle)
-        errors = _compare(comparison, ideal, (states.stamp[usable], measured))
         readings = states.values[:, 0][np.isfinite(states.values[:, 0])]
-        motion = Motion.from_samples(
-            errors, comparison.unmatched, rotor_step, step_of(output_counts, readings)
+        motion = Motion.from_angles(
+            settings.comparison(),
+            (samples.stamp, turns, angle),
+            (states.stamp[usable], measured),
+            rotor_step,
+            step_of(output_counts, readings),
         )
         columns.append(f'output {encoder}, rad')
-    loading = _loading(samples, ratio, turns, angle, errors, rotor_step, motion)
+    loading = _loading(samples, ratio, turns, angle, rotor_step, motion)
     if loading:
         columns.append(f'torque: effort of {rotor} × {ratio:g}, N·m')
     elif not motion:
@@ -101,29 +98,11 @@ def read_bag(
     )
 
 
-def _compare(
-    comparison: TransmissionError,
-    ideal: tuple[Array, Array, Array],
-    measured: tuple[Array, Array],
-) -> list[ErrorSample]:
-    """Feed ideal (stamp, turns, angle) and measured (stamp, angle) in the order of stamps."""
-    samples: list[ErrorSample] = []
-    rows = (zip(*(column.tolist() for column in part), strict=True) for part in (ideal, measured))
-    for stamp, *values in merge(*rows, key=itemgetter(0)):
-        if len(values) == 1:
-            samples += comparison.add_measured(stamp, *values)
-        else:
-            turns, angle = values
-            samples += comparison.add_ideal(stamp, int(turns), angle)
-    return samples
-
-
 def _loading(
     samples: RotorSamples,
     ratio: float,
     turns: Array,
     angle: Array,
-    errors: list[ErrorSample],
     rotor_step: float,
     motion: Motion | None,
 ) -> Loading | None:
@@ -136,6 +115,5 @@ def _loading(
         twist = (turns - turns[0])[known] * TURN + angle[known]
         return Loading(torque, twist, rotor_step, measured=False)
     start = samples.stamp[0]
-    stamps = np.array([error.stamp for error in errors]) - start
-    torque = np.interp(stamps, samples.stamp[known] - start, torque)
+    torque = np.interp(motion.stamp - start, samples.stamp[known] - start, torque)
     return Loading.of_gear(torque, motion)

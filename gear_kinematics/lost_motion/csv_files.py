@@ -214,16 +214,12 @@ def _motion(
     output_counts: int | None,
 ) -> Motion:
     """Compare rotor and output row by row; a row was sampled at one time."""
-    comparison = TransmissionError(max_gap=1, travel=travel)
     turns, angle = closed_form(mechanism).output_angle(*split_turns(data['rotor']), np)
-    samples = []
-    rows = zip(turns.tolist(), angle.tolist(), data['output'].tolist(), strict=True)
-    for row, (whole, rest, output) in enumerate(rows):
-        samples += comparison.add_ideal(row, int(whole), rest)
-        samples += comparison.add_measured(row, output)
-    return Motion.from_samples(
-        samples,
-        comparison.unmatched,
+    row = np.arange(len(angle))
+    return Motion.from_angles(
+        TransmissionError(max_gap=1, travel=travel),
+        (row, turns, angle),
+        (row, data['output']),
         step_of(counts, data['rotor']) / abs(float(mechanism.gear_ratio)),
         step_of(output_counts, data['output']),
     )

@@ -7,7 +7,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from heapq import merge
 from itertools import pairwise
+from operator import itemgetter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +18,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
-from gear_kinematics.state.transmission_error import ErrorSample
+from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
 
 Array = NDArray[np.float64]
 
@@ -41,6 +44,8 @@ class MotionError(ValueError):
 class Motion:
     """The transmission error as it was recorded, (n,) each, in the order of time."""
 
+    stamp: NDArray[np.int64]
+    """ns."""
     angle: Array
     """Ideal output angle, rad, counted from the first turn."""
     error: Array
@@ -55,27 +60,36 @@ class Motion:
     """rad, the same of the output's encoder."""
 
     @classmethod
-    def from_samples(
+    def from_angles(
         cls,
-        samples: Sequence[ErrorSample],
-        unmatched: Mapping[str, int],
+        comparison: TransmissionError,
+        ideal: tuple[NDArray[Any], NDArray[Any], NDArray[Any]],
+        measured: tuple[NDArray[Any], NDArray[Any]],
         rotor_step: float,
         output_step: float,
     ) -> 'Motion':
-        """Convert samples to arrays.
+        """Compare ideal (stamp, turns, angle) with measured (stamp, angle), in order of stamps.
 
         Raises:
-            MotionError: if there are none.
+            MotionError: if there is nothing to compare.
         """
+        stamps, turns, angles = ideal
+        columns = (stamps, turns.astype(np.int64), angles), measured
+        rows = (zip(*(column.tolist() for column in c), strict=True) for c in columns)
+        samples: list[ErrorSample] = []
+        for stamp, *angle in merge(*rows, key=itemgetter(0)):
+            add: Any = comparison.add_ideal if len(angle) > 1 else comparison.add_measured
+            samples += add(stamp, *angle)
         if not samples:
-            causes = ', '.join(f'{cause} {count}' for cause, count in unmatched.items())
+            causes = ', '.join(f'{cause} {count}' for cause, count in comparison.unmatched.items())
             raise MotionError(f'no output angle could be matched with the rotor: {causes}')
         first = samples[0].turns
         return cls(
+            np.array([s.stamp for s in samples]),
             np.array([(s.turns - first) * TURN + s.ideal for s in samples]),
             np.array([s.error for s in samples]),
             np.array([s.direction for s in samples], np.int8),
-            dict(unmatched),
+            dict(comparison.unmatched),
             rotor_step,
             output_step,
         )

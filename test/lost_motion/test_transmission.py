@@ -154,7 +154,8 @@ def test_coarse_samples_resolve_no_high_orders(actuator):
 
 def motion(angle: np.ndarray, error: np.ndarray) -> Motion:
     direction = np.ones(len(angle), np.int8)
-    return Motion(angle, error, direction, {}, rotor_step=0.0, output_step=0.0)
+    stamp = np.arange(len(angle))
+    return Motion(stamp, angle, error, direction, {}, rotor_step=0.0, output_step=0.0)
 
 
 @pytest.mark.slow
