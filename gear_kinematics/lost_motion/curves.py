@@ -5,9 +5,9 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
+from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.ramps import HalfLoop, Ramps
-from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
+from gear_kinematics.lost_motion.report import LostMotionReport
 from gear_kinematics.lost_motion.transmission import Order
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, arc_minutes, torque
 from gear_kinematics.report.document import Array, Line, Panel, Pen
@@ -25,15 +25,13 @@ def panels(report: LostMotionReport) -> list[Panel]:
 
 
 def _hysteresis(report: LostMotionReport) -> Iterator[Panel]:
-    found = report.hysteresis
-    if found:
-        for index in range(len(found.ramps)):
-            yield _ramp_panel(found, index)
+    if found := report.hysteresis:
+        for ramps, figures in zip(found.ramps, found.figures, strict=True):
+            yield _ramp_panel(ramps, figures, found.settings.rated_torque)
 
 
-def _ramp_panel(found: HysteresisReport, index: int) -> Panel:
-    ramps, figures = found.ramps[index], found.figures[index]
-    centre = _centre(ramps)
+def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
+    centre = float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
     lines = []
     for loop in ramps.loops:
         lines.append(_half_loop('torque rising', Pen.FIRST, loop.rise, centre, ramps))
@@ -41,7 +39,7 @@ def _ramp_panel(found: HysteresisReport, index: int) -> Panel:
     if model := figures.play_model:
         load, angle = model.loop(ramps.amplitude)
         lines.append(Line('play model', Pen.MODEL, load, (angle - centre) * ARC_MINUTES))
-    at = LOST_MOTION_SHARE * found.settings.rated_torque
+    at = LOST_MOTION_SHARE * rated_torque
     width = arc_minutes(figures.hysteresis)
     return Panel(
         f'ramps to {torque(ramps.amplitude)} N·m: hysteresis {width} arcmin',
@@ -50,10 +48,6 @@ def _ramp_panel(found: HysteresisReport, index: int) -> Panel:
         tuple(lines),
         marks=((-at, ''), (0.0, ''), (at, '')),
     )
-
-
-def _centre(ramps: Ramps) -> float:
-    return float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
 
 
 def _half_loop(name: str, pen: Pen, half: HalfLoop, centre: float, ramps: Ramps) -> Line:

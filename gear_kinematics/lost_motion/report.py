@@ -7,7 +7,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.lost_motion import hysteresis, transmission
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
 from gear_kinematics.lost_motion.ramps import RampError, Ramps, find_ramps
-from gear_kinematics.lost_motion.recording import Recording
+from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.lost_motion.transmission import TransmissionFigures
 
 
@@ -64,13 +64,12 @@ def measure(
         RampError, MotionError: if nothing can be measured.
     """
     remarks = list(recording.remarks)
-    found = None
-    if recording.motion:
-        found = transmission.figures(recording.motion, mechanism)
-    ramps: HysteresisReport | None = None
+    motion = recording.motion
+    found = transmission.figures(motion, mechanism) if motion else None
+    ramps = None
     if recording.loading:
         try:
-            ramps = _hysteresis(recording, rated_torque, corners)
+            ramps = _hysteresis(recording.loading, rated_torque, corners)
         except RampError as error:
             if not found:
                 raise
@@ -79,11 +78,8 @@ def measure(
 
 
 def _hysteresis(
-    recording: Recording, rated_torque: float | None, corners: tuple[float, ...] | None
+    loading: Loading, rated_torque: float | None, corners: tuple[float, ...] | None
 ) -> HysteresisReport:
-    loading = recording.loading
-    if loading is None:
-        raise RampError('no torque in it')
     ramps = find_ramps(loading.torque, loading.angle)
     rated = ramps[-1].amplitude if rated_torque is None else rated_torque
     if corners is None:
