@@ -89,6 +89,10 @@ class RotorSamples(NamedTuple):
     """(m,), ns: the stamps of rejected messages that have one."""
 
 
+_COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8')
+"""Of `RotorSamples`, without the last."""
+
+
 class RotorInput:
     """Processes rotor_state messages and counts what is wrong with them."""
 
@@ -236,8 +240,7 @@ class RotorInput:
     def _one_by_one(
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
-        taken: list[RotorSample] = []
-        columns: list[tuple[int, int, int]] = []  # row, received, stretch
+        taken: list[tuple[Any, ...]] = []
         disordered: list[int] = []
         for row, stamp, numbers, now in zip(
             rows.tolist(), stamps.tolist(), values.tolist(), received.tolist(), strict=True
@@ -248,24 +251,12 @@ class RotorInput:
                 self.rejected[str(rejection)] += 1
                 disordered.append(stamp)
                 continue
-            taken.append(sample)
-            columns.append((row, now, self._stretch))
-        count = len(taken)
-        # None becomes NaN.
-        motion = [(*sample.position, sample.velocity, sample.effort) for sample in taken]
-        turns, angle, velocity, effort = np.array(motion, np.float64).reshape(count, 4).T
-        row_of, clock, stretch = np.array(columns, np.int64).reshape(count, 3).T
-        return RotorSamples(
-            np.array([sample.stamp for sample in taken], np.int64),
-            turns,
-            angle,
-            velocity,
-            effort,
-            row_of,
-            clock,
-            stretch,
-            np.append(rejected, np.array(disordered, np.int64)),
-        )
+            motion = *sample.position, sample.velocity, sample.effort
+            taken.append((sample.stamp, *motion, row, now, self._stretch))
+        table = np.array(taken, _COLUMNS)  # None becomes NaN
+        columns = [table[name].copy() for name in table.dtype.names or ()]
+        rejected = np.append(rejected, np.array(disordered, np.int64))
+        return RotorSamples._make([*columns, rejected])
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
         position, velocity, effort = row
