@@ -54,7 +54,8 @@ class StateMessages:
                 continue
             branches = branches or self._form.branches(angle, output_rest, math)
             if topic == BODY_POSES:
-                yield topic, self._poses(sample, output_rest, branches)
+                numbers = self._pose_numbers(output_rest, branches, math)
+                yield topic, self._body_poses.encode(sample.stamp, numbers)
             else:
                 yield topic, self._joint_state(sample, output_angle, branches)
 
@@ -99,12 +100,6 @@ class StateMessages:
         if present[1]:
             numbers.append(self._ratio * effort)
         return numbers
-
-    def _poses(
-        self, sample: RotorSample, output_angle: float, branches: Sequence[BranchPosition]
-    ) -> bytes:
-        numbers = self._pose_numbers(output_angle, branches, math)
-        return self._body_poses.encode(sample.stamp, numbers)
 
     def _pose_numbers(
         self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
