@@ -48,9 +48,7 @@ class InputMonitor:
     graph: GraphFaults = field(default_factory=GraphFaults)
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
-    _received: int = 0
-    _lost: int = 0
-    _unsent: int = 0
+    _counts: Counter[str] = field(default_factory=Counter)
     _rejected: Counter[str] = field(default_factory=Counter)
 
     def report(
@@ -65,12 +63,12 @@ class InputMonitor:
             now: s.
         """
         elapsed = now - max(self._reported, self.started)
-        rate = (rotor_input.received - self._received) / elapsed if elapsed > 0.0 else 0.0
+        counts = Counter(received=rotor_input.received, lost=self.lost, unsent=self.unsent)
+        new = counts - self._counts
         newly_rejected = rotor_input.rejected - self._rejected
-        self._reported, self._received = now, rotor_input.received
+        self._reported, self._counts = now, counts
         self._rejected = Counter(rotor_input.rejected)
-        newly_lost, self._lost = self.lost - self._lost, self.lost
-        newly_unsent, self._unsent = self.unsent - self._unsent, self.unsent
+        rate = new['received'] / elapsed if elapsed > 0.0 else 0.0
 
         age = now - (self.started if self.last_input is None else self.last_input)
         errors, warnings = [], []
@@ -81,10 +79,10 @@ class InputMonitor:
         errors += self.graph.errors
         if newly_rejected:
             warnings.append(_rejections(newly_rejected))
-        if newly_lost:
-            warnings.append(f'lost {newly_lost}')
-        if newly_unsent:
-            warnings.append(f'not sent {newly_unsent}')
+        if new['lost']:
+            warnings.append(f'lost {new["lost"]}')
+        if new['unsent']:
+            warnings.append(f'not sent {new["unsent"]}')
         if self.drivers > 1:
             warnings.append(f'{self.drivers} drivers')
         warnings += self.graph.warnings
@@ -93,7 +91,7 @@ class InputMonitor:
             'rate (Hz)': f'{rate:.1f}',
             'received': str(rotor_input.received),
             'published': str(self.published),
-            **{f'rejected: {cause}': str(n) for cause, n in sorted(rotor_input.rejected.items())},
+            **_by_cause('rejected', rotor_input.rejected),
             'lost messages': str(self.lost),
             'not sent': str(self.unsent),
             'drivers': str(self.drivers),
@@ -134,10 +132,11 @@ class EncoderMonitor:
         if self.last_input is None:
             return None
         age = now - self.last_input
-        silent, compared = age > timeout, encoder.compared != self._compared
+        matched = encoder.comparison.matched
+        silent, compared = age > timeout, matched != self._compared
         newly_rejected = encoder.rejected - self._rejected
         newly_lost, self._lost = self.lost - self._lost, self.lost
-        self._compared, self._rejected = encoder.compared, Counter(encoder.rejected)
+        self._compared, self._rejected = matched, Counter(encoder.rejected)
 
         warnings = []
         if silent:
@@ -155,12 +154,9 @@ class EncoderMonitor:
             warnings.append(f'peak to peak {peak_to_peak:.3g} rad')
         values = {
             'received': str(encoder.received),
-            'compared': str(encoder.compared),
-            **{f'rejected: {cause}': str(n) for cause, n in sorted(encoder.rejected.items())},
-            **{
-                f'not compared: {cause}': str(n)
-                for cause, n in sorted(encoder.not_compared.items())
-            },
+            'compared': str(matched),
+            **_by_cause('rejected', encoder.rejected),
+            **_by_cause('not compared', encoder.comparison.unmatched),
             'lost messages': str(self.lost),
             'age of last input (s)': f'{age:.3f}',
             'samples': str(len(window.both)),
@@ -175,6 +171,10 @@ class EncoderMonitor:
 
 def _rejections(counts: Counter[str]) -> str:
     return f'rejected: {", ".join(f"{cause} {count}" for cause, count in counts.items())}'
+
+
+def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:
+    return {f'{what}: {cause}': str(count) for cause, count in sorted(counts.items())}
 
 
 def _number(value: float | None) -> str:

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -48,18 +48,9 @@ class OutputEncoder:
         self._settings = settings
         self._reader = JointReader(settings.output_encoder_joint)
         self._form = closed_form(mechanism)
-        self._comparison = settings.comparison()
+        self.comparison = settings.comparison()
+        """Counts the measured angles that were compared, and those that were not by cause."""
         self._last = 0
-
-    @property
-    def compared(self) -> int:
-        """Number of measured angles that were compared."""
-        return self._comparison.matched
-
-    @property
-    def not_compared(self) -> Mapping[str, int]:
-        """Numbers of measured angles that were not compared, by cause."""
-        return self._comparison.unmatched
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message.
@@ -81,12 +72,12 @@ class OutputEncoder:
             self.rejected[str(rejection)] += 1
             raise
         angle = self._settings.output_angle(position)
-        return self._note(self._comparison.add_measured(stamp or now(), angle))
+        return self._note(self.comparison.add_measured(stamp or now(), angle))
 
     def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:
         """Process the rotor's next sample, with known turns; returns the same as `accept`."""
         turns, angle = self._form.output_angle(*sample.position, math)
-        return self._note(self._comparison.add_ideal(sample.stamp, turns, angle))
+        return self._note(self.comparison.add_ideal(sample.stamp, turns, angle))
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
         for sample in samples:

@@ -62,8 +62,8 @@ def test_error_is_the_measured_minus_the_ideal_angle(actuator, direction, zero):
     # A third of a millisecond is rounded by a third of a nanosecond: 0.3 rad / 19 / 3e6.
     assert [sample.stamp for sample in found] == [START + k * MS + MS // 3 for k in range(1999)]
     np.testing.assert_allclose([s.error for s in found], put_in[:-1], rtol=0, atol=1e-8)
-    assert bench.encoder.compared == 1999
-    assert bench.encoder.not_compared == {'no ideal angle before': 1}
+    assert bench.encoder.comparison.matched == 1999
+    assert bench.encoder.comparison.unmatched == {'no ideal angle before': 1}
 
 
 def test_nothing_is_reported_without_an_encoder(bench):
@@ -79,7 +79,7 @@ def test_nothing_is_compared_across_a_gap(bench):
     assert len(bench.measure(START + 50 * MS, 0.0)) == 1
     assert len(bench.measure(START + 150 * MS, 0.0)) == 0
     assert len(bench.turn(START + 201 * MS, 0.0)) == 0
-    assert bench.encoder.not_compared['gap of the ideal angle'] == 1
+    assert bench.encoder.comparison.unmatched['gap of the ideal angle'] == 1
 
 
 def test_joint_is_looked_up_by_its_name(actuator):
