@@ -78,7 +78,6 @@ class Descriptions:
     """Bounds the descriptions of topics and types, which are all kept in memory."""
 
     def __init__(self) -> None:
-        """Start with none."""
         self._size = 0
 
     def add(self, size: int) -> None:

@@ -29,7 +29,6 @@ class Drawings:
     """The mechanisms of a page, which contains each common shape once."""
 
     def __init__(self) -> None:
-        """Start with none."""
         self._names: dict[str, str] = {}  # of the shapes, by their paths
 
     def moving(self, mechanism: MovingMechanism, figure: str) -> Iterator[str]:

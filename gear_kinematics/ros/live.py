@@ -174,7 +174,6 @@ class Replay:
             )
 
     def __enter__(self) -> Self:
-        """Start."""
         return self
 
     def __exit__(self, *_: object) -> None:

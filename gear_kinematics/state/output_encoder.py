@@ -41,7 +41,6 @@ class OutputEncoder:
     """Compares the angles of output_encoder messages with the ideal output angle."""
 
     def __init__(self, mechanism: Mechanism, settings: EncoderSettings) -> None:
-        """Start with no samples."""
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.window = ErrorWindow(round(settings.transmission_error_window * SECOND))

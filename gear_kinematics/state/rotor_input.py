@@ -97,7 +97,6 @@ class RotorInput:
     """Processes rotor_state messages and counts what is wrong with them."""
 
     def __init__(self, settings: InputSettings) -> None:
-        """Start with no position."""
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.duplicates = 0

@@ -178,7 +178,6 @@ class SlidingStatistics:
     """Mean and peak-to-peak value of a sliding window; adding takes amortised constant time."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self._values: deque[tuple[int, int]] = deque()
         self._sum = 0
         # Values that are greater, or less, than all later ones.

@@ -31,7 +31,6 @@ class Window:
     """The samples with which messages can still be matched; columns by name, (n, ...)."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self.columns: Columns = {}
 
     def __len__(self) -> int:
@@ -58,7 +57,6 @@ class Matcher:
     """Matches the messages of one topic and counts those without a match."""
 
     def __init__(self) -> None:
-        """Start without messages."""
         self.messages = 0
         self.compared = 0
         self.extra = 0

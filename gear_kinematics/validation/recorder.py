@@ -48,7 +48,6 @@ class Missing:
     """The missing outputs of one topic."""
 
     def __init__(self) -> None:
-        """Start with none."""
         self.count = 0
         self.first: int | None = None
         """Stamp of the first input without its output."""

@@ -105,7 +105,6 @@ class SeriesRecorder:
     """Keeps the sample with the worst error of each interval."""
 
     def __init__(self) -> None:
-        """Start empty."""
         self._columns = np.zeros((5, 0))
         self._interval = 1
         self._rest = np.zeros((5, 0))
