@@ -11,13 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rich import console
-from rich.progress import (
-    BarColumn,
-    MofNCompleteColumn,
-    Progress,
-    TextColumn,
-    TimeRemainingColumn,
-)
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.text import Text
 
 from gear_kinematics.bag import ReportProgress

@@ -35,12 +35,7 @@ from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
-from gear_kinematics.wire.topics import (
-    JOINT_STATE,
-    POSE_ARRAY,
-    RECORDED_TOPICS,
-    ROTOR_STATE,
-)
+from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY, RECORDED_TOPICS, ROTOR_STATE
 
 POLL = 0.1
 """Greatest delay of the response to a signal, s."""

@@ -21,11 +21,7 @@ from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Tol
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.timeline import InputHealth, SeriesRecorder
-from gear_kinematics.wire.cdr import (
-    MalformedMessageError,
-    joint_state_layout,
-    pose_array_layout,
-)
+from gear_kinematics.wire.cdr import MalformedMessageError, joint_state_layout, pose_array_layout
 
 Array = NDArray[Any]
 
