@@ -3,7 +3,6 @@
 import argparse
 from collections.abc import Iterator, Sequence
 
-from gear_kinematics.bag import ReportProgress
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import (
@@ -106,13 +105,11 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
         with progress('bags') as bars:
             yield from bars.track(reports, total=len(tasks), description='bags')
         return
+    play = None
+    if options.live:  # needs ROS, unlike the validation of a recording
+        from gear_kinematics.ros.live import live_messages  # noqa: PLC0415
+
+        play = live_messages
     for task in tasks:
         with message_progress(task.bag.name) as report_progress:
-            yield (_validate_live if options.live else validate_bag)(task, report_progress)
-
-
-def _validate_live(task: Task, progress: ReportProgress) -> BagReport:
-    # Needs ROS, unlike the validation of a recording.
-    from gear_kinematics.ros.live import live_messages  # noqa: PLC0415
-
-    return validate_bag(task, progress, live_messages)
+            yield validate_bag(task, report_progress, play)

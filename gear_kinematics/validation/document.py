@@ -24,7 +24,7 @@ from gear_kinematics.report.document import (
     printable,
 )
 from gear_kinematics.shape.outlines import NAMES, bodies
-from gear_kinematics.validation.report import BagReport, FieldReport, Series, TopicReport
+from gear_kinematics.validation.report import BagReport, Series
 from gear_kinematics.validation.tables import bag_name, summary, tables
 from gear_kinematics.validation.wording import (
     counted,
@@ -78,17 +78,11 @@ def _bag(report: BagReport) -> dict[str, Any]:
     content = asdict(report)
     for drawn in ('series', 'mechanism', 'module'):
         del content[drawn]
-    content['topics'] = [_topic(topic) for topic in report.topics]
+    for topic, written in zip(report.topics, content['topics'], strict=True):
+        written['passed'] = topic.passed
+        for field, values in zip(topic.fields, written['fields'], strict=True):
+            values |= {'passed': field.passed, 'budget_used': field.budget_used}
     return content
-
-
-def _topic(topic: TopicReport) -> dict[str, Any]:
-    fields = [_field(field) for field in topic.fields]
-    return {**asdict(topic), 'passed': topic.passed, 'fields': fields}
-
-
-def _field(field: FieldReport) -> dict[str, Any]:
-    return {**asdict(field), 'passed': field.passed, 'budget_used': field.budget_used}
 
 
 # Test cases

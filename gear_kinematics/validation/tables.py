@@ -111,10 +111,6 @@ def _tone(*, bad: bool) -> Tone:
     return Tone.BAD if bad else Tone.PLAIN
 
 
-def _first_finding(report: BagReport) -> str:
-    return next((finding.text for finding in findings(report)), '')
-
-
 _GAP: Mapping[str, Callable[[_Gap], str | Cell]] = {
     'longest gaps': lambda row: row.name,
     'until stamp': lambda row: moment(row.gap.stamp, row.report)[0],
@@ -155,5 +151,5 @@ _SUMMARY: Mapping[str, Callable[[BagReport], str | Cell]] = {
     'budget used': lambda report: Cell(
         _budget([field for topic in report.topics for field in topic.fields]), unit='%'
     ),
-    'first finding': _first_finding,
+    'first finding': lambda report: next((found.text for found in findings(report)), ''),
 }
