@@ -21,9 +21,9 @@ class Topic(NamedTuple):
     type: str
     """As in ROS 2: sensor_msgs/msg/JointState."""
     encoding: str
-    """Of the messages: cdr, or an unsupported one."""
+    """Encoding of the messages: cdr, or an unsupported one."""
     syntax: str = ''
-    """Of the type definition: ros2msg, ros2idl, ros1msg or one unknown to rosbags."""
+    """Syntax of the type definition: ros2msg, ros2idl, ros1msg or one unknown to rosbags."""
     definition: str = ''
     type_hash: str = ''
     qos: Any = ''

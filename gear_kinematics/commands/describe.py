@@ -11,7 +11,7 @@ from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table, number
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
-HELP = 'what a tooth pair implies: ratio, mobility, vernier, interference of the teeth'
+HELP = 'properties of a gear: ratio, mobility, vernier, interference of the teeth'
 _DIGITS = 6
 
 

@@ -201,7 +201,7 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield f'branch {a}', _leaving(preload.threshold_a, b, known.branch_b_alone)
         yield f'branch {b}', _leaving(preload.threshold_b, a, known.branch_a_alone)
     else:
-        yield 'preload', f'none; a play of {arc(preload.play)} is left'
+        yield 'preload', f'none; a play of {arc(preload.play)} remains'
         yield f'branch {a}', f'carries negative loads alone: {_stiffness(known.branch_a_alone)}'
         yield f'branch {b}', f'carries positive loads alone: {_stiffness(known.branch_b_alone)}'
     pinned = answer.pinned

@@ -47,7 +47,7 @@ class Parameter:
     read_only: bool = False
 
     def fault(self, name: str, value: object, default: object) -> str | None:
-        """Say what is wrong with a value, or None."""
+        """Return the fault of a value, or None."""
         if type(value) is not type(default):
             return f'{name} must be of type {type(default).__name__}, not {value!r}'
         if isinstance(value, list) and not all(isinstance(item, str) for item in value):
@@ -197,9 +197,9 @@ def load(path: Path, node: str = NODE) -> dict[str, Any]:
 
 
 def require_any(paths: Collection[Path], node: str) -> None:
-    """Check that parameter files are of use to a node: one of them is enough, none may be empty.
+    """Check that parameter files have parameters, and at least one has some for the node.
 
-    ROS passes over the others in silence, and the node would run with its default values.
+    ROS silently ignores other files, and the node would run with its default values.
 
     Args:
         paths: parameter files of ROS, as many as the node is started with.
@@ -295,7 +295,7 @@ def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
     found = [(f'/{name.removeprefix("/")}', parameters) for name, parameters in blocks.items()]
     for name, _ in found:
         if not _NODE_PATTERN.fullmatch(name):
-            raise ConfigError(f'{path}: {name} is no name of a node')
+            raise ConfigError(f'{path}: {name} is not a valid node name')
     return found
 
 

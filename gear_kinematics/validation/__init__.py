@@ -1,1 +1,1 @@
-"""What a node published, against what it should have published."""
+"""Compares the outputs of a node with recomputed ones."""

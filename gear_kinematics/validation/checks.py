@@ -56,7 +56,7 @@ class MostlyRejected(Check):
             causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())
             yield Judgement(
                 f'{rejected} of {rotor.messages} messages of {rotor.topic} were rejected '
-                f'({causes}): the rest is too little to pass',
+                f'({causes}): too few are left to pass',
                 fails=True,
             )
 
@@ -73,7 +73,7 @@ class InputCounts(Check):
 
 _SENTENCES = {
     'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the single-turn encoder: '
-    'after each, its turns are those that the outputs tell',
+    'after each, its turns are taken from the outputs',
     'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
     'most {rotor.max_speed:.4g} rad/s',
     'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '

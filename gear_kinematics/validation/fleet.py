@@ -269,7 +269,7 @@ def _on_workers(client: Any, tasks: Sequence[Task]) -> Iterator[tuple[Task, BagR
 
 
 def _lost(task: Task) -> BagReport:
-    return _unusable(task, f'{task.bag}: lost, because its worker died again and again')
+    return _unusable(task, f'{task.bag}: its worker died repeatedly')
 
 
 def _unusable(task: Task, error: str) -> BagReport:

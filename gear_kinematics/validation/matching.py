@@ -19,7 +19,7 @@ from gear_kinematics.validation.report import FieldReport, TopicReport
 
 Array = NDArray[Any]
 Columns = dict[str, Array]
-"""Of samples (n,): stamp, turns, angle, velocity, effort, stretch; as in `RotorSamples`."""
+"""Columns of samples (n,): stamp, turns, angle, velocity, effort, stretch; see `RotorSamples`."""
 Solver = Callable[..., MotionState]
 
 WINDOW = 16_384

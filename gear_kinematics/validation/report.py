@@ -28,7 +28,7 @@ class FieldReport:
     max_error: float = 0.0
     rms_error: float = 0.0
     worst_stamp: int | None = None
-    """Of the sample with `max_error`; None without any error."""
+    """Stamp of the sample with `max_error`; None without any error."""
     worst_rotor_angle: float | None = None
     first_non_finite: int | None = None
     """Stamp of the first sample that is not finite."""

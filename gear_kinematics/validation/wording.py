@@ -1,4 +1,4 @@
-"""What a validation says in sentences: faults, findings, and where they are."""
+"""Formulates faults and findings of a validation in sentences."""
 
 from gear_kinematics.report.document import Cell, Finding, number, printable
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
@@ -24,7 +24,7 @@ def findings(report: BagReport) -> list[Finding]:
         for cause, count in topic.left_out.items()
     ]
     if left_out:
-        left_out = [f"not judged, as the recorder's doing: {', '.join(left_out)}"]
+        left_out = [f'not judged, as caused by the recorder: {", ".join(left_out)}']
     sentences = (*faults, *map(printable, report.findings), *left_out)
     damage = [] if report.error is None else [Finding('error', printable(report.error))]
     return [*damage, *(Finding('finding', sentence) for sentence in sentences)]

@@ -194,7 +194,7 @@ def test_preload_reads_well(capsys, monkeypatch):
     assert [row[:3] for row in rows] == [['-2.000', '2.000', '0.000'], ['5.333', '0.000', '5.333']]
     assert main(['preload', '--angle', '0.0001', '--backlash', '0.001', *SOFT]) == 0
     out = capsys.readouterr().out
-    assert 'none; a play of 3′ 04.553″ is left' in out
+    assert 'none; a play of 3′ 04.553″ remains' in out
     assert 'leaves mesh' not in out
     assert main(['preload', '--angle', '0.0001', *PAPER]) == 0
     assert 'never leaves mesh' in capsys.readouterr().out

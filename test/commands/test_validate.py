@@ -123,7 +123,7 @@ def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_onl
     done = gearkin('validate', 'late', cwd=tmp_path)
     assert done.returncode == 0
     left_out = '40 before every topic was recorded'
-    assert f"late: finding: not judged, as the recorder's doing: /body_poses {left_out}\n" in (
+    assert f'late: finding: not judged, as caused by the recorder: /body_poses {left_out}\n' in (
         done.stdout
     )
     assert 'late: /body_poses: left out: 40\n' in done.stdout

@@ -250,7 +250,7 @@ def test_name_of_no_node_is_refused_by_both_readers_of_a_file(context, tmp_path,
     arguments = ['--ros-args', '--params-file', str(path)]
     with pytest.raises(rclpy_implementation.RCLInvalidROSArgsError):
         GearStatePublisher(context=context, cli_args=arguments)
-    with pytest.raises(parameters.ConfigError, match='is no name of a node'):
+    with pytest.raises(parameters.ConfigError, match='is not a valid node name'):
         parameters.load(path)
 
 
