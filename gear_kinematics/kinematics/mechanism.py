@@ -86,21 +86,13 @@ class Mechanism:
         names = parameters['branches']
         if isinstance(names, str) or not hasattr(names, '__iter__'):
             raise MechanismError([f'branches must be a list of names, not {names!r}'])
-        fields = ('cam_phase', 'axial_position')
-        return cls(
-            parameters['ring_teeth'],
-            parameters['satellite_teeth'],
-            parameters['eccentricity'],
-            tuple(
-                Branch(
-                    name,
-                    **{
-                        f: parameters[f'{name}.{f}'] for f in fields if f'{name}.{f}' in parameters
-                    },
-                )
-                for name in names
-            ),
-        )
+        branches = []
+        for name in names:
+            fields = {field: f'{name}.{field}' for field in ('cam_phase', 'axial_position')}
+            given = {field: parameters[key] for field, key in fields.items() if key in parameters}
+            branches.append(Branch(name, **given))
+        numbers = {name: parameters[name] for name in required[:-1]}
+        return cls(**numbers, branches=tuple(branches))
 
     @property
     def gear_ratio(self) -> Fraction:

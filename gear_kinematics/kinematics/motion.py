@@ -81,26 +81,15 @@ class MotionState:
         Missing derivatives are zero and take no memory.
         """
         zero = np.broadcast_to(0.0, satellite.shape[1:])
-        outputs = (*output, zero[..., 0, 0], zero[..., 0, 0])
-        satellites, oldhams = (*satellite, zero, zero), (*oldham, zero, zero)
-        satellite_slides = (*satellite_slide, zero[..., 0])
-        arm_slides = (*arm_slide, zero[..., 0])
-        return cls(
-            output_angle=outputs[0],
-            output_velocity=outputs[1],
-            output_acceleration=outputs[2],
-            output_turn_angle=output_turn_angle,
-            satellite_centre=satellites[0],
-            satellite_velocity=satellites[1],
-            satellite_acceleration=satellites[2],
-            oldham_centre=oldhams[0],
-            oldham_velocity=oldhams[1],
-            oldham_acceleration=oldhams[2],
-            satellite_slide=satellite_slides[0],
-            satellite_slide_velocity=satellite_slides[1],
-            arm_slide=arm_slides[0],
-            arm_slide_velocity=arm_slides[1],
+        columns = (
+            *(*output, zero[..., 0, 0], zero[..., 0, 0])[:3],
+            output_turn_angle,
+            *(*satellite, zero, zero)[:3],
+            *(*oldham, zero, zero)[:3],
+            *(*satellite_slide, zero[..., 0])[:2],
+            *(*arm_slide, zero[..., 0])[:2],
         )
+        return cls(*columns)  # in the order of the fields
 
 
 class BranchPosition(NamedTuple):
