@@ -63,8 +63,7 @@ def braced(mechanism: Mechanism) -> tuple[Branch, Branch]:
     Raises:
         MechanismError: unless the mechanism has exactly two branches.
     """
-    if len(mechanism.branches) != 2:  # noqa: PLR2004, A and B
-        count = len(mechanism.branches)
+    if (count := len(mechanism.branches)) != 2:  # noqa: PLR2004, A and B
         raise MechanismError([f'exactly two branches are needed, not {count}'])
     branch_a, branch_b = mechanism.branches
     return branch_a, branch_b
@@ -247,11 +246,8 @@ class Preload:
             load: M at arm B, N·m; any shape.
         """
         M = np.asarray(load, dtype=np.float64)
-        cA, cB, both = (
-            self.stiffness.compliance_a,
-            self.stiffness.compliance_b,
-            self.stiffness.compliance,
-        )
+        cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
+        both = self.stiffness.compliance
         branch_a = np.maximum(np.maximum(self.torque - cB / both * M, -M), 0.0)
         branch_b = np.maximum(np.maximum(self.torque + cA / both * M, M), 0.0)
         elastic = np.where(
