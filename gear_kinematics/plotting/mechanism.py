@@ -36,15 +36,16 @@ class Bodies:
 
     def __init__(self, axes: Any, mechanism: Mechanism, module: float, branch: int) -> None:
         """Draw them at φ2 = 0."""
+        from matplotlib.patches import PathPatch  # noqa: PLC0415, an extra
+
         self._mechanism, self._branch = mechanism, branch
         self._outlines = bodies(mechanism, module, branch)
         self.patches = {}
         for body, outlines in self._outlines.items():
             face, edge = COLOURS[body]
-            patch = _patch(outlines, facecolor=face, edgecolor=edge, linewidth=_OUTLINE)
-            self.patches[body] = axes.add_patch(patch)
-        border = _MARGIN * float(np.max(self._outlines['stator'][0]))
-        _square(axes, border)
+            style = {'facecolor': face, 'edgecolor': edge, 'linewidth': _OUTLINE}
+            self.patches[body] = axes.add_patch(PathPatch(_path(outlines), **style))
+        _square(axes, _MARGIN * float(np.max(self._outlines['stator'][0])))
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
@@ -105,12 +106,7 @@ class Centres:
 
 
 def outlines(mechanism: Mechanism, module: float) -> Figure:
-    """Return the outlines of the first branch at φ2 = 0, in mm.
-
-    Args:
-        mechanism: the mechanism.
-        module: of the teeth, m.
-    """
+    """Return the outlines of the first branch at φ2 = 0, in mm, for a module of the teeth in m."""
     placed = poses(mechanism, 0.0)
     pens = {'stator': Pen.FAINT, 'satellite': Pen.FIRST, 'rotor': Pen.SECOND}
     lines = []
@@ -127,15 +123,9 @@ def scheme(
 ) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
-    Args:
-        mechanism: the mechanism.
-        module: of the teeth, m.
-        path: of the image file.
-        rotor: rotor position φ2.
-        branch: index of the branch.
+    The module of the teeth is in m; `rotor` is the position φ2, `branch` an index.
     """
-    draw = partial(_draw_scheme, mechanism, module, rotor, branch)
-    return render(path, (7.4, 4.7), draw)
+    return render(path, (7.4, 4.7), partial(_draw_scheme, mechanism, module, rotor, branch))
 
 
 def _draw_scheme(
@@ -144,8 +134,7 @@ def _draw_scheme(
     left, right = figure.subplots(1, 2)
     drawn = Bodies(left, mechanism, module, branch)
     drawn.show(rotor)
-    centres = Centres(right, mechanism, branch)
-    centres.show(rotor)
+    Centres(right, mechanism, branch).show(rotor)
     placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
     _label_centres(right, mechanism, placed)
     names = [NAMES[body] for body in drawn.patches]
@@ -201,13 +190,6 @@ def _square(axes: Any, half: float) -> None:
     axes.set_axis_off()
     axes.set_xlim(-half, half)
     axes.set_ylim(-half, half)
-
-
-def _patch(outlines: Iterable[Array], **style: Any) -> Any:
-    """A patch of closed polygons (n, 2)."""
-    from matplotlib.patches import PathPatch  # noqa: PLC0415, an extra
-
-    return PathPatch(_path(outlines), **style)
 
 
 def _path(outlines: Iterable[Array]) -> Any:

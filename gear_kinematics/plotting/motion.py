@@ -23,10 +23,7 @@ _MM = 1e3  # in a metre
 def roses(mechanism: Mechanism, path: Path, trajectory: Trajectory | None = None) -> bytes:
     """Plot the paths of the centres of the Oldham couplings, branch by branch.
 
-    Args:
-        mechanism: the mechanism.
-        path: of the image file.
-        trajectory: of the rotor; highlights the part of the roses that it covers.
+    The part that a trajectory of the rotor covers is highlighted.
 
     Raises:
         ValueError: if there are more than `MOST_PETALS`, or `path` has an unknown suffix.
@@ -51,27 +48,13 @@ def rose(mechanism: Mechanism) -> Array:
 
 
 def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle: bool) -> bytes:
-    """Plot the slides of the couplings on satellites and arm, and the sliding speeds.
-
-    Args:
-        mechanism: the mechanism.
-        path: of the image file.
-        trajectory: of the rotor.
-        by_angle: whether to plot over the rotor angle instead of time.
-    """
-    return render(
-        path, (7.0, 5.0), partial(_draw_slides, mechanism, trajectory, by_angle=by_angle)
-    )
+    """Plot slides and sliding speeds of the couplings, over the rotor angle or over time."""
+    draw = partial(_draw_slides, mechanism, trajectory, by_angle=by_angle)
+    return render(path, (7.0, 5.0), draw)
 
 
 def output(mechanism: Mechanism, path: Path, trajectory: Trajectory) -> bytes:
-    """Plot angle and rate of the output shaft over time.
-
-    Args:
-        mechanism: the mechanism.
-        path: of the image file.
-        trajectory: of the rotor.
-    """
+    """Plot angle and rate of the output shaft over time."""
     return render(path, (7.0, 4.5), partial(_draw_output, mechanism, trajectory))
 
 

@@ -55,15 +55,9 @@ class Pose(NamedTuple):
 
 
 def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Outlines]:
-    """Compute the outlines of the bodies of a branch.
+    """Compute the outlines of `BODIES`, in this order, of the branch with an index.
 
-    Args:
-        mechanism: the mechanism.
-        module: of the teeth, m.
-        branch: index of the branch.
-
-    Returns:
-        The outlines of `BODIES`, in this order.
+    The module of the teeth is in m.
     """
     of_branch = mechanism.branches[branch]
     ring, satellite = teeth.outlines(mechanism, module)

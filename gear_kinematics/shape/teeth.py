@@ -63,11 +63,7 @@ def outlines(mechanism: Mechanism, module: float) -> Outlines:
 
     Draw the satellite at `satellite_centre`, turned by `output_angle`, and the ring gear of a
     branch turned by its `ring_phase`. If the teeth cannot mesh (see `tooth_pair`), or are too many
-    to be seen, the outlines are the rolling circles.
-
-    Args:
-        mechanism: the mechanism.
-        module: m, in metres.
+    to be seen, the outlines are the rolling circles. The module is in metres.
 
     Raises:
         MechanismError: if the module is not finite and greater than 0.
@@ -91,9 +87,7 @@ def ring_phase(mechanism: Mechanism, branch: Branch) -> float:
 def tooth_pair(mechanism: Mechanism, module: float) -> 'ToothPair':
     """Find the highest teeth, up to those of the basic rack, that mesh without interference.
 
-    Args:
-        mechanism: the mechanism.
-        module: m, in metres.
+    The module is in metres.
 
     Raises:
         InterferenceError: if there are none; the text gives the numbers.
