@@ -124,7 +124,6 @@ class ClosedForm:
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        """Compute the constants from the mechanism."""
         ratio = -1 / mechanism.gear_ratio
         # p is a float so that its product with many turns is rounded as in an array.
         self._p, self._q = float(ratio.numerator), ratio.denominator

@@ -22,7 +22,6 @@ class StateMessages:
     """Computes the state at a sample and encodes its messages."""
 
     def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
-        """Prepare the templates of the messages."""
         self._form = closed_form(mechanism)
         self._ratio = float(mechanism.gear_ratio)
         self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
