@@ -33,11 +33,14 @@ demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and valid
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
 	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'
 
+# Coverage makes tests up to twice as slow: the slow ones do without.
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase
-	$(BIN)/coverage run $(PYTEST)
+	$(BIN)/coverage run $(PYTEST) -m 'not slow'
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
+	@echo "$$(cat .pytest_cache/v/skipped)"
+	$(BIN)/python $(PYTEST) -m slow
 	@echo "$$(cat .pytest_cache/v/skipped)"
 
 lint: $(VENV)/test.stamp ## Check style and format
@@ -83,6 +86,6 @@ $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml
 		echo 'Python has no ensurepip: apt install $(notdir $(PYTHON))-venv' >&2; exit 1; }
 	test -x $(BIN)/pip || $(PYTHON) -m venv --clear $(VENV)
 	@echo 'installing $< into $(VENV)'
-	@$(PIP_INSTALL) --require-hashes -r $< 2> $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
+	@$(PIP_INSTALL) --no-compile --require-hashes -r $< 2> $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
 	$(PIP_INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
