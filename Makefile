@@ -33,14 +33,14 @@ demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and valid
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
 	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'
 
-# Coverage makes tests up to twice as slow: the slow ones do without.
+# Coverage makes tests up to twice as slow: slow ones, and most examples of properties, do without.
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
 	$(BIN)/coverage erase
-	$(BIN)/coverage run $(PYTEST) -m 'not slow'
+	$(BIN)/coverage run $(PYTEST) --hypothesis-profile quick -m 'not slow'
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
 	@echo "$$(cat .pytest_cache/v/skipped)"
-	$(BIN)/python $(PYTEST) -m slow
+	$(BIN)/python $(PYTEST) -m 'slow or hypothesis'
 	@echo "$$(cat .pytest_cache/v/skipped)"
 
 lint: $(VENV)/test.stamp ## Check style and format
