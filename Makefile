@@ -14,7 +14,7 @@ EXPLAIN_PIP = if grep -q 'connection broken' $(PIP_LOG); then \
 	else tail -n 1 $(PIP_LOG); fi
 # Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
 # may wait for good after that.
-PYTEST := -m pytest --numprocesses 2 --dist loadfile --max-worker-restart 0
+PYTEST := -m pytest --numprocesses 2 --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 	--no-emit-index-url --quiet --upgrade
 
