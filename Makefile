@@ -22,7 +22,7 @@ LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
 	_ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help demo quick test lint types docs format pictures soak fuzz lock clean
+.PHONY: help demo quick test coverage lint types docs format pictures soak fuzz lock clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
@@ -33,15 +33,15 @@ demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and valid
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
 	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'
 
-# Coverage makes tests up to twice as slow: slow ones, and most examples of properties, do without.
-test: lint types docs ## Run every check: ruff, mypy, documentation, pytest with coverage
+test: lint types docs ## Run every check: ruff, mypy, documentation, pytest
+	$(BIN)/python $(PYTEST)
+	@echo "$$(cat .pytest_cache/v/skipped)"
+
+coverage: $(VENV)/test.stamp ## Measure the coverage of all but the slow tests, which takes them twice as long
 	$(BIN)/coverage erase
-	$(BIN)/coverage run $(PYTEST) --hypothesis-profile quick -m 'not slow'
+	$(BIN)/coverage run $(PYTEST) -m 'not slow'
 	$(BIN)/coverage combine --quiet
 	$(BIN)/coverage report
-	@echo "$$(cat .pytest_cache/v/skipped)"
-	$(BIN)/python $(PYTEST) -m 'slow or hypothesis'
-	@echo "$$(cat .pytest_cache/v/skipped)"
 
 lint: $(VENV)/test.stamp ## Check style and format
 	$(BIN)/ruff check

@@ -399,7 +399,7 @@ def test_a_cluster_that_has_no_workers_or_ends_is_an_error(tmp_path):
 def test_an_unreachable_scheduler_is_an_error_in_one_line(address, cause):
     pytest.importorskip('distributed')
     done = gearkin(
-        'validate', BAGS / 'driver_faults', '--scheduler', address, code=IMPATIENT, timeout=10.0
+        'validate', BAGS / 'driver_faults', '--scheduler', address, code=IMPATIENT, timeout=30.0
     )
     assert (done.returncode, done.stdout) == (2, '')
     assert done.stderr.startswith(f'gearkin: {address}: ')
