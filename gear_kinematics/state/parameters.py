@@ -11,10 +11,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from gear_kinematics.kinematics import Branch
 from gear_kinematics.state.share import share_directory
+from gear_kinematics.state.yaml_file import Loader, read_yaml
 from gear_kinematics.wire.nearest import nearest
 
 NODE = 'gear_state_publisher'
@@ -24,7 +23,6 @@ _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overr
 """Parameters that every node has and that are ignored here."""
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
-_MAX_LENGTH = 2**18  # characters of a parameter file; such a file takes seconds to parse
 
 
 class ConfigError(ValueError):
@@ -275,19 +273,7 @@ def _applies(pattern: str, name: str) -> bool:
 
 def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
     """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
-    try:
-        with path.open(encoding='utf-8') as file:
-            text = file.read(_MAX_LENGTH + 1)
-    except OSError as error:
-        raise ConfigError(f'{path}: {error.strerror}') from error
-    except UnicodeDecodeError as error:
-        raise ConfigError(f'{path}: {error}') from error
-    if len(text) > _MAX_LENGTH:
-        raise ConfigError(f'{path}: longer than {_MAX_LENGTH} characters')
-    try:
-        document = yaml.load(text, _RosLoader)  # noqa: S506, it is safe
-    except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise ConfigError(f'{path}: not YAML: {" ".join(str(error).split())}') from error
+    document = read_yaml(path, ConfigError, _RosLoader)
     blocks: dict[str, dict[str, Any]] = {}
     for name, parameters in _blocks(document):
         blocks.setdefault(name, {}).update(parameters)
@@ -305,25 +291,13 @@ class _Pairs(tuple[tuple[Any, Any], ...]):
     __slots__ = ()
 
 
-class _RosLoader(yaml.SafeLoader):
-    """Reads YAML as ROS does: 15e-4 is a number, and aliases are refused."""
-
-    def compose_node(self, parent: yaml.Node | None, index: int) -> yaml.Node | None:
-        """Compose the next node."""
-        if self.check_event(yaml.AliasEvent):
-            problem = 'aliases are not supported'
-            raise yaml.composer.ComposerError(None, None, problem, self.get_mark())
-        return super().compose_node(parent, index)
+class _RosLoader(Loader):
+    """Keeps repeated keys, which ROS merges."""
 
 
 _RosLoader.add_constructor(
     'tag:yaml.org,2002:map',
     lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True)),
-)
-_RosLoader.add_implicit_resolver(
-    'tag:yaml.org,2002:float',
-    re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
-    list('-+.0123456789'),
 )
 
 
