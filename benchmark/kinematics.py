@@ -219,7 +219,7 @@ def _chains() -> tuple[pin.Model, list[int]]:
 
 
 def _one_by_one(motion: Motion, rounds: int) -> list[Figure]:
-    form = closed_form(_MECHANISM)
+    form, ratio = closed_form(_MECHANISM), _MECHANISM.gear_ratio
     samples = [
         tuple(map(float, sample)) for sample in zip(*(v[:_LOOPED] for v in motion), strict=True)
     ]
@@ -228,8 +228,8 @@ def _one_by_one(motion: Motion, rounds: int) -> list[Figure]:
     def as_the_node() -> None:
         for position, velocity, _ in samples:
             turns, angle = split_turns(position)
-            _, output_angle = form.output_angle(turns, angle, math)
-            form.output_rate(velocity)
+            _, output_angle = ratio.output_angle(turns, angle, math)
+            ratio.output_rate(velocity)
             for branch in form.branches(angle, output_angle, math):
                 form.slide_velocities(branch, velocity)
 

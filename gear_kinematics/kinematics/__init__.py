@@ -1,12 +1,14 @@
 """Kinematics of the anti-backlash planetary gear: numpy and the standard library, no ROS."""
 
 from gear_kinematics.kinematics.errors import MechanismError
+from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.kinematics.mechanism import Branch, Mechanism
 from gear_kinematics.kinematics.motion import MotionState, solve
 from gear_kinematics.kinematics.rotor_turns import RotorPosition, RotorTurns, split_turns
 
 __all__ = [
     'Branch',
+    'GearRatio',
     'Mechanism',
     'MechanismError',
     'MotionState',

@@ -10,6 +10,7 @@ from numbers import Real
 from typing import Any, Self
 
 from gear_kinematics.kinematics.errors import MechanismError
+from gear_kinematics.kinematics.gear_ratio import GearRatio
 
 _BRANCH_NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
 
@@ -95,9 +96,9 @@ class Mechanism:
         return cls(**numbers, branches=tuple(branches))
 
     @property
-    def gear_ratio(self) -> Fraction:
+    def gear_ratio(self) -> GearRatio:
         """i = ω2/ω5 = -zs/(zk - zs), signed and exact (eq. 3): the output turns backwards."""
-        return Fraction(-self.satellite_teeth, self.ring_teeth - self.satellite_teeth)
+        return GearRatio(-self.satellite_teeth, self.ring_teeth - self.satellite_teeth)
 
     @property
     def cycle_turns(self) -> int:
@@ -106,7 +107,7 @@ class Mechanism:
 
     def rotor_angle(self, output_angle: float) -> float:
         """φ2 = i φ5 (eq. 5), rad."""
-        return output_angle * self.gear_ratio.numerator / self.gear_ratio.denominator
+        return self.gear_ratio.rotor_angle(output_angle)
 
     @property
     def ring_rolling_radius(self) -> float:

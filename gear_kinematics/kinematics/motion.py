@@ -4,7 +4,7 @@ Each formula is written once, in functions that take numpy arrays and plain floa
 applies them to arrays of any shape, the node to one sample of plain floats.
 
 Symbols: φ2 rotor angle, φ5 output angle, α_k cam phase, θ_k = φ2 + α_k, e eccentricity,
-u(q) = (-sin q, cos q), i gear ratio, p/q = (zk - zs)/zs = -1/i in lowest terms.
+u(q) = (-sin q, cos q). The output angle is that of `GearRatio`.
 """
 
 from collections.abc import Iterable, Iterator
@@ -124,30 +124,10 @@ class ClosedForm:
     """
 
     def __init__(self, mechanism: Mechanism) -> None:
-        ratio = -1 / mechanism.gear_ratio
-        # p is a float so that its product with many turns is rounded as in an array.
-        self._p, self._q = float(ratio.numerator), ratio.denominator
         self._eccentricity = mechanism.eccentricity
         self._cams = tuple(branch.cam_direction for branch in mechanism.branches)
         self._slide_ratio = mechanism.ring_teeth / mechanism.satellite_teeth
-        self._kappa = -2.0 * float(ratio) - 1.0
-
-    def output_angle(self, turns: Any, angle: Any, xp: ModuleType) -> tuple[Any, Any]:
-        """φ5 = φ2/i (eq. 5) as whole turns and a rest in [-π, π], for φ2 = 2π turns + angle.
-
-        The rest depends on the whole turns modulo q only, so nothing cancels.
-        """
-        p, q = self._p, self._q
-        cycles = xp.trunc(turns / q)
-        steps = p * (turns - q * cycles)
-        whole = xp.ceil(steps / q - 0.5)
-        rest = (TURN * (steps - q * whole) + p * angle) / -q
-        wraps = xp.floor(rest / TURN + 0.5)
-        return xp.trunc(wraps - (p * cycles + whole)), rest - TURN * wraps
-
-    def output_rate(self, rotor_rate: Any) -> Any:
-        """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
-        return -self._p * rotor_rate / self._q
+        self._kappa = float(2 / mechanism.gear_ratio) - 1.0
 
     def branches(self, angle: Any, output_angle: Any, xp: ModuleType) -> list[BranchPosition]:
         """Positions of the bodies of each branch; both angles in [-π, π]."""
@@ -225,7 +205,7 @@ def solve(
     Raises:
         ValueError: if `rotor_turns` are not integers up to ±`MOST_TURNS`.
     """
-    form = closed_form(mechanism)
+    form, ratio = closed_form(mechanism), mechanism.gear_ratio
     moving = bool(np.any(rotor_velocity) or np.any(rotor_acceleration))
     inputs = (whole_turns(rotor_turns), rotor_angle, rotor_velocity, rotor_acceleration)
     arrays = np.broadcast_arrays(*(np.asarray(value, dtype=np.float64) for value in inputs))
@@ -240,7 +220,7 @@ def solve(
     for start in range(0, size, _CHUNK):
         part = slice(start, start + _CHUNK)
         own_turns, rest = split_turns(angle[part])
-        output_turns, output_rest = form.output_angle(turns[part] + own_turns, rest, np)
+        output_turns, output_rest = ratio.output_angle(turns[part] + own_turns, rest, np)
         turn_angle[part] = output_rest
         output[0, part] = TURN * output_turns + output_rest
         positions = form.branches(rest, output_rest, np)
@@ -252,7 +232,7 @@ def solve(
         if not moving:
             continue
         w, a = velocity[part], acceleration[part]
-        output[1, part], output[2, part] = form.output_rate(w), form.output_rate(a)
+        output[1, part], output[2, part] = ratio.output_rate(w), ratio.output_rate(a)
         for k, rates in enumerate(form.rates(positions, w, a)):
             _put(satellite[1, part, k], rates.satellite_velocity)
             _put(satellite[2, part, k], rates.satellite_acceleration)

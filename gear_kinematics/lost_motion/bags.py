@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from gear_kinematics.bag import Bag, BagError, DamagedBagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
@@ -62,7 +61,7 @@ def read_bag(
     if not len(samples.stamp):
         raise BagError(f'{path}: no usable rotor states on {rotor}')
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
-    turns, angle = closed_form(mechanism).output_angle(samples.turns, samples.angle, np)
+    turns, angle = mechanism.gear_ratio.output_angle(samples.turns, samples.angle, np)
     ratio = float(mechanism.gear_ratio)
     positions = samples.turns * TURN + samples.angle
     rotor_step = step_of(counts, positions) / abs(ratio)

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
@@ -214,7 +213,7 @@ def _motion(
     output_counts: int | None,
 ) -> Motion:
     """Compare rotor and output row by row; a row was sampled at one time."""
-    turns, angle = closed_form(mechanism).output_angle(*split_turns(data['rotor']), np)
+    turns, angle = mechanism.gear_ratio.output_angle(*split_turns(data['rotor']), np)
     row = np.arange(len(angle))
     return Motion.from_angles(
         TransmissionError(max_gap=1, travel=travel),

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.transmission_error import ErrorSample, ErrorWindow, TransmissionError
 from gear_kinematics.wire.cdr import SECOND
@@ -46,7 +45,7 @@ class OutputEncoder:
         self.window = ErrorWindow(round(settings.transmission_error_window * SECOND))
         self._settings = settings
         self._reader = JointReader(settings.output_encoder_joint)
-        self._form = closed_form(mechanism)
+        self._ratio = mechanism.gear_ratio
         self.comparison = settings.comparison()
         """Counts the measured angles that were compared, and those that were not by cause."""
         self._last = 0
@@ -75,7 +74,7 @@ class OutputEncoder:
 
     def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:
         """Process the rotor's next sample, with known turns; returns the same as `accept`."""
-        turns, angle = self._form.output_angle(*sample.position, math)
+        turns, angle = self._ratio.output_angle(*sample.position, math)
         return self._note(self.comparison.add_ideal(sample.stamp, turns, angle))
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:

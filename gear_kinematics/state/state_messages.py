@@ -23,7 +23,8 @@ class StateMessages:
 
     def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
         self._form = closed_form(mechanism)
-        self._ratio = float(mechanism.gear_ratio)
+        self._ratio = mechanism.gear_ratio
+        self._torque_ratio = float(self._ratio)
         self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
         self._output_states = {
             (velocity, effort): JointStateTemplate(
@@ -44,7 +45,7 @@ class StateMessages:
     ) -> Iterator[tuple[str, bytes]]:
         """Yield topic and message for a sample, for all or some of STATE_TOPICS."""
         turns, angle = sample.position
-        output_turns, output_rest = self._form.output_angle(turns, angle, math)
+        output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
         output_angle = TURN * output_turns + output_rest
         branches: list[BranchPosition] = []
         for topic in topics:
@@ -61,7 +62,7 @@ class StateMessages:
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
         """Encode OUTPUT_STATE and BODY_POSES for many samples, as `encode` does."""
-        output_turns, output_rest = self._form.output_angle(samples.turns, samples.angle, np)
+        output_turns, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
         output_angle = TURN * output_turns + output_rest
         output_states = len(samples.stamp) * [b'']
         for present, template in self._output_states.items():
@@ -95,9 +96,9 @@ class StateMessages:
         """The numbers of an output_state: floats or arrays."""
         numbers = [output_angle]
         if present[0]:
-            numbers.append(self._form.output_rate(velocity))
+            numbers.append(self._ratio.output_rate(velocity))
         if present[1]:
-            numbers.append(self._ratio * effort)
+            numbers.append(self._torque_ratio * effort)
         return numbers
 
     def _pose_numbers(
@@ -125,7 +126,7 @@ class StateMessages:
         velocity = sample.velocity
         if velocity is None:
             return self._joint_states[False].encode(sample.stamp, positions)
-        output_velocity = self._form.output_rate(velocity)
+        output_velocity = self._ratio.output_rate(velocity)
         velocities = [velocity, *(output_velocity - velocity for _ in branches)]
         velocities += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
         velocities.append(output_velocity)

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder, UnseenTurns
 from gear_kinematics.validation.matching import Columns, Faults, OutputTopic, Solver
 from gear_kinematics.validation.report import FieldReport
@@ -130,7 +129,7 @@ class OutputState(OutputTopic):
             self._unseen.learn_from_angles(stretch, recorded[:, 0], expected)
             unseen_turns = self._unseen.of(stretch)
         state, rotor_angle = self._recompute(samples, unseen_turns)
-        velocity = closed_form(self._mechanism).output_rate(samples['velocity'])
+        velocity = self._mechanism.gear_ratio.output_rate(samples['velocity'])
         effort = float(self._mechanism.gear_ratio) * samples['effort']
         signed = recorded - np.stack([state.output_angle, velocity, effort], axis=-1)
         for column, (errors, needed) in enumerate(

@@ -376,17 +376,17 @@ def test_rotor_at_rest_has_no_rates(mechanism):
 
 
 def one_by_one(mechanism, angle, turns, velocity, acceleration) -> dict[str, object]:
-    """Go through `ClosedForm` with plain floats and ints; returns what a state has."""
-    form = closed_form(mechanism)
+    """Go through the formulas with plain floats and ints; returns what a state has."""
+    form, ratio = closed_form(mechanism), mechanism.gear_ratio
     own_turns, rest = split_turns(angle)
-    output_turns, output_rest = form.output_angle(turns + own_turns, rest, math)
+    output_turns, output_rest = ratio.output_angle(turns + own_turns, rest, math)
     assert isinstance(output_turns, int)
     positions = form.branches(rest, output_rest, math)
     rates = list(form.rates(positions, velocity, acceleration))
     return {
         'output_angle': 2.0 * math.pi * output_turns + output_rest,
-        'output_velocity': form.output_rate(velocity),
-        'output_acceleration': form.output_rate(acceleration),
+        'output_velocity': ratio.output_rate(velocity),
+        'output_acceleration': ratio.output_rate(acceleration),
         'output_turn_angle': output_rest,
         'satellite_centre': [position.satellite for position in positions],
         'oldham_centre': [position.oldham for position in positions],

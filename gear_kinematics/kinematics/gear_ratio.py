@@ -1,0 +1,124 @@
+"""The gear ratio as an exact fraction, and what needs no more of a gear than that."""
+
+import re
+from collections.abc import Iterator
+from fractions import Fraction
+from types import ModuleType
+from typing import Any, Self
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+
+_TEXT = re.compile(r'[-+]?\d{1,16}(/\d{1,16}|\.\d{1,16})?', re.ASCII)
+_LARGEST_PRODUCT = 2**53
+"""Numerator × denominator up to which the turns below are exact in float64."""
+
+
+class GearRatio(Fraction):
+    """i = rotor speed / output speed, signed and exact; negative: the output turns backwards.
+
+    Its methods take plain floats and numpy arrays alike, with the same results to the bit; `xp` is
+    `math` for floats, else numpy.
+
+    Raises:
+        ValueError: if it is 0, or its numerator × denominator exceeds 2^53.
+    """
+
+    __slots__ = ('_p', '_q')
+
+    _p: float  # p/q = -1/i in lowest terms; a float, to round its products as an array does
+    _q: int
+
+    def __new__(cls, numerator: int | Fraction, denominator: int | None = None) -> Self:
+        """Create it like a Fraction."""
+        self = super().__new__(cls, numerator, denominator)
+        if not self:
+            raise ValueError('a gear ratio is not 0')
+        if abs(self.numerator) * self.denominator > _LARGEST_PRODUCT:
+            raise ValueError(
+                f'numerator × denominator of a gear ratio is at most 2^53, unlike that of {self}'
+            )
+        inverse = -1 / self
+        self._p, self._q = float(inverse.numerator), inverse.denominator
+        return self
+
+    @classmethod
+    def parse(cls, text: str) -> Self:
+        """Read a ratio such as `-19`, `1457/26` or `28.8`.
+
+        Raises:
+            ValueError: if it is something else, or no gear has this ratio.
+        """
+        if not _TEXT.fullmatch(text):
+            raise ValueError(
+                f'a gear ratio is an integer, a fraction or a decimal, such as -19, 1457/26 or '
+                f'28.8, not {text!r}'
+            )
+        try:
+            return cls(Fraction(text))
+        except ZeroDivisionError as error:
+            raise ValueError(
+                f'the denominator of a gear ratio is not 0, unlike in {text}'
+            ) from error
+
+    @property
+    def gear_ratio(self) -> Self:
+        """The ratio itself: it describes a gear as a `Mechanism` does, only less of it."""
+        return self
+
+    def output_angle(self, turns: Any, angle: Any, xp: ModuleType) -> tuple[Any, Any]:
+        """φ5 = φ2/i (eq. 5) as whole turns and a rest in [-π, π], for φ2 = 2π turns + angle.
+
+        The rest depends on the whole turns modulo q only, so nothing cancels.
+        """
+        p, q = self._p, self._q
+        cycles = xp.trunc(turns / q)
+        steps = p * (turns - q * cycles)
+        whole = xp.ceil(steps / q - 0.5)
+        rest = (TURN * (steps - q * whole) + p * angle) / -q
+        wraps = xp.floor(rest / TURN + 0.5)
+        return xp.trunc(wraps - (p * cycles + whole)), rest - TURN * wraps
+
+    def output_rate(self, rotor_rate: Any) -> Any:
+        """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
+        return -self._p * rotor_rate / self._q
+
+    def rotor_angle(self, output_angle: float) -> float:
+        """φ2 = i φ5 (eq. 5), rad."""
+        return output_angle * self.numerator / self.denominator
+
+
+def simplest_fraction(low: Fraction, high: Fraction) -> Fraction:
+    """Return the fraction in [low, high] of the least denominator, by continued fractions.
+
+    Of several integers, the one nearest to 0.
+
+    Raises:
+        ValueError: if the interval is empty.
+    """
+    if low > high:
+        raise ValueError(f'no number is between {low} and {high}')
+    if low <= 0 <= high:
+        return Fraction(0)
+    if high < 0:
+        return -simplest_fraction(-high, -low)
+    whole = -(-low.numerator // low.denominator)  # the least integer that is not below
+    if whole <= high:
+        return Fraction(whole)
+    return whole - 1 + 1 / simplest_fraction(1 / (high - whole + 1), 1 / (low - whole + 1))
+
+
+def tooth_pairs(low: Fraction, high: Fraction, most_teeth: int) -> Iterator[tuple[int, int]]:
+    """Yield the tooth numbers (zk, zs) whose ratio -zs/(zk - zs) is in [low, high], by rising zk.
+
+    Args:
+        low: of the interval.
+        high: of the interval, less than 0.
+        most_teeth: greatest zk.
+    """
+    # zs/zk = i/(i - 1) falls from 1 to 0 while i rises from -∞ to 0.
+    least, greatest = high / (high - 1), low / (low - 1)
+    for ring in range(2, most_teeth + 1):
+        first = -(-ring * least.numerator // least.denominator)
+        last = min(ring - 1, ring * greatest.numerator // greatest.denominator)
+        for satellite in range(max(first, 1), last + 1):
+            yield ring, satellite
