@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.commands.output import message_progress
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state import parameters
@@ -27,6 +27,14 @@ def count(text: str) -> int:
     if (number := int(text)) < 1:
         raise argparse.ArgumentTypeError(f'must be at least 1, not {text}')
     return number
+
+
+def ratio(text: str) -> GearRatio:
+    """Parse a gear ratio."""
+    try:
+        return GearRatio.parse(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def add_config(parser: argparse.ArgumentParser) -> None:
@@ -74,12 +82,30 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
 
 
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
-    """Load the parameters from `config_path`.
+    """Load the parameters from `config_path`; the option `--ratio` replaces `gear_ratio`.
 
     Raises:
         ValueError: for values that the node would refuse.
     """
-    return parameters.load(config_path(options, bag), options.node)
+    config = parameters.load(config_path(options, bag), options.node)
+    if given := getattr(options, 'ratio', None):
+        config['gear_ratio'] = str(given)
+    return config
+
+
+def add_ratio(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the ratio of any gear; `load_config` applies `--ratio`."""
+    ways = parser.add_mutually_exclusive_group()
+    ways.add_argument(
+        '--ratio',
+        type=ratio,
+        metavar='I',
+        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+        'from the teeth)',
+    )
+    ways.add_argument(
+        '--fit-ratio', action='store_true', help='estimate the gear ratio from the recording'
+    )
 
 
 def add_mechanism(parser: argparse.ArgumentParser) -> None:
@@ -109,6 +135,8 @@ def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
         if fault := parameters.PARAMETERS[name].fault(option, given, config[name]):
             raise ValueError(fault)
         config[name] = given
+        if name.endswith('_teeth'):
+            config['gear_ratio'] = ''
     return config
 
 

@@ -4,10 +4,11 @@ Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
 """
 
 import argparse
+import re
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -47,7 +48,12 @@ COMMANDS: dict[str, Command] = {
 
 
 class _Parser(argparse.ArgumentParser):
-    """Reports an error in one line, without the usage."""
+    """Reports an error in one line, without the usage, and takes -58/3 for a number."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        # By its own pattern, -58/3 would be an unknown option.
+        self._negative_number_matcher = re.compile(r'-\d+(/\d+)?$|-\d*\.\d+$')
 
     def error(self, message: str) -> NoReturn:
         """Print the message and exit."""

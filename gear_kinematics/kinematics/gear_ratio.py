@@ -32,11 +32,9 @@ class GearRatio(Fraction):
         """Create it like a Fraction."""
         self = super().__new__(cls, numerator, denominator)
         if not self:
-            raise ValueError('a gear ratio is not 0')
+            raise ValueError('a gear ratio must not be 0')
         if abs(self.numerator) * self.denominator > _LARGEST_PRODUCT:
-            raise ValueError(
-                f'numerator × denominator of a gear ratio is at most 2^53, unlike that of {self}'
-            )
+            raise ValueError('numerator × denominator of a gear ratio must not exceed 2^53')
         inverse = -1 / self
         self._p, self._q = float(inverse.numerator), inverse.denominator
         return self
@@ -50,15 +48,16 @@ class GearRatio(Fraction):
         """
         if not _TEXT.fullmatch(text):
             raise ValueError(
-                f'a gear ratio is an integer, a fraction or a decimal, such as -19, 1457/26 or '
-                f'28.8, not {text!r}'
+                'a gear ratio must be an integer, a fraction or a decimal, such as -19, 1457/26 '
+                f'or 28.8, not {text!r}'
             )
         try:
             return cls(Fraction(text))
         except ZeroDivisionError as error:
-            raise ValueError(
-                f'the denominator of a gear ratio is not 0, unlike in {text}'
-            ) from error
+            cause = 'the denominator of a gear ratio must not be 0'
+            raise ValueError(f'{cause}, not {text!r}') from error
+        except ValueError as error:
+            raise ValueError(f'{error}, not {text!r}') from error
 
     @property
     def gear_ratio(self) -> Self:

@@ -79,8 +79,12 @@ class Mechanism:
                 to those of `Branch`. Other keys are ignored.
 
         Raises:
-            MechanismError: also if a key is missing.
+            MechanismError: also if a key is missing, or `gear_ratio` is of another gear.
         """
+        if ratio := parameters.get('gear_ratio'):
+            raise MechanismError(
+                [f'gear_ratio is {ratio}: only the ratio of this gear is known, not its bodies']
+            )
         required = ('ring_teeth', 'satellite_teeth', 'eccentricity', 'branches')
         if missing := [name for name in required if name not in parameters]:
             raise MechanismError([f'{name} is missing' for name in missing])
@@ -128,6 +132,26 @@ class Mechanism:
         order = Fraction(self.ring_teeth, self.ring_teeth - self.satellite_teeth)
         both_odd = order.numerator % 2 == 1 and order.denominator % 2 == 1
         return order.numerator if both_odd else 2 * order.numerator
+
+
+Gear = Mechanism | GearRatio
+"""A gear: a mechanism, or one of which only the ratio is known; both have a `gear_ratio`."""
+
+
+def gear_from_mapping(parameters: Mapping[str, Any]) -> Gear:
+    """Create the gear described by the parameters of the node.
+
+    Args:
+        parameters: `gear_ratio` if the gear is not a `Mechanism`; else that is missing or empty,
+            and the others are as in `Mechanism.from_mapping`.
+
+    Raises:
+        MechanismError: if they describe no mechanism.
+        ValueError: if `gear_ratio` is no ratio.
+    """
+    if text := parameters.get('gear_ratio'):
+        return GearRatio.parse(text)
+    return Mechanism.from_mapping(parameters)
 
 
 def _teeth(name: str, value: object, faults: list[str]) -> int | None:

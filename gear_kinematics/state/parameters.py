@@ -5,13 +5,13 @@ The default values are in config/actuator.yaml alone.
 
 import math
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.kinematics import Branch
+from gear_kinematics.kinematics import Branch, GearRatio
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.state.yaml_file import Loader, read_yaml
 from gear_kinematics.wire.nearest import nearest
@@ -43,6 +43,8 @@ class Parameter:
     step: int = 0
     choices: tuple[str, ...] = ()
     read_only: bool = False
+    check: Callable[[Any], object] | None = None
+    """Raises ValueError for other faults."""
 
     def fault(self, name: str, value: object, default: object) -> str | None:
         """Return the fault of a value, or None."""
@@ -63,6 +65,11 @@ class Parameter:
                 steps = f' in steps of {self.step}' if self.step else ''
                 bounds = f'between {self.minimum} and {self.maximum}{steps}'
                 return f'{name} must be {bounds}, not {value!r}'
+        if self.check:
+            try:
+                self.check(value)
+            except ValueError as error:
+                return f'{name}: {error}'
         return None
 
 
@@ -72,6 +79,11 @@ PARAMETERS: Mapping[str, Parameter] = {
     'eccentricity': Parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True),
     'module': Parameter('Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True),
     'branches': Parameter('Names of the branches', read_only=True),
+    'gear_ratio': Parameter(
+        "Exact ratio of a gear that is not ours, such as '-19' or '1457/26'; '': from the teeth",
+        read_only=True,
+        check=lambda text: text and GearRatio.parse(text),
+    ),
     'rotor_joint': Parameter(
         "Joint to look up in rotor_state, or its index if joints have no names; '' takes the "
         'only joint'

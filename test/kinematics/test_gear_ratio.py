@@ -66,16 +66,16 @@ def test_text_that_is_no_ratio_is_refused(text):
 @pytest.mark.parametrize(
     ('text', 'cause'),
     [
-        ('0', 'a gear ratio is not 0'),
-        ('-0/5', 'a gear ratio is not 0'),
-        ('0.0', 'a gear ratio is not 0'),
-        ('1/0', 'the denominator of a gear ratio is not 0'),
-        ('9007199254740993', r'at most 2\^53'),
-        ('3000000001/3000000000', r'at most 2\^53'),
+        ('0', 'a gear ratio must not be 0'),
+        ('-0/5', 'a gear ratio must not be 0'),
+        ('0.0', 'a gear ratio must not be 0'),
+        ('1/0', 'denominator of a gear ratio must not be 0'),
+        ('9007199254740993', r'must not exceed 2\^53'),
+        ('3000000001/3000000000', r'must not exceed 2\^53'),
     ],
 )
 def test_ratio_that_no_gear_has_is_refused(text, cause):
-    with pytest.raises(ValueError, match=cause):
+    with pytest.raises(ValueError, match=f'{cause}, not {text!r}'):
         GearRatio.parse(text)
 
 

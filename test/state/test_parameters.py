@@ -26,6 +26,7 @@ CONTRACT = {
     'a.axial_position': 0.04,
     'b.cam_phase': math.pi,
     'b.axial_position': -0.04,
+    'gear_ratio': '',
     'rotor_joint': 'rotor',
     'output_joint': 'output_shaft',
     'rotor_direction': 1,
@@ -49,8 +50,8 @@ OUR_OWN = {
     'transmission_error_travel': math.radians(1.0),
 }
 READ_ONLY = {
-    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'markers_rate',
-    'executor',
+    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
+    'markers_rate', 'executor',
 }  # fmt: skip
 LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
 
@@ -131,6 +132,9 @@ REFUSED = [
     ('branches', 'a', ('list',)),
     ('branches', [1, 2], ('strings',)),
     ('branches', [['a']], ('strings',)),
+    ('gear_ratio', -19, ('str',)),
+    ('gear_ratio', '0', ('must not be 0',)),
+    ('gear_ratio', '19:1', ('an integer, a fraction or a decimal, such as -19',)),
     ('rotor_joint', 5, ('str',)),
     ('rotor_direction', 0, ('-1', '1', '2')),
     ('rotor_direction', 2, ('-1', '1')),
@@ -174,6 +178,7 @@ def test_fault_names_parameter_value_and_bound(tmp_path, name, value, bounds):
         ('rotor_direction', 1),
         ('rotor_zero', -1e15),
         ('rotor_encoder', 'single_turn'),
+        ('gear_ratio', '-58/3'),
         ('rotor_joint', ''),
         ('frame_prefix', 'links/φ_'),
         ('a.cam_phase', -2.0 * math.pi),
