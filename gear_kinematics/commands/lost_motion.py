@@ -2,17 +2,27 @@
 
 import argparse
 import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, complain, message_progress
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.lost_motion import Columns, LostMotionReport, measure, read_bag, read_csv
+from gear_kinematics.kinematics import Gear, gear_from_mapping
+from gear_kinematics.lost_motion import (
+    Columns,
+    LostMotionReport,
+    Recording,
+    measure,
+    read_bag,
+    read_csv,
+)
 from gear_kinematics.lost_motion.csv_files import UNITS
 from gear_kinematics.lost_motion.document import document
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
 from gear_kinematics.lost_motion.ramps import RampError
+from gear_kinematics.lost_motion.ratio import fit_ratio
 from gear_kinematics.lost_motion.transmission import MotionError
 
 HELP = 'lost motion, stiffness, play and transmission error from recordings'
@@ -24,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     shares = ' and '.join(f'{100.0 * share:g}' for share in STIFFNESS_SHARES)
     parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
     arguments.add_config(parser)
+    arguments.add_ratio(parser)
     parser.add_argument(
         '--rated-torque',
         type=arguments.positive,
@@ -112,7 +123,22 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
         config['transmission_error_max_gap'] = options.max_gap
     if options.travel is not None:
         config['transmission_error_travel'] = math.radians(options.travel)
-    mechanism = Mechanism.from_mapping(config)
+    gear, fitted = gear_from_mapping(config), None
+    recording = _read(path, options, config, gear)
+    if options.fit_ratio:
+        if not recording.motion:
+            raise MotionError('--fit-ratio needs the angles of rotor and output')
+        fitted = fit_ratio(recording.motion, gear.gear_ratio)
+        if fitted.ratio != gear.gear_ratio:
+            gear = fitted.ratio
+            recording = _read(path, options, config | {'gear_ratio': str(gear)}, gear)
+    corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
+    return measure(recording, gear, options.rated_torque, corners, fitted)
+
+
+def _read(
+    path: Path, options: argparse.Namespace, config: Mapping[str, Any], gear: Gear
+) -> Recording:
     if path.suffix.lower() in _CSV:
         columns = Columns(
             options.angle_column,
@@ -122,24 +148,21 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
             options.angle_unit,
             on_rotor=options.on_rotor,
         )
-        recording = read_csv(
+        return read_csv(
             path,
-            mechanism,
+            gear,
             columns,
             config['transmission_error_travel'],
             options.counts,
             options.output_counts,
         )
-    else:
-        with message_progress(path.name) as report_progress:
-            recording = read_bag(
-                path,
-                config,
-                options.rotor_topic,
-                options.encoder_topic,
-                options.counts,
-                options.output_counts,
-                report_progress,
-            )
-    corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
-    return measure(recording, mechanism, options.rated_torque, corners)
+    with message_progress(path.name) as report_progress:
+        return read_bag(
+            path,
+            config,
+            options.rotor_topic,
+            options.encoder_topic,
+            options.counts,
+            options.output_counts,
+            report_progress,
+        )

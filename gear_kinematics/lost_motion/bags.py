@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
@@ -43,10 +43,10 @@ def read_bag(
 
     Raises:
         BagError: if the bag cannot be read, or lacks a topic.
-        MechanismError: if the parameters describe no mechanism.
+        ValueError: if the parameters describe no gear.
         MotionError: if no output angle can be compared.
     """
-    mechanism = Mechanism.from_mapping(parameters)
+    ratio = gear_from_mapping(parameters).gear_ratio
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, encoder_topic)
         rotor = find_rotor_topic(bag, rotor_topic)
@@ -61,10 +61,9 @@ def read_bag(
     if not len(samples.stamp):
         raise BagError(f'{path}: no usable rotor states on {rotor}')
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
-    turns, angle = mechanism.gear_ratio.output_angle(samples.turns, samples.angle, np)
-    ratio = float(mechanism.gear_ratio)
+    turns, angle = ratio.output_angle(samples.turns, samples.angle, np)
     positions = samples.turns * TURN + samples.angle
-    rotor_step = step_of(counts, positions) / abs(ratio)
+    rotor_step = step_of(counts, positions) / float(abs(ratio))
     motion = None
     columns = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
     if encoder:
@@ -81,9 +80,9 @@ def read_bag(
             step_of(output_counts, readings),
         )
         columns.append(f'output {encoder}, rad')
-    loading = _loading(samples, ratio, turns, angle, rotor_step, motion)
+    loading = _loading(samples, float(ratio), turns, angle, rotor_step, motion)
     if loading:
-        columns.append(f'torque: effort of {rotor} × {ratio:g}, N·m')
+        columns.append(f'torque: effort of {rotor} × {ratio}, N·m')
     elif not motion:
         raise BagError(f'{path}: {rotor} has no effort, and there is no {OUTPUT_ENCODER}')
     return Recording(

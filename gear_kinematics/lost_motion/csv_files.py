@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
 from gear_kinematics.lost_motion.transmission import Motion
@@ -57,7 +57,7 @@ class Columns:
 
 def read_csv(
     path: Path,
-    mechanism: Mechanism,
+    gear: Gear,
     columns: Columns,
     travel: float,
     counts: int | None = None,
@@ -67,7 +67,7 @@ def read_csv(
 
     Args:
         path: of the file.
-        mechanism: gives the gear ratio.
+        gear: gives the gear ratio.
         columns: the columns to read.
         travel: rad of the output after a reversal, until the new direction counts.
         counts: steps per turn of the encoder of the angle or rotor column.
@@ -87,13 +87,14 @@ def read_csv(
     data = dict(zip(found, values[usable].T, strict=True))
     left_out = int(np.count_nonzero(~usable))
     remarks = (f'{left_out} rows were left out: not finite, or too large',) if left_out else ()
+    ratio = gear.gear_ratio
     loading = motion = None
     if columns.on_rotor and 'torque' in data:
-        data['torque'] *= float(mechanism.gear_ratio)
+        data['torque'] *= float(ratio)
     if 'rotor' in data:
-        motion = _motion(mechanism, data, travel, counts, output_counts)
+        motion = _motion(ratio, data, travel, counts, output_counts)
     if 'angle' in data:
-        loading = _loading(mechanism, data, counts, on_rotor=columns.on_rotor)
+        loading = _loading(ratio, data, counts, on_rotor=columns.on_rotor)
     elif motion and 'torque' in data:
         loading = Loading.of_gear(data['torque'], motion)
     return Recording(
@@ -196,29 +197,28 @@ def _described(found: Mapping[str, str], unit: str, why: str, *, on_rotor: bool)
 
 
 def _loading(
-    mechanism: Mechanism, data: Mapping[str, Array], counts: int | None, *, on_rotor: bool
+    ratio: GearRatio, data: Mapping[str, Array], counts: int | None, *, on_rotor: bool
 ) -> Loading:
     angle, step = data['angle'], step_of(counts, data['angle'])
     if on_rotor:
-        ratio = float(mechanism.gear_ratio)
-        angle, step = angle / ratio, step / abs(ratio)
+        angle, step = angle / float(ratio), step / float(abs(ratio))
     return Loading(data['torque'], angle, step, measured=False)
 
 
 def _motion(
-    mechanism: Mechanism,
+    ratio: GearRatio,
     data: Mapping[str, Array],
     travel: float,
     counts: int | None,
     output_counts: int | None,
 ) -> Motion:
     """Compare rotor and output row by row; a row was sampled at one time."""
-    turns, angle = mechanism.gear_ratio.output_angle(*split_turns(data['rotor']), np)
+    turns, angle = ratio.output_angle(*split_turns(data['rotor']), np)
     row = np.arange(len(angle))
     return Motion.from_angles(
         TransmissionError(max_gap=1, travel=travel),
         (row, turns, angle),
         (row, data['output']),
-        step_of(counts, data['rotor']) / abs(float(mechanism.gear_ratio)),
+        step_of(counts, data['rotor']) / float(abs(ratio)),
         step_of(output_counts, data['output']),
     )

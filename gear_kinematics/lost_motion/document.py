@@ -72,6 +72,8 @@ def _recording(report: LostMotionReport) -> Mapping[str, Any]:
         'columns': recording.columns,
         'samples': recording.rows,
         'error': recording.error,
+        'gear_ratio': str(report.gear_ratio),
+        'fitted_ratio': _plain(report.fitted),
         'hysteresis': _without(report.hysteresis, 'ramps'),
         'transmission': _without(report.transmission, 'spectra'),
         'encoders': motion
@@ -123,6 +125,7 @@ def _head(report: LostMotionReport) -> Table:
         Layout.INLINE,
         ('samples', str(report.recording.rows)),
         ('columns', printable('; '.join(report.recording.columns))),
+        ('gear ratio', str(report.gear_ratio)),
         ('rated torque', rated),
     )
 

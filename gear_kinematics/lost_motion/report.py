@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.lost_motion import hysteresis, transmission
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
 from gear_kinematics.lost_motion.ramps import RampError, Ramps, find_ramps
+from gear_kinematics.lost_motion.ratio import RatioEstimate
 from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.lost_motion.transmission import TransmissionFigures
 
@@ -40,32 +41,38 @@ class LostMotionReport:
     """The results for one recording."""
 
     recording: Recording
+    gear_ratio: GearRatio
+    """The ratio with which the recording was read."""
     hysteresis: HysteresisReport | None = None
     transmission: TransmissionFigures | None = None
     remarks: tuple[str, ...] = ()
     """Sentences about the recording."""
+    fitted: RatioEstimate | None = None
+    """The estimate of the ratio, if it comes from the recording."""
 
 
 def measure(
     recording: Recording,
-    mechanism: Mechanism,
+    gear: Gear,
     rated_torque: float | None = None,
     corners: tuple[float, ...] | None = None,
+    fitted: RatioEstimate | None = None,
 ) -> LostMotionReport:
     """Measure lost motion in a recording.
 
     Args:
         recording: torque ramps, the motion of both encoders, or both.
-        mechanism: the mechanism whose orders to look for.
+        gear: the gear whose orders to look for.
         rated_torque: N·m at the output; None: the amplitude of the largest ramps.
         corners: N·m, rising, between ranges of stiffness; None: shares of the rated torque.
+        fitted: the estimate of the ratio, if it comes from the recording.
 
     Raises:
         RampError, MotionError: if nothing can be measured.
     """
     remarks = list(recording.remarks)
     motion = recording.motion
-    found = transmission.figures(motion, mechanism) if motion else None
+    found = transmission.figures(motion, gear) if motion else None
     ramps = None
     if recording.loading:
         try:
@@ -74,7 +81,7 @@ def measure(
             if not found:
                 raise
             remarks.append(str(error))
-    return LostMotionReport(recording, ramps, found, tuple(remarks))
+    return LostMotionReport(recording, gear.gear_ratio, ramps, found, tuple(remarks), fitted)
 
 
 def _hysteresis(

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
 from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
@@ -32,6 +32,8 @@ _SAMPLES = 4.0
 """Minimum samples in a cycle."""
 _BINS = 8.0
 """Interpolated samples in the spectrum's shortest cycle."""
+_MOST_TEETH = 100
+"""Greatest number of teeth in mesh per turn of the rotor of an unknown gear."""
 _BLOCK = 16_384
 """Samples that are fitted at a time."""
 
@@ -154,19 +156,17 @@ class _Run:
         return float(np.quantile(np.diff(self.angle), 0.99)) / TURN
 
 
-def marked_orders(mechanism: Mechanism) -> dict[str, Fraction]:
+def marked_orders(gear: Gear) -> dict[str, Fraction]:
     """The orders to look for, by name, in cycles per turn of the output.
 
-    In a turn of the output, the rotor turns |i| times; the cam turns |i| + 1 times against the
-    satellite, as do its mesh and the Oldham coupling. Teeth mesh zk times per turn of the rotor.
+    In a turn of the output, the rotor turns |i| times. In a mechanism, the cam turns |i| + 1 times
+    against the satellite, as do its mesh and the Oldham coupling, and teeth mesh zk times per turn
+    of the rotor.
     """
-    rotor = abs(mechanism.gear_ratio)
-    base = {
-        'output': Fraction(1),
-        'rotor': rotor,
-        'satellite': rotor + 1,
-        'teeth': mechanism.ring_teeth * rotor,
-    }
+    rotor = abs(gear.gear_ratio)
+    base = {'output': Fraction(1), 'rotor': rotor}
+    if isinstance(gear, Mechanism):
+        base |= {'satellite': rotor + 1, 'teeth': gear.ring_teeth * rotor}
     return {
         f'{name} × {multiple}': multiple * cycles
         for name, cycles in base.items()
@@ -174,7 +174,7 @@ def marked_orders(mechanism: Mechanism) -> dict[str, Fraction]:
     }
 
 
-def figures(motion: Motion, mechanism: Mechanism) -> TransmissionFigures:
+def figures(motion: Motion, gear: Gear) -> TransmissionFigures:
     """Compute the figures of a recording.
 
     Raises:
@@ -193,8 +193,8 @@ def figures(motion: Motion, mechanism: Mechanism) -> TransmissionFigures:
         forward=_accuracy(forward, both),
         backward=_accuracy(backward, both),
         lost_motion=_lost_motion(runs, both),
-        orders=tuple(_orders(mechanism, forward, backward, Component(reading))),
-        spectra=(_spectrum(mechanism, forward), _spectrum(mechanism, backward)),
+        orders=tuple(_orders(gear, forward, backward, Component(reading))),
+        spectra=(_spectrum(gear, forward), _spectrum(gear, backward)),
     )
 
 
@@ -245,9 +245,9 @@ def _lost_motion(runs: Sequence[tuple[int, _Run]], reading: Component) -> Estima
 
 
 def _orders(
-    mechanism: Mechanism, forward: Sequence[_Run], backward: Sequence[_Run], reading: Component
+    gear: Gear, forward: Sequence[_Run], backward: Sequence[_Run], reading: Component
 ) -> Iterable[Order]:
-    marked = marked_orders(mechanism)
+    marked = marked_orders(gear)
     ways = [_amplitudes(runs, marked, reading) for runs in (forward, backward)]
     for name, cycles in marked.items():
         yield Order(name, cycles, *(way.get(name) for way in ways))
@@ -291,12 +291,13 @@ def _fit(run: _Run, orders: Sequence[float]) -> list[float]:
     return [math.hypot(cosine, sine) for cosine, sine in zip(cosines, sines, strict=True)]
 
 
-def _spectrum(mechanism: Mechanism, runs: Sequence[_Run]) -> Spectrum | None:
+def _spectrum(gear: Gear, runs: Sequence[_Run]) -> Spectrum | None:
     """Amplitudes of all orders that the longest run resolves, with a Hann window."""
     run = max(runs, key=lambda run: run.turns, default=None)
     if run is None:
         return None
-    highest = min(2.5 * float(mechanism.ring_teeth * abs(mechanism.gear_ratio)), 0.5 / run.spacing)
+    teeth = gear.ring_teeth if isinstance(gear, Mechanism) else _MOST_TEETH
+    highest = min(2.5 * float(teeth * abs(gear.gear_ratio)), 0.5 / run.spacing)
     if highest * run.turns < _CYCLES:
         return None
     count = math.ceil(_BINS * highest * run.turns)

@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator
 
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
+from gear_kinematics.lost_motion.ratio import MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
 from gear_kinematics.report.document import number, printable
@@ -12,6 +13,8 @@ ARC_MINUTES = 60.0 * 180.0 / math.pi
 """Arc minutes per radian; catalogues give lost motion in arc minutes."""
 PERCENT = f'{100.0 * COVERAGE:g} %'
 """Probability with which an interval contains the value."""
+_PAIRS = 10
+"""Tooth pairs that are listed."""
 _EXACT = 1e-5
 """Relative uncertainty below which values are rounded to six digits."""
 
@@ -25,6 +28,8 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
     recording = report.recording
     if recording.error:
         yield f'{recording.error}; the figures describe the data before it'
+    if fitted := report.fitted:
+        yield from _ratio(fitted)
     if found := report.hysteresis:
         yield (
             'Output and rotor were both measured: the wind-up is that of the gear.'
@@ -47,6 +52,26 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
         f'Each ± contains the value with a probability of {PERCENT}, given the scatter of repeats '
         'and the steps of the encoders; scale errors of torque and angle are not included.'
     )
+
+
+def _ratio(fitted: RatioEstimate) -> Iterator[str]:
+    spread = fitted.measured.uncertainty or 0.0
+    decimals = max(0, 1 - math.floor(math.log10(spread)))
+    yield (
+        f'The gear ratio is estimated as {fitted.measured.value:.{decimals}f} ± '
+        f'{spread:.{decimals}f}, and taken as {fitted.ratio}.'
+    )
+    yield (
+        f'{fitted.simplest} is the simplest fraction within twice that uncertainty; one as simple '
+        f'is there by coincidence with a probability of at most {number(fitted.chance, 2)}.'
+    )
+    if pairs := fitted.tooth_pairs:
+        shown = ', '.join(f'{ring}/{satellite}' for ring, satellite in pairs[:_PAIRS])
+        more = f' and {len(pairs) - _PAIRS} more' if len(pairs) > _PAIRS else ''
+        yield (
+            f'Tooth pairs (ring gear/satellite) of up to {MOST_TEETH} teeth with such a ratio: '
+            f'{shown}{more}.'
+        )
 
 
 def _step(step: float, of: str) -> str:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 import struct
 import subprocess
 import sys
@@ -309,3 +310,71 @@ def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
     assert 'All ramps have about the same amplitude' in told
     assert 'The friction exceeds ±0.12 N·m' in told
     assert '± (95 %)' not in told
+
+
+def another_gear(folder):
+    """Record four turns of the output of a gear with the ratio -58/3."""
+    ideal = np.linspace(0.0, 25.0, 9000)
+    output = (ideal + 1e-3 * np.sin(ideal + 1.0)) % (2.0 * math.pi)
+    return write_csv(folder / 'other.csv', rotor=-58.0 / 3.0 * ideal, output=output)
+
+
+def test_any_ratio_can_be_given(tmp_path, capsys):
+    assert main(['lost-motion', str(another_gear(tmp_path)), '--ratio', '-58/3', '--json']) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    assert (found['gear_ratio'], found['fitted_ratio']) == ('-58/3', None)
+    cycles = {order['name']: order['cycles'] for order in found['transmission']['orders']}
+    expected = {'output': ('1', '2'), 'rotor': ('58/3', '116/3')}
+    assert cycles == {f'{name} × {k}': n[k - 1] for name, n in expected.items() for k in (1, 2)}
+    assert found['transmission']['forward']['value'] == pytest.approx(2e-3, rel=1e-3)
+
+
+def test_ratio_can_be_that_of_the_parameter_file(tmp_path, capsys):
+    config = tmp_path / 'other.yaml'
+    config.write_text("/**: {ros__parameters: {gear_ratio: '-58/3'}}", 'utf-8')
+    assert main(['lost-motion', str(another_gear(tmp_path)), '--config', str(config)]) == 0
+    assert facts(capsys.readouterr().out)['gear ratio'] == '-58/3'
+
+
+def test_ratio_is_estimated_and_the_gears_that_have_it_are_named(tmp_path, capsys):
+    path = str(another_gear(tmp_path))
+    assert main(['lost-motion', path, '--fit-ratio', '--json']) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    fitted = found['fitted_ratio']
+    assert found['gear_ratio'] == fitted['simplest'] == '-58/3'
+    assert fitted['measured']['value'] == pytest.approx(-58.0 / 3.0, abs=1e-6)
+    assert fitted['measured']['expanded_uncertainty'] < 1e-4
+    assert fitted['tooth_pairs'] == [[61, 58], [122, 116], [183, 174]]
+    assert found['transmission']['forward']['value'] == pytest.approx(2e-3, rel=1e-3)
+    assert main(['lost-motion', path, '--fit-ratio']) == 0
+    output = capsys.readouterr().out
+    assert re.search(r'estimated as -19\.333\d+ ± 0\.0000\d+, and taken as -58/3\.', output)
+    assert 'a ratio: 61/58, 122/116, 183/174.' in output
+
+
+def test_fitted_ratio_of_the_config_keeps_the_orders_of_its_teeth(motion, capsys):
+    assert main(['lost-motion', str(motion), '--fit-ratio', '--json']) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    assert found['gear_ratio'] == '-19'
+    assert 'teeth × 1' in {order['name'] for order in found['transmission']['orders']}
+
+
+@pytest.mark.parametrize(
+    ('given', 'complaint'),
+    [
+        (['--ratio', '0'], 'argument --ratio: a gear ratio must not be 0'),
+        (['--ratio', '19:1'], 'a gear ratio must be an integer, a fraction or a decimal, such as'),
+        (['--ratio', '-19', '--fit-ratio'], 'not allowed with argument --ratio'),
+    ],
+)
+def test_what_is_no_ratio_is_refused(motion, given, complaint, capsys):
+    with pytest.raises(SystemExit, match='2'):
+        main(['lost-motion', str(motion), *given])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert complaint in line
+
+
+def test_ratio_cannot_be_estimated_without_both_angles(recording, capsys):
+    assert main(['lost-motion', str(recording), '--fit-ratio']) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.endswith('--fit-ratio needs the angles of rotor and output')
