@@ -21,23 +21,21 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
-from std_msgs.msg import String
 from std_srvs.srv import Trigger
-from visualization_msgs.msg import MarkerArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
+from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
-from gear_kinematics.ros.markers import Markers
-from gear_kinematics.shape.urdf import joint_names, urdf
+from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state import parameters
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.transmission_error import ErrorSample
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -61,7 +59,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
         Raises:
             ParameterException: if a parameter is refused.
-            ValueError: if the parameters describe no mechanism, one is unknown, or the files have
+            ValueError: if the parameters describe no gear, one is unknown, or the files have
                 none for this node.
         """
         super().__init__(parameters.NODE, **options)
@@ -76,22 +74,26 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         given = getattr(self, '_parameter_overrides', ())
         if faults := parameters.unknown_parameters(given, branches):
             raise ValueError('; '.join(faults))
-        self._mechanism = Mechanism.from_mapping(self._values())
+        self._gear = gear_from_mapping(self._values())
         rotor, encoder = self._settings = self._settings_of_inputs()
         self._input = RotorInput(rotor)
-        self._encoder = OutputEncoder(self._mechanism, encoder)
+        self._encoder = OutputEncoder(self._gear, encoder)
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
-        self._description = String()
 
         self._all_outputs: list[Publisher] = []
-        self._description_publisher = self._create_output(
-            String, topics.ROBOT_DESCRIPTION, _latched()
+        self._display = (
+            Display(self, self._gear, self._create_output, self._publish)
+            if isinstance(self._gear, Mechanism)
+            else None
         )
+        self._messages = state_messages(self._gear, **self._names())
         self._outputs = {
-            topic: self._create_output(_MESSAGE_TYPES[name], topic, QoSProfile(depth=DEPTH))
-            for topic, name in topics.STATE_TOPICS.items()
+            topic: self._create_output(
+                _MESSAGE_TYPES[topics.TOPICS[topic].type], topic, QoSProfile(depth=DEPTH)
+            )
+            for topic in self._messages.topics
         }
         self._listened_to: list[str] = []  # only outputs with subscribers are computed
         self._transmission_error = self._create_output(
@@ -107,14 +109,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
-        if rate := self._value('markers_rate'):
-            steady = Clock(clock_type=ClockType.STEADY_TIME)
-            self._marker_timer = self.create_timer(
-                1.0 / rate, self._publish_markers, clock=steady, autostart=False
-            )
-            self._marker_publisher = self._create_output(
-                MarkerArray, topics.MARKERS, _latched(), matched=self._on_viewers
-            )
         self._drivers = self._rotor_driver, self._encoder_driver = (
             DriverInput(self, topics.ROTOR_STATE, self._on_rotor_state, self._monitor),
             DriverInput(
@@ -124,11 +118,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
-            f'gear ratio {self._mechanism.gear_ratio} '
-            f'(ring {self._mechanism.ring_teeth}, satellite {self._mechanism.satellite_teeth} '
-            f'teeth), listening for {listening_for} on '
-            f'{self._rotor_driver.subscription.topic_name}'
+            f'gear ratio {self._gear.gear_ratio} ({self._known()}), listening for {listening_for} '
+            f'on {self._rotor_driver.subscription.topic_name}'
         )
+
+    def _known(self) -> str:
+        """What is known of the gear besides its ratio."""
+        if isinstance(self._gear, Mechanism):
+            return f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
+        unpublished = ', '.join(topics.BODY_TOPICS)
+        return f'bodies unknown: no {unpublished}'
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; the reason of a refusal always names the parameter."""
@@ -191,6 +190,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _values(self) -> dict[str, Any]:
         return {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
 
+    def _names(self) -> dict[str, str]:
+        return {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
+
     def _settings_of_inputs(self) -> tuple[InputSettings, EncoderSettings]:
         values = self._values()
         return InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
@@ -199,17 +201,15 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
         for parameter in changed:
             known = parameters.PARAMETERS.get(parameter.name)
-            if known and known.choices and parameter.value not in known.choices:
-                reason = f'{parameter.name} must be one of {", ".join(known.choices)}'
+            if known and (reason := known.other_fault(parameter.name, parameter.value)):
                 return SetParametersResult(successful=False, reason=reason)
             if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
                 reason = f'{parameter.name} must be between 0 and {_MAX_DEPTH}'
                 return SetParametersResult(successful=False, reason=reason)
-            # At declaration there is no mechanism yet; `_configure` checks the names then.
-            if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_mechanism'):
-                names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
+            # At declaration there is no gear yet; `_configure` checks the names then.
+            if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_gear'):
                 try:
-                    joint_names(self._mechanism, **names | {parameter.name: parameter.value})
+                    joint_names(self._gear, **self._names() | {parameter.name: parameter.value})
                 except ValueError as error:
                     return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
@@ -219,16 +219,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         if (settings := self._settings_of_inputs()) != self._settings:
             self._settings = settings
             self._input.settings, encoder = settings
-            self._encoder = OutputEncoder(self._mechanism, encoder)  # discards earlier errors
-        names = {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
-        self._messages = StateMessages(self._mechanism, **names)
-        description = String(data=urdf(self._mechanism, module=self._value('module'), **names))
-        if description != self._description:
-            self._description = description
-            self._publish(self._description_publisher, description)
-            self._markers = Markers(
-                self._mechanism, module=self._value('module'), frame_prefix=names['frame_prefix']
-            )
+            self._encoder = OutputEncoder(self._gear, encoder)  # discards earlier errors
+        names = self._names()
+        self._messages = state_messages(self._gear, **names)
+        if self._display:
+            self._display.update(**names)
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
@@ -259,19 +254,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if self._transmission_error.get_subscription_count():
                 self._publish(self._transmission_error, self._messages.transmission_error(sample))
 
-    def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
-        """Run the timer of the markers while there are subscribers; resend for a new one."""
-        # Not the change of the count: some executors report 0 for an earlier subscriber.
-        if event.current_count:
-            self._markers.repeat()
-            self._marker_timer.reset()
-        else:
-            self._marker_timer.cancel()
-
-    def _publish_markers(self) -> None:
-        if message := self._markers.due(time.monotonic()):
-            self._publish(self._marker_publisher, message)
-
     def _publish(self, publisher: Publisher, message: Any) -> None:
         try:
             publisher.publish(message)
@@ -298,7 +280,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         home_angle = self._value('home_angle')
         try:
-            zero = self._input.home(self._mechanism.rotor_angle(home_angle))
+            zero = self._input.home(self._gear.gear_ratio.rotor_angle(home_angle))
         except RuntimeError:
             response.message = f'there was no valid {topics.ROTOR_STATE} yet'
             return response
@@ -318,7 +300,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
         reports = {
-            'rotor input': self._monitor.report(self._input, self._mechanism, timeout, now),
+            'rotor input': self._monitor.report(self._input, self._gear, timeout, now),
             'transmission error': self._encoder_monitor.report(
                 self._encoder, self._value('transmission_error_limit'), timeout, now
             ),
@@ -335,8 +317,3 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for fault in (*found.errors, *found.warnings):
             if fault not in (*known.errors, *known.warnings):
                 self.get_logger().warning(fault)
-
-
-def _latched() -> QoSProfile:
-    """Create a new profile for each topic, since QoS overrides change it."""
-    return QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)

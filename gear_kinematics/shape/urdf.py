@@ -8,7 +8,7 @@ the joint positions in mechanism_joint_states close the loops through the arms o
 import math
 from xml.etree import ElementTree as ET
 
-from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.kinematics import Branch, Gear, Mechanism
 
 _STEEL = 7850.0  # kg/m³
 FACE_WIDTH = 0.01
@@ -23,16 +23,20 @@ COLOURS = {
 """Red, green, blue and opacity of the bodies, in the format of URDF."""
 
 
-def joint_names(mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> list[str]:
+def joint_names(gear: Gear, *, output_joint: str, frame_prefix: str) -> list[str]:
     """Names of all joints of the URDF: rotor, satellites, Oldham couplings, output shaft.
+
+    Of a gear of which only the ratio is known, that of the output shaft alone.
 
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint, or a name is not
             printable.
     """
-    branches = [branch.name for branch in mechanism.branches]
-    names = ['rotor']
-    names += [f'{kind}_{branch}' for kind in ('satellite', 'oldham') for branch in branches]
+    names = []
+    if isinstance(gear, Mechanism):
+        branches = [branch.name for branch in gear.branches]
+        names.append('rotor')
+        names += [f'{kind}_{branch}' for kind in ('satellite', 'oldham') for branch in branches]
     if not output_joint or output_joint in names:
         raise ValueError(f'output_joint {output_joint!r} is empty or the name of another joint')
     for parameter, text in (('output_joint', output_joint), ('frame_prefix', frame_prefix)):

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from gear_kinematics.kinematics import Mechanism, loop_closure, solve
+from gear_kinematics.kinematics import Gear, Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
@@ -51,14 +51,12 @@ class InputMonitor:
     _counts: Counter[str] = field(default_factory=Counter)
     _rejected: Counter[str] = field(default_factory=Counter)
 
-    def report(
-        self, rotor_input: RotorInput, mechanism: Mechanism, timeout: float, now: float
-    ) -> Report:
+    def report(self, rotor_input: RotorInput, gear: Gear, timeout: float, now: float) -> Report:
         """Report on the time since the last report.
 
         Args:
             rotor_input: the input to report on.
-            mechanism: gives the loop-closure residual at the last sample.
+            gear: gives the loop-closure residual at the last sample, if it is a mechanism.
             timeout: s without input after which it is an error.
             now: s.
         """
@@ -101,7 +99,7 @@ class InputMonitor:
             'clock resets': str(rotor_input.resets),
             'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
             'referenced': str(rotor_input.referenced).lower(),
-            'loop-closure residual (m)': _residual(rotor_input, mechanism),
+            'loop-closure residual (m)': _residual(rotor_input, gear),
         }
         return Report(level, '; '.join(errors + warnings) or 'ok', values)
 
@@ -181,11 +179,11 @@ def _number(value: float | None) -> str:
     return 'none' if value is None else f'{value:.6g}'
 
 
-def _residual(rotor_input: RotorInput, mechanism: Mechanism) -> str:
-    if rotor_input.last is None:
+def _residual(rotor_input: RotorInput, gear: Gear) -> str:
+    if rotor_input.last is None or not isinstance(gear, Mechanism):
         return 'none'
     turns, angle = rotor_input.last.position
     # Poses repeat after as many rotor turns as the numerator; the rest is a small, exact angle.
-    rotor_angle = TURN * (turns % mechanism.gear_ratio.numerator) + angle
-    state = solve(mechanism, rotor_angle)
-    return f'{loop_closure.residual(mechanism, rotor_angle, state).max():.3g}'
+    rotor_angle = TURN * (turns % gear.gear_ratio.numerator) + angle
+    state = solve(gear, rotor_angle)
+    return f'{loop_closure.residual(gear, rotor_angle, state).max():.3g}'

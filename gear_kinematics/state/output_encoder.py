@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear
 from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.transmission_error import ErrorSample, ErrorWindow, TransmissionError
 from gear_kinematics.wire.cdr import SECOND
@@ -39,13 +39,13 @@ class EncoderSettings(Settings):
 class OutputEncoder:
     """Compares the angles of output_encoder messages with the ideal output angle."""
 
-    def __init__(self, mechanism: Mechanism, settings: EncoderSettings) -> None:
+    def __init__(self, gear: Gear, settings: EncoderSettings) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.window = ErrorWindow(round(settings.transmission_error_window * SECOND))
         self._settings = settings
         self._reader = JointReader(settings.output_encoder_joint)
-        self._ratio = mechanism.gear_ratio
+        self._ratio = gear.gear_ratio
         self.comparison = settings.comparison()
         """Counts the measured angles that were compared, and those that were not by cause."""
         self._last = 0

@@ -52,8 +52,6 @@ class Parameter:
             return f'{name} must be of type {type(default).__name__}, not {value!r}'
         if isinstance(value, list) and not all(isinstance(item, str) for item in value):
             return f'{name} must be a list of strings, not {value!r}'
-        if self.choices and value not in self.choices:
-            return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
         if (
             isinstance(value, (int, float))
             and self.minimum is not None
@@ -65,6 +63,12 @@ class Parameter:
                 steps = f' in steps of {self.step}' if self.step else ''
                 bounds = f'between {self.minimum} and {self.maximum}{steps}'
                 return f'{name} must be {bounds}, not {value!r}'
+        return self.other_fault(name, value)
+
+    def other_fault(self, name: str, value: object) -> str | None:
+        """Return a fault of a value within the type and the bounds, which ROS checks, or None."""
+        if self.choices and value not in self.choices:
+            return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
         if self.check:
             try:
                 self.check(value)

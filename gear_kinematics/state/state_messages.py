@@ -1,13 +1,13 @@
 """The messages that the node publishes for its samples, serialised."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.shape.urdf import joint_names
@@ -18,14 +18,15 @@ from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
 from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE, STATE_TOPICS
 
 
-class StateMessages:
-    """Computes the state at a sample and encodes its messages."""
+class OutputMessages:
+    """Computes the state of the output shaft at a sample and encodes its messages."""
 
-    def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
-        self._form = closed_form(mechanism)
-        self._ratio = mechanism.gear_ratio
-        self._torque_ratio = float(self._ratio)
-        self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
+    topics: Collection[str] = (OUTPUT_STATE,)
+    """Topics whose messages are encoded."""
+
+    def __init__(self, ratio: GearRatio, *, output_joint: str, frame_prefix: str) -> None:
+        self._ratio = ratio
+        self._torque_ratio = float(ratio)
         self._output_states = {
             (velocity, effort): JointStateTemplate(
                 [frame_prefix + output_joint], velocity=velocity, effort=effort
@@ -33,35 +34,18 @@ class StateMessages:
             for velocity in (False, True)
             for effort in (False, True)
         }
-        self._body_poses = PoseArrayTemplate(frame_prefix + 'stator', 2 * len(mechanism.branches))
-        names = joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)
-        self._joint_states = {
-            velocity: JointStateTemplate(names, velocity=velocity, effort=False)
-            for velocity in (False, True)
-        }
 
     def encode(
-        self, sample: RotorSample, topics: Iterable[str] = STATE_TOPICS
+        self, sample: RotorSample, topics: Iterable[str] = topics
     ) -> Iterator[tuple[str, bytes]]:
-        """Yield topic and message for a sample, for all or some of STATE_TOPICS."""
-        turns, angle = sample.position
-        output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
-        output_angle = TURN * output_turns + output_rest
-        branches: list[BranchPosition] = []
+        """Yield topic and message for a sample, for all or some of `topics`."""
+        output_turns, output_rest = self._ratio.output_angle(*sample.position, math)
         for topic in topics:
-            if topic == OUTPUT_STATE:
-                yield topic, self._output_state(sample, output_angle)
-                continue
-            branches = branches or self._form.branches(angle, output_rest, math)
-            if topic == BODY_POSES:
-                numbers = self._pose_numbers(output_rest, branches, math)
-                yield topic, self._body_poses.encode(sample.stamp, numbers)
-            else:
-                yield topic, self._joint_state(sample, output_angle, branches)
+            yield topic, self._output_state(sample, TURN * output_turns + output_rest)
 
     @np.errstate(over='ignore')  # an effort can overflow, as it does for a single sample
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
-        """Encode OUTPUT_STATE and BODY_POSES for many samples, as `encode` does."""
+        """Encode the recorded topics among `topics` for many samples, as `encode` does."""
         output_turns, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
         output_angle = TURN * output_turns + output_rest
         output_states = len(samples.stamp) * [b'']
@@ -74,11 +58,7 @@ class StateMessages:
             encoded = encode(template, samples.stamp[rows], *([number] for number in numbers))
             for row, message in zip(rows.tolist(), encoded, strict=True):
                 output_states[row] = message
-        branches = self._form.branches(samples.angle, output_rest, np)
-        poses = encode(
-            self._body_poses, samples.stamp, self._pose_numbers(output_rest, branches, np)
-        )
-        return {OUTPUT_STATE: output_states, BODY_POSES: poses}
+        return {OUTPUT_STATE: output_states}
 
     def transmission_error(self, sample: ErrorSample) -> bytes:
         """Encode a transmission error, as the position of the output joint."""
@@ -100,6 +80,52 @@ class StateMessages:
         if present[1]:
             numbers.append(self._torque_ratio * effort)
         return numbers
+
+
+class StateMessages(OutputMessages):
+    """Computes the state of a mechanism at a sample and encodes its messages."""
+
+    topics = STATE_TOPICS.keys()
+
+    def __init__(self, mechanism: Mechanism, *, output_joint: str, frame_prefix: str) -> None:
+        super().__init__(
+            mechanism.gear_ratio, output_joint=output_joint, frame_prefix=frame_prefix
+        )
+        self._form = closed_form(mechanism)
+        self._axial_positions = 2 * [branch.axial_position for branch in mechanism.branches]
+        self._body_poses = PoseArrayTemplate(frame_prefix + 'stator', 2 * len(mechanism.branches))
+        names = joint_names(mechanism, output_joint=output_joint, frame_prefix=frame_prefix)
+        self._joint_states = {
+            velocity: JointStateTemplate(names, velocity=velocity, effort=False)
+            for velocity in (False, True)
+        }
+
+    def encode(
+        self, sample: RotorSample, topics: Iterable[str] = topics
+    ) -> Iterator[tuple[str, bytes]]:
+        """Yield topic and message for a sample, for all or some of `topics`."""
+        turns, angle = sample.position
+        output_turns, output_rest = self._ratio.output_angle(turns, angle, math)
+        output_angle = TURN * output_turns + output_rest
+        branches: list[BranchPosition] = []
+        for topic in topics:
+            if topic == OUTPUT_STATE:
+                yield topic, self._output_state(sample, output_angle)
+                continue
+            branches = branches or self._form.branches(angle, output_rest, math)
+            if topic == BODY_POSES:
+                numbers = self._pose_numbers(output_rest, branches, math)
+                yield topic, self._body_poses.encode(sample.stamp, numbers)
+            else:
+                yield topic, self._joint_state(sample, output_angle, branches)
+
+    def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
+        """Encode the recorded topics among `topics` for many samples, as `encode` does."""
+        _, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
+        branches = self._form.branches(samples.angle, output_rest, np)
+        numbers = self._pose_numbers(output_rest, branches, np)
+        poses = encode(self._body_poses, samples.stamp, numbers)
+        return super().encode_outputs(samples) | {BODY_POSES: poses}
 
     def _pose_numbers(
         self, output_angle: Any, branches: Sequence[BranchPosition], xp: ModuleType
@@ -131,3 +157,17 @@ class StateMessages:
         velocities += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
         velocities.append(output_velocity)
         return self._joint_states[True].encode(sample.stamp, positions, velocities)
+
+
+def state_messages(gear: Gear, *, output_joint: str, frame_prefix: str) -> OutputMessages:
+    """The messages of a gear: those of its bodies too, unless only the ratio is known.
+
+    Raises:
+        ValueError: if `output_joint` is empty or the name of another joint, or a name is not
+            printable.
+    """
+    names = {'output_joint': output_joint, 'frame_prefix': frame_prefix}
+    if isinstance(gear, Mechanism):
+        return StateMessages(gear, **names)
+    joint_names(gear, **names)  # to check them
+    return OutputMessages(gear, **names)

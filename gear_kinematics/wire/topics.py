@@ -48,6 +48,9 @@ STATE_TOPICS: Mapping[str, str] = {
 }
 """The topics of the state and their types."""
 
+BODY_TOPICS = BODY_POSES, JOINT_STATES, ROBOT_DESCRIPTION, MARKERS
+"""The topics about the bodies of a mechanism, of which the ratio alone tells nothing."""
+
 RECORDED_TOPICS: Mapping[str, str] = {
     f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)
 }

@@ -2,7 +2,9 @@
 
 import itertools
 import math
+import re
 import sys
+import time
 from types import SimpleNamespace
 
 import pytest
@@ -13,8 +15,10 @@ from rclpy.exceptions import ParameterException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
+from rclpy.serialization import deserialize_message
 from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
+from sensor_msgs.msg import JointState
 
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.ros.node import GearStatePublisher
@@ -25,7 +29,7 @@ from gear_kinematics.state.output_encoder import OutputEncoder
 pytestmark = pytest.mark.live
 
 READ_ONLY = (
-    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches',
+    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
     'executor',
 )  # fmt: skip
@@ -84,7 +88,7 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 28
+    assert len(own) == 29
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
@@ -134,6 +138,10 @@ def test_default_joint_of_the_contract(node):
         ({'branches': ['a', '']}, ['branch name', "''"]),
         ({'branches': ['a', 'b', 'a']}, ["'a'"]),
         ({'branches': ['left', 'stator!']}, ["'stator!'"]),
+        ({'gear_ratio': '0'}, ['gear_ratio', 'must not be 0']),
+        ({'gear_ratio': '19:1'}, ['gear_ratio', 'such as -19, 1457/26', "'19:1'"]),
+        ({'gear_ratio': -19}, ['gear_ratio', 'STRING']),
+        ({'gear_ratio': '19', 'output_joint': ''}, ['output_joint', "''"]),
         ({'rotor_joint': 1}, ['rotor_joint', 'STRING']),
         ({'rotor_encoder': ''}, ['rotor_encoder', 'multi_turn', 'single_turn']),
         ({'rotor_zero': math.nan}, ['rotor_zero']),
@@ -385,8 +393,9 @@ def test_what_is_lost_before_the_first_message_of_a_driver_is_not_counted(contex
 
 
 def test_timer_of_the_markers_stands_still_before_somebody_looks(node):
-    [other] = [timer for timer in node.timers if timer is not node._marker_timer]
-    assert node._marker_timer.is_canceled()
+    timer = node._display._timer
+    [other] = [one for one in node.timers if one is not timer]
+    assert timer.is_canceled()
     assert not other.is_canceled()
 
 
@@ -397,6 +406,43 @@ def test_markers_can_be_switched_off(context):
     assert '/unmarked/output_state' in topics
     assert '/unmarked/markers' not in topics
     node.destroy_node()
+
+
+def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(context, monkeypatch):
+    overrides = [Parameter('gear_ratio', value='1457/26'), Parameter('home_angle', value=0.5)]
+    node = GearStatePublisher(context=context, namespace='ratio', parameter_overrides=overrides)
+    topics = {publisher.topic_name for publisher in node.publishers}
+    assert {'/ratio/output_state', '/ratio/transmission_error', '/diagnostics'} <= topics
+    bodies = {'body_poses', 'mechanism_joint_states', 'robot_description', 'markers'}
+    assert not {f'/ratio/{name}' for name in bodies} & topics
+    published = []
+    monkeypatch.setattr(node, '_publish', lambda _, data: published.append(data))
+    node._listened_to = list(node._outputs)
+    node._on_rotor_state(rotor_bytes(1, position=[1457.0], velocity=[5.6], effort=[2.0]))
+    [data] = published
+    output = deserialize_message(data, JointState)
+    assert output.position[0] == pytest.approx(26.0, abs=1e-13)
+    assert output.velocity[0] == pytest.approx(5.6 * 26 / 1457, rel=1e-15)
+    assert output.effort[0] == pytest.approx(2.0 * 1457 / 26, rel=1e-15)
+    response = node._home(None, SimpleNamespace())
+    assert response.success
+    node._on_rotor_state(rotor_bytes(2, position=[1457.0]))
+    [position] = deserialize_message(published[-1], JointState).position
+    assert position == pytest.approx(0.5, abs=1e-12)
+    report = node._monitor.report(node._input, node._gear, 1.0, time.monotonic())
+    assert report.values['loop-closure residual (m)'] == 'none'
+    node.destroy_node()
+
+
+def test_log_says_what_is_not_published_of_a_gear_with_only_a_ratio(context, capfd):
+    overrides = [Parameter('gear_ratio', value='-58/3')]
+    node = GearStatePublisher(context=context, namespace='logged', parameter_overrides=overrides)
+    node.destroy_node()
+    assert re.search(
+        r'gear ratio -58/3 \(bodies unknown: no body_poses, mechanism_joint_states, '
+        r"robot_description, markers\), listening for joint 'rotor' on /logged/rotor_state",
+        capfd.readouterr().err,
+    )
 
 
 def test_nothing_is_compared_before_there_is_an_encoder(context, monkeypatch):
