@@ -35,7 +35,11 @@ class Topics(NamedTuple):
 
 
 def find_topics(
-    bag: Bag, given: Mapping[str, str | None] = MappingProxyType({}), *, outputs: bool = True
+    bag: Bag,
+    given: Mapping[str, str | None] = MappingProxyType({}),
+    *,
+    outputs: bool = True,
+    poses: bool = True,
 ) -> Topics:
     """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
 
@@ -43,11 +47,13 @@ def find_topics(
         bag: an open bag.
         given: names of known topics by their parts.
         outputs: whether the outputs must exist too.
+        poses: whether the poses are one of the outputs.
 
     Raises:
         BagError: if a topic is missing or ambiguous.
     """
-    parts = list(_PARTS) if outputs else ['rotor']
+    left_out = {'output': not outputs, 'poses': not (outputs and poses)}
+    parts = [part for part in _PARTS if not left_out.get(part)]
     found = {part: topic for part in parts if (topic := given.get(part))}
     left = dict(bag.topics)
     if 'rotor' in found:

@@ -12,7 +12,7 @@ from gear_kinematics.commands.output import (
     progress,
     warn_of_shared_memory,
 )
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
 from gear_kinematics.validation.document import document
@@ -69,7 +69,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     for bag in bags:
         config = arguments.config_path(options, bag)
         loaded = parameters.load(config, options.node)
-        Mechanism.from_mapping(loaded)  # raises its errors here, not in the report on the bag
+        gear_from_mapping(loaded)  # raises its errors here, not in the report on the bag
         tasks.append(
             Task(
                 bag,

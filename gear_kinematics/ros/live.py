@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from pathlib import Path
@@ -29,6 +29,7 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.bag.schedule import due_messages, throttled
+from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.process import make_executor
@@ -97,7 +98,8 @@ def live_messages(
             the end.
 
     Yields:
-        Messages on /rotor_state, /output_state and /body_poses in the order of their reception.
+        Messages on /rotor_state, /output_state and, unless only the gear ratio is known,
+        /body_poses, in the order of their reception.
 
     Raises:
         BagError: if the topic is missing or empty; if the bag is damaged, after the outputs for
@@ -105,6 +107,7 @@ def live_messages(
         ReplayError: if the node ends or never answers.
     """
     expected = RotorInput(InputSettings.from_mapping(parameters))
+    outputs = _outputs(parameters)
     source.type_of(rotor_topic, JOINT_STATE)
     schedule = due_messages(source, [rotor_topic], rate)
     report = throttled(progress)
@@ -122,7 +125,7 @@ def live_messages(
                 wanted[_TOPICS.rotor] += 1
                 with suppress(RejectedInputError):
                     expected.accept(data, partial(int, received))
-                    wanted.update(_TOPICS[1:])
+                    wanted.update(outputs)
                 if not replay.receive(wanted, but=_WINDOW):
                     wanted = replay.counts.copy()  # missing messages will not come any more
                 report(expected.received, None)
@@ -144,12 +147,18 @@ class Replay:
     received only within `receive_until` and the waits.
     """
 
-    def __init__(self, namespace: str = '', alive: Callable[[], bool] = lambda: True) -> None:
+    def __init__(
+        self,
+        namespace: str = '',
+        alive: Callable[[], bool] = lambda: True,
+        outputs: Collection[str] = _TOPICS[1:],
+    ) -> None:
         """Open the topics.
 
         Args:
             namespace: of the topics.
             alive: returns whether the node can still answer.
+            outputs: topics on which it answers, of RECORDED_TOPICS.
         """
         self.received: list[Message] = []
         self.counts: Counter[str] = Counter()
@@ -163,9 +172,11 @@ class Replay:
         self._executor.add_node(self._node)
         qos = QoSProfile(depth=DEPTH)
         self._publisher = self._node.create_publisher(JointState, ROTOR_STATE, qos)
-        for topic, name in RECORDED_TOPICS.items():
+        self._topics = {_TOPICS.rotor, *outputs}
+        for topic in self._topics:
+            message_type = _MESSAGE_TYPES[RECORDED_TOPICS[topic]]
             self._node.create_subscription(
-                _MESSAGE_TYPES[name], topic[1:], self._recorder(topic), qos, raw=True
+                message_type, topic[1:], self._recorder(topic), qos, raw=True
             )
 
     def __enter__(self) -> Self:
@@ -197,7 +208,7 @@ class Replay:
             if time.monotonic() >= next_probe:
                 self.send(message)
                 next_probe = time.monotonic() + _PROBE_PERIOD
-            return self._probed == RECORDED_TOPICS.keys()
+            return self._probed == self._topics
 
         self.wait_until(answered, timeout)
 
@@ -308,7 +319,9 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
                 stderr=stream,
                 env=os.environ | {'ROS_LOG_DIR': folder},
             ) as process,
-            Replay(namespace, alive=lambda: process.poll() is None) as replay,
+            Replay(
+                namespace, alive=lambda: process.poll() is None, outputs=_outputs(parameters)
+            ) as replay,
         ):
             try:
                 replay.wait_for_node(parameters['rotor_joint'])
@@ -316,6 +329,11 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
             except ReplayError as error:
                 words = log.read_text(encoding='utf-8').splitlines()[-1:]
                 raise ReplayError(': '.join([str(error), *words])) from error
+
+
+def _outputs(parameters: Mapping[str, Any]) -> Collection[str]:
+    """The recorded topics on which the node answers."""
+    return _TOPICS[1:] if isinstance(gear_from_mapping(parameters), Mechanism) else _TOPICS[1:2]
 
 
 def _stamped(data: bytes, received: int) -> bytes:

@@ -10,10 +10,9 @@ import numpy as np
 
 from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_batches
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.shape.urdf import urdf
+from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import BODY_POSES, JOINT_STATE, OUTPUT_STATE, STATE_TOPICS
 
 _BATCH = 1024  # messages
@@ -55,7 +54,7 @@ def compute(
     compression: Literal['none', 'zstd'] = 'none',
     progress: ReportProgress | None = None,
 ) -> ComputeResult:
-    """Copy a bag and add or replace the output topics.
+    """Copy a bag and add or replace the output topics: `output_state` alone with `gear_ratio`.
 
     Each output directly follows its rotor message and has its time of reception. The same input
     gives the same bytes. If this fails or is interrupted, no target is left.
@@ -77,14 +76,14 @@ def compute(
             target cannot be written.
         ValueError: if the parameters are invalid, or two topics have the same name.
     """
-    mechanism = Mechanism.from_mapping(parameters)
+    gear = gear_from_mapping(parameters)
     names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
-    urdf(mechanism, module=parameters['module'], **names)  # to refuse the same names as the node
-    state_messages = StateMessages(mechanism, **names)
+    messages_of = state_messages(gear, **names)
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     if len({rotor_topic, output_topic, poses_topic}) < 3:  # noqa: PLR2004
         raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: the names must differ')
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
+    topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
     outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
     chosen = {rotor_topic, *(source.topics if topics is None else topics)}
     _check_topics(source, rotor_topic, chosen, outputs)
@@ -106,9 +105,9 @@ def compute(
             computed += len(answered)
             copied += len(messages) - len(rotor)
             # A stable sort by these puts each output directly after its rotor message.
-            places = [*range(len(messages)), *answered, *answered]
+            places = [*range(len(messages)), *(len(outputs) * answered)]
             received = [messages[place][1] for place in answered]
-            for state, encoded in state_messages.encode_outputs(samples).items():
+            for state, encoded in messages_of.encode_outputs(samples).items():
                 messages += zip(repeat(topic_of[state]), received, encoded)
             writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
         if not computed:

@@ -9,7 +9,7 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 
 Array = NDArray[np.float64]
@@ -78,11 +78,11 @@ class AngleFit:
         return slope, abs(slope) * 1e-9 + 5.0 * math.sqrt(scatter / xx)
 
 
-def diagnose(mechanism: Mechanism, fit: AngleFit, tolerance: float) -> str | None:
+def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
     """Describe a systematic deviation of the recorded output angles, or return None.
 
     Args:
-        mechanism: the assumed mechanism.
+        gear: the assumed gear.
         fit: of the recorded output angles.
         tolerance: of the output angles, rad.
     """
@@ -96,21 +96,20 @@ def diagnose(mechanism: Mechanism, fit: AngleFit, tolerance: float) -> str | Non
     if line is None:
         return None
     slope, uncertainty = line
-    assumed = float(1 / mechanism.gear_ratio)
+    assumed = float(1 / gear.gear_ratio)
     if abs(slope - assumed) <= uncertainty:
         return None
     if abs(slope + assumed) <= uncertainty:
         return 'the sign is flipped: the recorded output turns the other way (rotor_direction?)'
-    pair = _tooth_pair(mechanism, abs(slope), uncertainty)
-    if pair is None:
-        return f'the recorded ratio is {1.0 / slope:.9g}, not {mechanism.gear_ratio}'
-    ring, satellite = pair
-    flipped = ' with the sign flipped' if slope > 0.0 else ''
-    return (
-        f'the recorded ratio is that of ring_teeth {ring}, satellite_teeth {satellite} '
-        f'({Fraction(-satellite, ring - satellite)}){flipped}, not of {mechanism.ring_teeth}, '
-        f'{mechanism.satellite_teeth} ({mechanism.gear_ratio})'
-    )
+    if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope), uncertainty)):
+        ring, satellite = pair
+        flipped = ' with the sign flipped' if slope > 0.0 else ''
+        return (
+            f'the recorded ratio is that of ring_teeth {ring}, satellite_teeth {satellite} '
+            f'({Fraction(-satellite, ring - satellite)}){flipped}, not of {gear.ring_teeth}, '
+            f'{gear.satellite_teeth} ({gear.gear_ratio})'
+        )
+    return f'the recorded ratio is {1.0 / slope:.9g}, not {gear.gear_ratio}'
 
 
 def _tooth_pair(mechanism: Mechanism, ratio: float, uncertainty: float) -> tuple[int, int] | None:
@@ -179,14 +178,14 @@ class UnseenTurns:
     0 in a stretch without one.
     """
 
-    def __init__(self, mechanism: Mechanism, tolerance: float) -> None:
+    def __init__(self, ratio: GearRatio, tolerance: float) -> None:
         """Start without stretches.
 
         Args:
-            mechanism: the mechanism with the encoder.
+            ratio: of the gear with the encoder.
             tolerance: rad of the output, within which turns are whole.
         """
-        self._ratio = mechanism.gear_ratio
+        self._ratio = ratio
         self._tolerance = abs(float(self._ratio)) / TURN * tolerance  # turns of the rotor
         self._stretches = np.zeros(0, np.int64)  # ascending
         self._turns = np.zeros(0)

@@ -120,10 +120,10 @@ def _figure(report: BagReport, series: Series) -> Figure:
         _panel('rotor angle', 'rad', series.time, series.rotor_angle),
         _panel('output angle', 'rad', series.time, series.output_angle),
     ]
-    for name, unit, errors in (
-        ('angle error', 'rad', series.angle_error),
-        ('position error', 'm', series.position_error),
-    ):
+    errors_of = [('angle error', 'rad', series.angle_error)]
+    if report.mechanism:
+        errors_of.append(('position error', 'm', series.position_error))
+    for name, unit, errors in errors_of:
         panels.append(
             _panel(name, unit, series.time, errors, tuple(_tolerances(report, unit, errors)))
         )

@@ -17,7 +17,7 @@ from typing import Any
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import Topics, find_topics
-from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
@@ -69,6 +69,7 @@ def validate_bag(
     Raises:
         MechanismError: if the parameters describe no mechanism.
     """
+    poses = isinstance(gear_from_mapping(task.parameters), Mechanism)
     try:
         with Bag(task.bag) as bag:
             given = {
@@ -76,7 +77,7 @@ def validate_bag(
                 'output': task.output_topic,
                 'poses': task.poses_topic,
             }
-            topics = find_topics(bag, given, outputs=not play)
+            topics = find_topics(bag, given, outputs=not play, poses=poses)
             if play:
                 messages = play(bag, task.parameters, rotor_topic=topics.rotor)
                 # Nothing is lost by a recorder here.
@@ -86,7 +87,7 @@ def validate_bag(
     except BagError as error:
         return _unusable(task, str(error))
     except Exception as error:
-        if play or isinstance(error, MechanismError):
+        if play:
             raise
         return _unusable(task, f'{task.bag}: {unexpected(error, debug=task.debug)}')
 

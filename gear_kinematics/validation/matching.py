@@ -5,14 +5,11 @@ message is looked up only where a run ends. Memory is bounded by a window of sam
 """
 
 from collections import Counter
-from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism, MotionState
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.diagnosis import UnseenTurns
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import FieldReport, TopicReport
@@ -20,7 +17,6 @@ from gear_kinematics.validation.report import FieldReport, TopicReport
 Array = NDArray[Any]
 Columns = dict[str, Array]
 """Columns of samples (n,): stamp, turns, angle, velocity, effort, stretch; see `RotorSamples`."""
-Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
@@ -138,14 +134,6 @@ class Matcher:
         return index
 
 
-class Recomputed(NamedTuple):
-    """The motion recomputed from samples."""
-
-    state: MotionState
-    rotor_angle: Array
-    """(n,), rad."""
-
-
 class Faults:
     """Counts the faults of messages themselves, and keeps the first of each."""
 
@@ -169,19 +157,15 @@ class Faults:
 class OutputTopic:
     """One output topic: matches its messages, holds back late ones and collects their faults."""
 
-    def __init__(self, mechanism: Mechanism, solver: Solver, unseen: UnseenTurns | None) -> None:
+    def __init__(self, unseen: UnseenTurns | None) -> None:
         """Start without messages.
 
         Args:
-            mechanism: the mechanism.
-            solver: recomputes its outputs.
             unseen: unseen turns, if the rotor has a single-turn encoder.
         """
         self.matcher = Matcher()
         self.compared: dict[str, Array] = {}
         """Columns of the last compared batch, for checks and plots."""
-        self._mechanism = mechanism
-        self._solver = solver
         self._unseen = unseen
         self._unrecorded = 0  # messages whose input was not recorded
         self._faults = Faults()
@@ -215,11 +199,6 @@ class OutputTopic:
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.give_up(stamps[given_up[~lacking]])
         self._compare(usable[found], window.rows(index[found]))
-
-    def _recompute(self, samples: Columns, unseen_turns: Array | float) -> Recomputed:
-        turns = samples['turns'] + unseen_turns
-        state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
-        return Recomputed(state, TURN * turns + samples['angle'])
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         raise NotImplementedError

@@ -1,15 +1,17 @@
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, Mechanism, MotionState
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder, UnseenTurns
-from gear_kinematics.validation.matching import Columns, Faults, OutputTopic, Solver
+from gear_kinematics.validation.matching import Columns, Faults, OutputTopic
 from gear_kinematics.validation.report import FieldReport
 from gear_kinematics.wire.batches import (
     FIELDS,
@@ -19,6 +21,8 @@ from gear_kinematics.wire.batches import (
 )
 
 Array = NDArray[Any]
+
+Solver = Callable[..., MotionState]
 
 _NONE = np.zeros(0, np.int64)
 
@@ -96,12 +100,14 @@ class OutputState(OutputTopic):
     def __init__(
         self,
         joint: str,
-        mechanism: Mechanism,
+        gear: Gear,
         tolerances: Tolerances,
         solver: Solver,
         unseen: UnseenTurns | None,
     ) -> None:
-        super().__init__(mechanism, solver, unseen)
+        super().__init__(unseen)
+        self._gear = gear
+        self._solver = solver
         self.fit = AngleFit()
         self.offset = 0.0
         """Known offset of the recorded angle, rad."""
@@ -125,15 +131,15 @@ class OutputState(OutputTopic):
         recorded = states.values[rows] - (self.offset, 0.0, 0.0)
         unseen_turns: Array | float = 0.0
         if self._unseen:
-            expected = self._recompute(samples, 0.0).state.output_angle
+            expected, _ = self._recompute(samples, 0.0)
             self._unseen.learn_from_angles(stretch, recorded[:, 0], expected)
             unseen_turns = self._unseen.of(stretch)
-        state, rotor_angle = self._recompute(samples, unseen_turns)
-        velocity = self._mechanism.gear_ratio.output_rate(samples['velocity'])
-        effort = float(self._mechanism.gear_ratio) * samples['effort']
-        signed = recorded - np.stack([state.output_angle, velocity, effort], axis=-1)
+        angle, rotor_angle = self._recompute(samples, unseen_turns)
+        velocity = self._gear.gear_ratio.output_rate(samples['velocity'])
+        effort = float(self._gear.gear_ratio) * samples['effort']
+        signed = recorded - np.stack([angle, velocity, effort], axis=-1)
         for column, (errors, needed) in enumerate(
-            zip(self._errors, (state.output_angle, velocity, effort), strict=True)
+            zip(self._errors, (angle, velocity, effort), strict=True)
         ):
             wanted, there = ~np.isnan(needed), states.present[rows, column]
             both = wanted & there
@@ -152,6 +158,16 @@ class OutputState(OutputTopic):
             'error': signed[usable, 0],
         }
 
+    def _recompute(self, samples: Columns, unseen_turns: Array | float) -> tuple[Array, Array]:
+        """The angles of output and rotor, (n,), rad."""
+        turns, angle = samples['turns'] + unseen_turns, samples['angle']
+        if isinstance(self._gear, Mechanism):
+            output_angle = self._solver(self._gear, angle, rotor_turns=turns).output_angle
+        else:
+            output_turns, rest = self._gear.output_angle(turns, angle, np)
+            output_angle = TURN * output_turns + rest
+        return output_angle, TURN * turns + angle
+
 
 class BodyPoses(OutputTopic):
     """body_poses."""
@@ -164,7 +180,9 @@ class BodyPoses(OutputTopic):
         solver: Solver,
         unseen: UnseenTurns | None,
     ) -> None:
-        super().__init__(mechanism, solver, unseen)
+        super().__init__(unseen)
+        self._mechanism = mechanism
+        self._solver = solver
         self.frame_id = frame_id
         branches = [branch.name for branch in mechanism.branches]
         self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
@@ -174,7 +192,7 @@ class BodyPoses(OutputTopic):
         self._order = PoseOrder(self._bodies, tolerances.position)
         self._turned_round = Faults()
         # Learned from this topic alone, which is less certain than from output_state.
-        self._own_unseen = UnseenTurns(mechanism, tolerances.angle)
+        self._own_unseen = UnseenTurns(mechanism.gear_ratio, tolerances.angle)
 
     @property
     def worst_error(self) -> float:
@@ -200,7 +218,9 @@ class BodyPoses(OutputTopic):
                 strangers = stamp[arrays.frame[rows] == k]
                 self._faults.add(f'frame {name!r}, not {self.frame_id!r}', strangers)
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
-        state, rotor_angle = self._recompute(samples, self._unseen_turns(poses, samples))
+        turns = samples['turns'] + self._unseen_turns(poses, samples)
+        state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
+        rotor_angle = TURN * turns + samples['angle']
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
         planar = np.hypot(*np.moveaxis(poses[..., :2] - centres, -1, 0))
         position = np.hypot(planar, poses[..., 2] - self._axial).max(axis=1)
@@ -230,6 +250,8 @@ class BodyPoses(OutputTopic):
         self._own_unseen.learn_from_poses(
             stretch,
             2.0 * np.arctan2(poses[:, 0, 5], poses[:, 0, 6]),
-            self._recompute(samples, 0.0).state.output_turn_angle,
+            self._solver(
+                self._mechanism, samples['angle'], rotor_turns=samples['turns']
+            ).output_turn_angle,
         )
         return self._unseen.of(stretch, otherwise=self._own_unseen.of(stretch))

@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 
 from gear_kinematics.bag import Message, ReportProgress, TopicMessages, in_batches, sort_by_topic
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.kinematics import Mechanism, solve
+from gear_kinematics.kinematics import Mechanism, gear_from_mapping, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.validation import checks
 from gear_kinematics.validation.diagnosis import UnseenTurns, diagnose
-from gear_kinematics.validation.matching import WINDOW, Solver, Window
-from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Tolerances
+from gear_kinematics.validation.matching import WINDOW, OutputTopic, Window
+from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Solver, Tolerances
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.timeline import InputHealth, SeriesRecorder
@@ -56,7 +56,7 @@ class Validator:
             solver: recomputes the motion: `solve`, or that of the matrix method.
 
         Raises:
-            MechanismError: if the parameters describe no mechanism.
+            ValueError: if the parameters describe no gear.
         """
         self._parameters = dict(parameters)
         self._prefix_open = not parameters['frame_prefix']
@@ -65,19 +65,23 @@ class Validator:
         self._offset_open = allow_offset
         self._solver = solver
         self._strict = strict
-        self._mechanism = mechanism = Mechanism.from_mapping(parameters)
+        self._gear = gear = gear_from_mapping(parameters)
         self._input = RotorInput(InputSettings.from_mapping(parameters))
         self._health = InputHealth(parameters['max_rotor_speed'])
         self._window = Window()
         self._inputs = RecordedInputs(strict=strict)
-        self._absences = Completeness(2, strict=strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         single_turn = self._input.settings.single_turn
-        self._unseen = UnseenTurns(mechanism, tolerances.angle) if single_turn else None
+        self._unseen = UnseenTurns(gear.gear_ratio, tolerances.angle) if single_turn else None
         prefix = parameters['frame_prefix']
-        common = mechanism, tolerances, solver, self._unseen
-        self.output = OutputState(prefix + parameters['output_joint'], *common)
-        self.poses = BodyPoses(prefix + _FRAME, *common)
+        common = tolerances, solver, self._unseen
+        self.output = OutputState(prefix + parameters['output_joint'], gear, *common)
+        self.poses = None
+        self._outputs: tuple[OutputTopic, ...] = (self.output,)
+        if isinstance(gear, Mechanism):
+            self.poses = BodyPoses(prefix + _FRAME, gear, *common)
+            self._outputs = self.output, self.poses
+        self._absences = Completeness(len(self._outputs), strict=strict)
         self._series = SeriesRecorder()
         self._checks = [make(parameters) for make in checks.CHECKS]
         self._findings: list[str] = []
@@ -110,10 +114,11 @@ class Validator:
         """
         self._close()
         rotor = self._health.report(self._input, self._topics.rotor)
-        lacks_output, lacks_poses = self._absences.topics
-        topics = (
-            self.output.report(self._topics.output, lacks_output),
-            self.poses.report(self._topics.poses, lacks_poses),
+        topics = tuple(
+            output.report(topic, lacks)
+            for output, topic, lacks in zip(
+                self._outputs, self._topics[1:], self._absences.topics, strict=False
+            )
         )
         if error is None and not rotor.valid:
             error = 'no usable rotor states in it'
@@ -125,14 +130,14 @@ class Validator:
         return BagReport(
             bag=bag,
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
-            gear_ratio=str(self._mechanism.gear_ratio),
+            gear_ratio=str(self._gear.gear_ratio),
             error=error,
             messages=rotor.messages + sum(topic.messages for topic in topics),
             rotor=rotor,
             topics=topics,
             findings=(*self._findings, *self._diagnoses(), *(found.text for found in judgements)),
             series=self._series.series(),
-            mechanism=self._mechanism,
+            mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters['module'],
         )
 
@@ -143,19 +148,20 @@ class Validator:
             self._settle_prefix(batch)
         if self._offset_open and there:
             self._settle_offset(batch)
-        for topic, messages in zip(self._topics, batch, strict=True):
+        rotor, *recorded = batch[: 1 + len(self._outputs)]
+        for topic, messages in zip(self._topics, (rotor, *recorded), strict=False):
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        if len(self._begun) == len(self._topics):
+        if len(self._begun) > len(self._outputs):
             self._absences.begin(max(self._begun.values()))
-        rotor, *outputs = batch
         self._add_samples(rotor)
-        for output, messages in zip((self.output, self.poses), outputs, strict=True):
+        for output, messages in zip(self._outputs, recorded, strict=True):
             output.take(messages.data, messages.received, self._window, self._inputs)
-        self._series.update(self.output.compared, self.poses.compared)
+        poses = self.poses.compared if self.poses else {}
+        self._series.update(self.output.compared, poses)
         for check in self._checks:
-            check.update(self.output.compared, self.poses.compared)
-        done = self.output.matcher.matched & self.poses.matcher.matched
+            check.update(self.output.compared, poses)
+        done = np.all([output.matcher.matched for output in self._outputs], axis=0)
         settled = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(settled, len(done) - WINDOW))
 
@@ -173,16 +179,17 @@ class Validator:
             effort=samples.effort,
             stretch=samples.stretch,
         )
-        self.output.matcher.extend(len(samples.stamp))
-        self.poses.matcher.extend(len(samples.stamp))
+        for output in self._outputs:
+            output.matcher.extend(len(samples.stamp))
 
     def _drop(self, count: int) -> None:
         oldest = self._window.rows(slice(count))
-        matchers = self.output.matcher, self.poses.matcher
+        matchers = [output.matcher for output in self._outputs]
         answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
         self._absences.update(Inputs(oldest['received'], oldest['stamp'], answered))
-        for part in (*matchers, self._window):
-            part.drop(count)
+        for matcher in matchers:
+            matcher.drop(count)
+        self._window.drop(count)
 
     def _close(self) -> None:
         """Count waiting samples and messages as missing and extra, at the end."""
@@ -206,15 +213,17 @@ class Validator:
                 self._prefix_open = False
                 if prefix := recorded.removesuffix(name):
                     self._parameters['frame_prefix'] = prefix
-                    self.output.joint, self.poses.frame_id = prefix + joint, prefix + _FRAME
+                    self.output.joint = prefix + joint
+                    if self.poses:
+                        self.poses.frame_id = prefix + _FRAME
                     self._findings.append(f'frame_prefix {prefix!r} is taken from the outputs')
                 return
 
     def _settle_offset(self, batch: _Batch) -> None:
         """Determine the offset to accept, if any, from the first batch with outputs.
 
-        Homing moves the rotor's zero and therefore the poses; if they agree better without that,
-        only the output angle has an offset.
+        Homing moves the rotor's zero and therefore the poses; if there are some, and they agree
+        better without that, only the output angle has an offset.
         """
         trial = self._trial(batch, {})
         if not trial.output.fit.count:
@@ -224,17 +233,21 @@ class Validator:
         if offset is None:
             return
         direction, zero = self._parameters['rotor_direction'], self._parameters['rotor_zero']
-        moved = {'rotor_zero': zero - direction * self._mechanism.rotor_angle(offset)}
+        moved = {'rotor_zero': zero - direction * self._gear.gear_ratio.rotor_angle(offset)}
         if abs(moved['rotor_zero']) > LARGEST_ANGLE:  # garbage, not homing
             return
-        homed = self._trial(batch, moved)
-        if homed.poses.worst_error <= trial.poses.worst_error:
+        if self._trial(batch, moved).worst_position <= trial.worst_position:
             self._input.settings = replace(self._input.settings, **moved)
         else:
             self.output.offset = offset
         self._findings.append(
             f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
         )
+
+    @property
+    def worst_position(self) -> float:
+        """The greatest error of a body's position, m; 0 without poses."""
+        return self.poses.worst_error if self.poses else 0.0
 
     def _trial(self, batch: _Batch, changes: Mapping[str, Any]) -> 'Validator':
         trial = Validator(
@@ -249,13 +262,14 @@ class Validator:
 
     def _diagnoses(self) -> Iterable[str]:
         if not self.output.position.passed:
-            found = diagnose(self._mechanism, self.output.fit, self._tolerances.angle)
+            found = diagnose(self._gear, self.output.fit, self._tolerances.angle)
             if found:
                 yield found
-        yield from self.poses.findings()
+        if self.poses:
+            yield from self.poses.findings()
         if self._unseen:
             yield from self._unseen.findings()
-        for topic, missing in zip(self._topics[1:], self._absences.topics, strict=True):
+        for topic, missing in zip(self._topics[1:], self._absences.topics, strict=False):
             if missing.ended_early is not None:
                 yield (
                     f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '

@@ -139,6 +139,11 @@ def test_outputs_are_no_rotor_where_only_that_is_wanted():
     assert find_topics(bag_with(names), outputs=False).rotor == '/motor'
 
 
+def test_poses_are_not_looked_for_where_there_are_none():
+    found = find_topics(bag_with('/m/rotor_state /m/output_state'), poses=False)
+    assert (found.rotor, found.output) == ('/m/rotor_state', '/m/output_state')
+
+
 class Described:
     """What a bag says about its topics."""
 

@@ -575,6 +575,30 @@ def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
         assert found[f'{namespace}/{topic}: compared'] == str(SAMPLES)
 
 
+@pytest.fixture
+def other_gear(tmp_path):
+    """The configuration of a gear of which only the ratio is known."""
+    path = tmp_path / 'other.yaml'
+    path.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
+    return path
+
+
+@pytest.mark.slow
+def test_of_a_gear_with_only_a_ratio_the_output_alone_is_computed_and_validated(
+    other_gear, bags, tmp_path
+):
+    out = tmp_path / 'out'
+    assert gearkin('compute', bags / 'rotor_only', out, '--config', other_gear).returncode == 0
+    with Bag(out) as bag:
+        assert set(bag.topics) == {'/rotor_state', '/output_state'}
+    done = gearkin('validate', out, '--config', other_gear, *EXACT)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    assert found['gear ratio'] == '1457/26'
+    assert found['/output_state: compared'] == str(SAMPLES)
+    assert not any('body_poses' in fact for fact in found)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(('bad', 'code'), [(0, 0), (5, 0), (6, 1)])
 def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code, tmp_path):
@@ -704,6 +728,16 @@ def test_a_shipped_bag_validates_live():
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     assert found['/output_state: compared'] == found['/body_poses: compared'] == '2500'
+
+
+@pytest.mark.live
+@pytest.mark.slow
+def test_a_gear_with_only_a_ratio_validates_live(other_gear, bags):
+    done = gearkin('validate', '--live', bags / 'rotor_only', '--config', other_gear)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    assert found['/output_state: compared'] == str(SAMPLES)
+    assert not any('body_poses' in fact for fact in found)
 
 
 @pytest.mark.live

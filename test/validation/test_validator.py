@@ -703,3 +703,40 @@ def test_progress_is_reported(recorded, config):
     assert told == sorted(told)
     assert told[-1] == (18_000, 20_000)
     assert len(told) > 1
+
+
+# A gear of which only the ratio is known.
+
+
+@pytest.mark.parametrize('name', ['servo_point_to_point', 'single_turn_encoder', 'driver_faults'])
+def test_of_a_gear_with_only_a_ratio_the_output_alone_is_validated(name):
+    """The node recorded these outputs of a mechanism with this ratio."""
+    file = 'single_turn' if name == 'single_turn_encoder' else 'actuator'
+    config = parameters.load(BAGS.parent / 'config' / f'{file}.yaml')
+    report = validate(read(name), config | {'gear_ratio': '-19'}, tolerances=Tolerances(1e-12))
+    assert report.verdict == Verdict.PASS
+    assert [topic.topic for topic in report.topics] == [OUTPUT]
+    assert report.topics[0].compared > 1000
+    assert (report.gear_ratio, report.mechanism) == ('-19', None)
+
+
+def test_another_ratio_is_named(recorded, config):
+    report = validate(recorded, config | {'gear_ratio': '-58/3'})
+    assert report.verdict == Verdict.FAIL
+    assert 'the recorded ratio is -19, not -58/3' in report.findings
+
+
+def test_offset_of_the_only_output_is_accepted(recorded, config):
+    config = config | {'gear_ratio': '-19'}
+    changed = change_all(recorded, OUTPUT, add('position', 0.125))
+    assert validate(changed, config).verdict == Verdict.FAIL
+    report = validate(changed, config, allow_offset=True)
+    assert report.verdict == Verdict.PASS
+    assert any('accepted' in found and '0.125 rad' in found for found in report.findings)
+
+
+def test_missing_outputs_of_a_gear_with_only_a_ratio_are_counted(recorded, config):
+    left = recorded[: index_of(recorded, OUTPUT)] + recorded[index_of(recorded, OUTPUT) + 1 :]
+    report = validate(left, config | {'gear_ratio': '-19'}, strict=True)
+    assert report.verdict == Verdict.FAIL
+    assert [topic.missing for topic in report.topics] == [1]
