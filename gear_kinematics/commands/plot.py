@@ -9,8 +9,14 @@ from typing import Any
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
-from gear_kinematics.kinematics import Mechanism, RotorPosition, split_turns
-from gear_kinematics.state.trajectory import Trajectory
+from gear_kinematics.kinematics import (
+    Gear,
+    Mechanism,
+    RotorPosition,
+    gear_from_mapping,
+    split_turns,
+)
+from gear_kinematics.state.trajectory import MOST_TURNS, Trajectory
 
 Config = Mapping[str, Any]
 
@@ -55,10 +61,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the figure and write its file."""
     config = arguments.node_parameters(options)
-    mechanism = Mechanism.from_mapping(config)
-    write_file(options.out, options.draw(options, config, mechanism, Path(options.out)))
-    if options.draw is _scheme:
-        warn_if_teeth_cannot_mesh(mechanism, config['module'])
+    # The output needs no more than the ratio.
+    gear = gear_from_mapping(config) if options.draw is _output else Mechanism.from_mapping(config)
+    write_file(options.out, options.draw(options, config, gear, Path(options.out)))
+    if options.draw is _scheme and isinstance(gear, Mechanism):
+        warn_if_teeth_cannot_mesh(gear, config['module'])
     return ExitCode.DONE
 
 
@@ -91,10 +98,9 @@ def _slides(
     )
 
 
-def _output(
-    options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path
-) -> bytes:
-    return plotting.output(mechanism, path, _moved(options, config, turns=mechanism.cycle_turns))
+def _output(options: argparse.Namespace, config: Config, gear: Gear, path: Path) -> bytes:
+    cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
+    return plotting.output(gear, path, _moved(options, config, turns=cycle))
 
 
 def _moved(options: argparse.Namespace, config: Config, turns: int) -> Trajectory:

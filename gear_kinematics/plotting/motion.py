@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.image import FAINT, SERIES, render
 from gear_kinematics.shape import outlines
@@ -53,9 +53,9 @@ def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle
     return render(path, (7.0, 5.0), draw)
 
 
-def output(mechanism: Mechanism, path: Path, trajectory: Trajectory) -> bytes:
+def output(gear: Gear, path: Path, trajectory: Trajectory) -> bytes:
     """Plot angle and rate of the output shaft over time."""
-    return render(path, (7.0, 4.5), partial(_draw_output, mechanism, trajectory))
+    return render(path, (7.0, 4.5), partial(_draw_output, gear.gear_ratio, trajectory))
 
 
 def _draw_roses(mechanism: Mechanism, whole: Array, moved: Array | None, figure: Any) -> None:
@@ -113,12 +113,13 @@ def _draw_slides(
         legend.remove()
 
 
-def _draw_output(mechanism: Mechanism, trajectory: Trajectory, figure: Any) -> None:
-    state = trajectory.state(mechanism)
+def _draw_output(ratio: GearRatio, trajectory: Trajectory, figure: Any) -> None:
+    turns, rest = ratio.output_angle(trajectory.turns, trajectory.angle, np)
+    velocity = ratio.output_rate(trajectory.velocity)
     angle, rate = figure.subplots(2, 1, sharex=True)
-    angle.plot(trajectory.time, np.degrees(state.output_angle), color=SERIES[0])
+    angle.plot(trajectory.time, np.degrees(TURN * turns + rest), color=SERIES[0])
     angle.set_ylabel('output angle, °')
-    rate.plot(trajectory.time, np.degrees(state.output_velocity), color=SERIES[0])
+    rate.plot(trajectory.time, np.degrees(velocity), color=SERIES[0])
     rate.set_ylabel('output rate, °/s')
     rate.set_xlabel('time, s')
     for axes in (angle, rate):

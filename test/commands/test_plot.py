@@ -276,3 +276,45 @@ def test_help_is_there(arguments, capsys):
         main(arguments)
     assert exit_.value.code == 0
     assert capsys.readouterr().out.startswith(f'usage: gearkin {arguments[0]}')
+
+
+@pytest.mark.slow
+def test_output_is_plotted_of_a_gear_with_only_a_ratio(tmp_path):
+    config = tmp_path / 'other.yaml'
+    config.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
+    for motion in ([], ['--bag', str(SERVO)]):
+        out = tmp_path / f'{len(motion)}.png'
+        assert main(['plot', 'output', str(out), '--config', str(config), *motion]) == 0
+        assert out.read_bytes().startswith(b'\x89PNG')
+
+
+@pytest.mark.parametrize(
+    'arguments',
+    [
+        ['plot', 'scheme', 'a.png'],
+        ['plot', 'roses', 'a.png'],
+        ['plot', 'slides', 'a.png'],
+        ['animate', 'a.gif'],
+        ['urdf'],
+        ['describe'],
+        ['preload', '--degrees', '1', '--branch-stiffness', '1', '--shaft-stiffness', '1'],
+        ['index', '--degrees', '1'],
+    ],
+    ids=' '.join,
+)
+def test_what_needs_bodies_refuses_a_gear_with_only_a_ratio(arguments, tmp_path, capsys):
+    config = tmp_path / 'other.yaml'
+    config.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
+    assert main([*arguments, '--config', str(config)]) == 2
+    assert capsys.readouterr() == (
+        '',
+        'gearkin: gear_ratio is 1457/26: only the ratio of this gear is known, not its bodies\n',
+    )
+
+
+def test_tooth_numbers_replace_the_ratio(tmp_path, capsys):
+    config = tmp_path / 'other.yaml'
+    config.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
+    teeth = ['--ring-teeth', '61', '--satellite-teeth', '58']
+    assert main(['describe', '--config', str(config), *teeth]) == 0
+    assert 'gear ratio: -58/3' in capsys.readouterr().out
