@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
+from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 
 Array = NDArray[np.float64]
@@ -112,19 +113,17 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
     return f'the recorded ratio is {1.0 / slope:.9g}, not {gear.gear_ratio}'
 
 
-def _tooth_pair(mechanism: Mechanism, ratio: float, uncertainty: float) -> tuple[int, int] | None:
-    """Tooth numbers with (zk - zs)/zs = ratio, close to the assumed ones."""
+def _tooth_pair(mechanism: Mechanism, slope: float, uncertainty: float) -> tuple[int, int] | None:
+    """The tooth numbers (zk, zs) nearest to the assumed ones that turn the output like this."""
+    least, greatest = (Fraction(slope) + sign * Fraction(uncertainty) for sign in (-1, 1))
+    if least <= 0:
+        return None
     zk, zs = mechanism.ring_teeth, mechanism.satellite_teeth
-    candidates = [(round(zs * (1.0 + ratio)), zs), (zk, round(zk / (1.0 + ratio)))]
-    fraction = Fraction(ratio).limit_denominator(_MOST_TEETH)
-    if fraction:
-        scale = max(1, round(zs / fraction.denominator))
-        satellite = scale * fraction.denominator
-        candidates.append((satellite + scale * fraction.numerator, satellite))
-    for ring, satellite in candidates:
-        if ring > satellite > 0 and abs((ring - satellite) / satellite - ratio) <= uncertainty:
-            return ring, satellite
-    return None
+    return min(
+        tooth_pairs(-1 / least, -1 / greatest, max(_MOST_TEETH, 2 * zk)),
+        key=lambda pair: abs(pair[0] - zk) + abs(pair[1] - zs),
+        default=None,
+    )
 
 
 class PoseOrder:
