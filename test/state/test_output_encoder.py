@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from live import SECOND, START, rotor_bytes
 
+from gear_kinematics.kinematics import GearRatio, RotorPosition
 from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor
 from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 MS = SECOND // 1000
@@ -43,6 +44,15 @@ class Bench:
 @pytest.fixture
 def bench(actuator) -> Bench:
     return Bench(actuator)
+
+
+def test_error_of_a_gear_with_only_a_ratio_does_not_drift():
+    bench = Bench(GearRatio(1457, 26))
+    whole = 1457 * 10**6  # turns of the rotor, in which the output makes whole turns too
+    bench.encoder.follow(RotorSample(START, RotorPosition(whole, 0.0), None, None))
+    bench.encoder.follow(RotorSample(START + 2 * MS, RotorPosition(whole, 0.2), None, None))
+    [sample] = bench.measure(START + MS, 0.1 * 26 / 1457 + 1e-3)
+    assert sample.error == pytest.approx(1e-3, abs=1e-15)
 
 
 @pytest.mark.parametrize(('direction', 'zero'), [(1, 0.0), (-1, 0.0), (1, 2.5), (-1, -40.0)])

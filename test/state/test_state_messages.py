@@ -4,6 +4,7 @@ import math
 from itertools import combinations
 from operator import itemgetter
 
+import numpy as np
 import oracle
 import pytest
 from geometry_msgs.msg import PoseArray
@@ -14,9 +15,16 @@ from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.kinematics import Branch, Mechanism, RotorPosition, solve, split_turns
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample
-from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.kinematics import (
+    Branch,
+    GearRatio,
+    Mechanism,
+    RotorPosition,
+    solve,
+    split_turns,
+)
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample, RotorSamples
+from gear_kinematics.state.state_messages import StateMessages, state_messages
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
@@ -237,3 +245,32 @@ def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction)
     expected = [dict(states.encode(sample, OUTPUTS)) for sample in samples]
     found = states.encode_outputs(at_once.accept_batch(messages, [1] * len(messages)))
     assert found == {topic: [each[topic] for each in expected] for topic in OUTPUTS}
+
+
+@pytest.mark.parametrize(('velocity', 'effort'), [(3.0, -0.5), (None, 0.25), (2.0, None)])
+def test_of_a_gear_with_only_a_ratio_there_is_the_output_alone(velocity, effort):
+    """4 × 58 turns and an angle: the output makes 12 turns backwards, and 3/58 of the angle."""
+    messages = state_messages(GearRatio(-58, 3), **NAMES)
+    sample = RotorSample(7, RotorPosition(4 * 58, 0.5), velocity, effort)
+    ((topic, data),) = messages.encode(sample)
+    assert topic == 'output_state'
+    state = deserialize_message(data, JointState)
+    assert list(state.position) == [pytest.approx(-12 * math.tau - 0.5 * 3 / 58, rel=1e-15)]
+    rates = [] if velocity is None else [pytest.approx(-velocity * 3 / 58, rel=1e-15)]
+    torques = [] if effort is None else [pytest.approx(-effort * 58 / 3, rel=1e-15)]
+    assert (list(state.velocity), list(state.effort)) == (rates, torques)
+    columns = ([value] for value in (*sample.position, velocity, effort))
+    samples = RotorSamples(
+        np.array([7]),
+        *(np.array(column, float) for column in columns),
+        *(np.zeros(1, np.int64) for _ in range(3)),
+        np.zeros(0, np.int64),
+    )
+    assert messages.encode_outputs(samples) == {'output_state': [data]}
+
+
+@pytest.mark.parametrize('name', ['', 'a\nb'])
+def test_name_that_is_no_joint_is_refused_for_every_gear(actuator, name):
+    for gear in (actuator, GearRatio(5)):
+        with pytest.raises(ValueError, match='output_joint'):
+            state_messages(gear, output_joint=name, frame_prefix='')
