@@ -284,19 +284,16 @@ class Peer(Listener):
 
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""
-        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        values = self._result(self._parameters.get_parameters(list(names))).values
+        values = self._read(self._parameters.get_parameters, list(names)).values
         return [rclpy.parameter.parameter_value_to_python(value) for value in values]
 
     def list_parameters(self) -> list[str]:
         """Get the names of all parameters through the service."""
-        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        return list(self._result(self._parameters.list_parameters([], 0)).result.names)
+        return list(self._read(self._parameters.list_parameters, [], 0).result.names)
 
     def describe(self, *names) -> list:
         """Get the descriptors of parameters through the service."""
-        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        return self._result(self._parameters.describe_parameters(list(names))).descriptors
+        return self._read(self._parameters.describe_parameters, list(names)).descriptors
 
     def description(self) -> str:
         """Listen to robot_description from now on and take what was latched."""
@@ -306,6 +303,16 @@ class Peer(Listener):
 
     def _keep_report(self, message, about) -> None:
         self._reports.append((about['source_timestamp'], message))
+
+    def _read(self, request, *arguments):
+        """Request until an answer comes: a service that has not found this peer yet loses it."""
+        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
+        for patience in (1.0, 2.0, 4.0):  # s
+            future, until = request(*arguments), time.monotonic() + patience
+            self.wait_until(lambda f=future, t=until: f.done() or time.monotonic() > t, 'a while')
+            if future.done():
+                return future.result()
+        return self._result(request(*arguments))
 
     def _result(self, future):
         self.wait_until(future.done, 'an answer')
