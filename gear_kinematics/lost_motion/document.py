@@ -12,7 +12,6 @@ from gear_kinematics.lost_motion.curves import panels
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.transmission import TransmissionFigures
-from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
 from gear_kinematics.lost_motion.wording import (
     ARC_MINUTES,
     PERCENT,
@@ -33,6 +32,7 @@ from gear_kinematics.report.document import (
     number,
     printable,
 )
+from gear_kinematics.state.uncertainty import COVERAGE, Estimate
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 1

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Loop, RampError, Ramps
-from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 LOST_MOTION_SHARE = 0.03
 """Lost motion is measured between ± this share of the rated torque."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.transmission import Motion, MotionError
-from gear_kinematics.lost_motion.uncertainty import Estimate, student_t
+from gear_kinematics.state.uncertainty import Estimate, student_t
 
 Array = NDArray[np.float64]
 

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution
 from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 Array = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
 from gear_kinematics.lost_motion.ratio import MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
-from gear_kinematics.lost_motion.uncertainty import COVERAGE, Estimate
 from gear_kinematics.report.document import number, printable
+from gear_kinematics.state.uncertainty import COVERAGE, Estimate
 
 ARC_MINUTES = 60.0 * 180.0 / math.pi
 """Arc minutes per radian; catalogues give lost motion in arc minutes."""

@@ -15,8 +15,8 @@ from lxml import html
 from gear_kinematics.commands.cli import main
 from gear_kinematics.lost_motion import Columns, measure, read_csv
 from gear_kinematics.lost_motion.curves import panels
-from gear_kinematics.lost_motion.uncertainty import Component, Estimate
 from gear_kinematics.lost_motion.wording import rounded
+from gear_kinematics.state.uncertainty import Component, Estimate
 
 GEAR = Gear(play=0.02, stiffness=300.0, friction=0.5)
 

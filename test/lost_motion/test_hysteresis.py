@@ -10,7 +10,7 @@ from gear_recordings import Gear, creep, quantised, ramps
 
 from gear_kinematics.lost_motion.hysteresis import Figures, Settings, figures
 from gear_kinematics.lost_motion.ramps import RampError, find_ramps
-from gear_kinematics.lost_motion.uncertainty import student_t
+from gear_kinematics.state.uncertainty import student_t
 
 RATED = 40.0
 STEP = 2.0 * math.pi / 65536.0

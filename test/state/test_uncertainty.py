@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from gear_kinematics.lost_motion.uncertainty import Component, Estimate, resolution, student_t
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution, student_t
 
 # GUM, table G.2, fraction p = 95 %
 TABLE_G2 = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36, 8: 2.31, 9: 2.26,
