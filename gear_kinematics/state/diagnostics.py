@@ -8,8 +8,10 @@ from typing import NamedTuple
 from gear_kinematics.kinematics import Gear, Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.reversals import Reversals
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.transmission_error import ErrorWindow
+from gear_kinematics.state.uncertainty import Estimate
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""
@@ -162,7 +164,7 @@ class EncoderMonitor:
             'peak to peak (rad)': _number(peak_to_peak),
             'mean forward (rad)': _number(window.forward.mean),
             'mean backward (rad)': _number(window.backward.mean),
-            'lost motion (rad)': _number(window.lost_motion),
+            **_reversals(window.reversals),
         }
         return Report(WARN if warnings else OK, '; '.join(warnings) or 'ok', values)
 
@@ -173,6 +175,22 @@ def _rejections(counts: Counter[str]) -> str:
 
 def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:
     return {f'{what}: {cause}': str(count) for cause, count in sorted(counts.items())}
+
+
+def _reversals(found: Reversals | None) -> dict[str, str]:
+    """Lost motion and delay with their uncertainties, or what cannot be told apart."""
+    return {
+        'backward minus forward (rad)': _estimate(found.difference if found else None),
+        'lost motion (rad)': _estimate(found.lost_motion if found else None),
+        'delay of output_encoder (s)': _estimate(found.delay if found else None),
+    }
+
+
+def _estimate(estimate: Estimate | None) -> str:
+    if estimate is None:
+        return 'none'
+    spread = estimate.uncertainty
+    return _number(estimate.value) + (f' ± {spread:.2g}' if spread is not None else '')
 
 
 def _number(value: float | None) -> str:

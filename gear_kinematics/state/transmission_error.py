@@ -8,13 +8,19 @@ import math
 from collections import Counter, deque
 from typing import NamedTuple
 
+import numpy as np
+
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
+from gear_kinematics.state.reversals import Pair, Reversals, separate
 from gear_kinematics.state.rotor_input import CLOCK_RESET
+from gear_kinematics.wire.cdr import SECOND
 
 _DEPTH = 8192
 """Samples of each kind that are kept."""
 _UNIT = 2.0**52
 """Units of a sum per radian: integers can be added and subtracted without rounding."""
+_BINS = 720
+"""Bins of output angles in a turn, in which both directions are compared."""
 
 
 class ErrorSample(NamedTuple):
@@ -29,6 +35,8 @@ class ErrorSample(NamedTuple):
     """rad: the ideal output angle is 2π `turns` + `ideal`."""
     direction: int
     """Of the output: 1, -1, or 0 until it has moved far enough after a reversal."""
+    speed: float
+    """Of the ideal output angle, rad/s."""
 
 
 class Direction:
@@ -64,6 +72,14 @@ class _Ideal(NamedTuple):
     stamp: int
     turns: int
     angle: float
+    direction: int
+
+
+class _Place(NamedTuple):
+    """Where and in which direction an error was measured."""
+
+    angle: int
+    """Number of the bin of output angles."""
     direction: int
 
 
@@ -162,7 +178,8 @@ class TransmissionError:
         return samples
 
     def _compare(self, stamp: int, measured: float, before: _Ideal, after: _Ideal) -> ErrorSample:
-        share = (stamp - before.stamp) / (after.stamp - before.stamp)
+        interval = after.stamp - before.stamp
+        share = (stamp - before.stamp) / interval
         step = (after.turns - before.turns) * TURN + after.angle - before.angle
         ideal = before.angle + share * step
         error = math.remainder(measured - ideal, TURN)
@@ -171,7 +188,9 @@ class TransmissionError:
         error = self._first_error + math.remainder(error - self._first_error, TURN)
         self.matched += 1
         known = before.direction == after.direction
-        return ErrorSample(stamp, error, before.turns, ideal, after.direction if known else 0)
+        direction = after.direction if known else 0
+        speed = step / interval * SECOND
+        return ErrorSample(stamp, error, before.turns, ideal, direction, speed)
 
 
 class SlidingStatistics:
@@ -218,6 +237,58 @@ class SlidingStatistics:
         return self._greatest[0][1] - self._least[0][1] if self._values else None
 
 
+class ReversalWindow:
+    """Errors and speeds of a sliding window by output angle and direction.
+
+    Adding takes amortised constant time; `reversals` takes a time in proportion to the angles.
+    """
+
+    def __init__(self) -> None:
+        self._samples: deque[tuple[int, _Place, int, int]] = deque()
+        # Number of samples, sum of errors, sum of speeds.
+        self._sums: dict[_Place, list[int]] = {}
+
+    def add(self, sample: ErrorSample) -> None:
+        """Add an error that is not older than the last."""
+        angle = sample.turns * _BINS + math.floor(sample.ideal / TURN * _BINS)
+        place = _Place(angle, sample.direction)
+        error, speed = round(sample.error * _UNIT), round(sample.speed * _UNIT)
+        self._samples.append((sample.stamp, place, error, speed))
+        self._count(place, 1, error, speed)
+
+    def drop(self, before: int) -> None:
+        """Drop samples older than a stamp, ns."""
+        while self._samples and self._samples[0][0] < before:
+            _, place, error, speed = self._samples.popleft()
+            self._count(place, -1, -error, -speed)
+
+    def _count(self, place: _Place, *steps: int) -> None:
+        sums = self._sums.setdefault(place, [0, 0, 0])
+        for k, step in enumerate(steps):
+            sums[k] += step
+        if not sums[0]:
+            del self._sums[place]
+
+    def reversals(self) -> Reversals | None:
+        """What differs between both directions, over the angles that both cover, if any."""
+        angles = sorted(
+            angle
+            for angle, direction in self._sums
+            if direction > 0 and _Place(angle, -1) in self._sums
+        )
+        if not angles:
+            return None
+        forward, backward = (
+            np.array([self._mean(_Place(angle, way)) for angle in angles]) for way in (1, -1)
+        )
+        difference = backward - forward
+        return separate([Pair(difference[:, 0], -difference[:, 1])])
+
+    def _mean(self, place: _Place) -> tuple[float, float]:
+        count, error, speed = self._sums[place]
+        return error / count / _UNIT, speed / count / _UNIT
+
+
 class ErrorWindow:
     """Statistics of the transmission error over a sliding window, by direction."""
 
@@ -238,6 +309,7 @@ class ErrorWindow:
         """Statistics of forward motion."""
         self.backward = SlidingStatistics()
         """Statistics of backward motion."""
+        self._reversals = ReversalWindow()
 
     def add(self, sample: ErrorSample) -> None:
         """Add an error that is not older than the last."""
@@ -245,14 +317,11 @@ class ErrorWindow:
         if sample.direction:
             statistics = self.forward if sample.direction > 0 else self.backward
             statistics.add(sample.stamp, sample.error)
-        for statistics in (self.both, self.forward, self.backward):
-            statistics.drop(sample.stamp - self._length)
+            self._reversals.add(sample)
+        for window in (self.both, self.forward, self.backward, self._reversals):
+            window.drop(sample.stamp - self._length)
 
     @property
-    def lost_motion(self) -> float | None:
-        """Lost motion on reversals: mean error of backward minus forward motion, rad.
-
-        None unless the window has both.
-        """
-        backward, forward = self.backward.mean, self.forward.mean
-        return None if backward is None or forward is None else backward - forward
+    def reversals(self) -> Reversals | None:
+        """Lost motion and delay; None unless both directions cover the same angles."""
+        return self._reversals.reversals()

@@ -127,7 +127,9 @@ def test_nothing_is_known_before_there_are_ideal_samples_on_both_sides():
     assert comparison.add_ideal(START, 0, 0.0) == []
     assert comparison.add_ideal(START + 3 * MS, 0, 0.03) == []
     (sample,) = comparison.add_ideal(START + 5 * MS, 0, 0.05)
-    assert sample == ErrorSample(START + 4 * MS, pytest.approx(0.06), 0, pytest.approx(0.04), 1)
+    assert sample == ErrorSample(
+        START + 4 * MS, pytest.approx(0.06), 0, pytest.approx(0.04), 1, pytest.approx(10.0)
+    )
 
 
 def test_nothing_is_compared_across_a_gap():
@@ -291,21 +293,25 @@ def test_window_separates_lost_motion_from_errors_of_both_directions():
     assert min(forward, backward) > 1000
     assert len(window.forward) == forward
     assert len(window.backward) == backward
-    assert window.lost_motion == pytest.approx(play, abs=1e-4)
+    assert window.reversals.lost_motion.value == pytest.approx(play, abs=1e-4)
     assert play < window.both.peak_to_peak <= play + 0.002 + 1e-9
     assert window.forward.peak_to_peak == pytest.approx(0.002, abs=1e-4)
 
 
 def test_window_without_a_reversal_has_no_lost_motion():
     window = ErrorWindow(SECOND)
-    assert window.lost_motion is None
-    window.add(ErrorSample(START, 0.1, 0, 0.0, 1))
-    assert window.lost_motion is None
-    window.add(ErrorSample(START + MS, 0.3, 0, 0.0, -1))
-    assert window.lost_motion == pytest.approx(0.2)
+    assert window.reversals is None
+    window.add(ErrorSample(START, 0.1, 0, 0.0, 1, 0.5))
+    assert window.reversals is None
+    window.add(ErrorSample(START + MS, 0.3, 0, 0.1, -1, -0.5))  # elsewhere
+    assert window.reversals is None
+    window.add(ErrorSample(START + 2 * MS, 0.3, 0, 0.0, -1, -0.5))
+    assert window.reversals.difference.value == pytest.approx(0.2)
+    assert window.reversals.difference.uncertainty is None
+    assert window.reversals.lost_motion is None
     # A direction that does not occur in the window does not count.
-    window.add(ErrorSample(START + SECOND + 2, 0.3, 0, 0.0, -1))
-    assert window.lost_motion is None
-    assert len(window.both) == 2
+    window.add(ErrorSample(START + SECOND + 2, 0.3, 0, 0.0, -1, -0.5))
+    assert window.reversals is None
+    assert len(window.both) == 3
     window.reset()
     assert (len(window.both), window.both.mean) == (0, None)
