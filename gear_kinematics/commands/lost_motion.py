@@ -18,8 +18,8 @@ from gear_kinematics.lost_motion import (
     read_bag,
     read_csv,
 )
-from gear_kinematics.lost_motion.csv_files import UNITS
 from gear_kinematics.lost_motion.document import document
+from gear_kinematics.lost_motion.encoder_step import UNITS
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
 from gear_kinematics.lost_motion.ramps import RampError
 from gear_kinematics.lost_motion.ratio import fit_ratio

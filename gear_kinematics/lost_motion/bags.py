@@ -11,7 +11,8 @@ from gear_kinematics.bag import Bag, BagError, DamagedBagError, ReportProgress, 
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
+from gear_kinematics.lost_motion.encoder_step import Step, step_of
+from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSamples
@@ -63,7 +64,7 @@ def read_bag(
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
     turns, angle = ratio.output_angle(samples.turns, samples.angle, np)
     positions = samples.turns * TURN + samples.angle
-    rotor_step = step_of(counts, positions) / float(abs(ratio))
+    rotor_step = step_of(counts, positions).scaled(1.0 / float(ratio))
     motion = None
     columns = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
     if encoder:
@@ -101,7 +102,7 @@ def _loading(
     ratio: float,
     turns: Array,
     angle: Array,
-    rotor_step: float,
+    rotor_step: Step,
     motion: Motion | None,
 ) -> Loading | None:
     """Torque and twist: of the gear if the output was measured, else of the whole drive."""

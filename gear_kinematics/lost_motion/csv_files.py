@@ -12,16 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, GearRatio
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
-from gear_kinematics.lost_motion.recording import Loading, Recording, step_of
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, split_turns
+from gear_kinematics.lost_motion.encoder_step import UNITS, step_of
+from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.state.transmission_error import TransmissionError
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 Array = NDArray[np.float64]
 
-UNITS: Mapping[str, float] = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
-"""Units of angle, rad."""
 _NAMES: Mapping[str, tuple[str, ...]] = {
     'angle': ('position', 'angle', 'deflection', 'twist', 'motor_position'),
     'torque': ('torque', 'effort', 'measured_torque', 'motor_torque'),
@@ -201,7 +200,7 @@ def _loading(
 ) -> Loading:
     angle, step = data['angle'], step_of(counts, data['angle'])
     if on_rotor:
-        angle, step = angle / float(ratio), step / float(abs(ratio))
+        angle, step = angle / float(ratio), step.scaled(1.0 / float(ratio))
     return Loading(data['torque'], angle, step, measured=False)
 
 
@@ -219,6 +218,6 @@ def _motion(
         TransmissionError(max_gap=1, travel=travel),
         (row, turns, angle),
         (row, data['output']),
-        step_of(counts, data['rotor']) / float(abs(ratio)),
+        step_of(counts, data['rotor']).scaled(1.0 / float(ratio)),
         step_of(output_counts, data['output']),
     )

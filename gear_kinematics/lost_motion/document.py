@@ -78,8 +78,10 @@ def _recording(report: LostMotionReport) -> Mapping[str, Any]:
         'transmission': _without(report.transmission, 'spectra'),
         'encoders': motion
         and {
-            'rotor_step': motion.rotor_step,
-            'output_step': motion.output_step,
+            'rotor_step': motion.rotor_step.size,
+            'rotor_step_source': motion.rotor_step.source,
+            'output_step': motion.output_step.size,
+            'output_step_source': motion.output_step.source,
             'unmatched': motion.unmatched,
         },
         'remarks': remarks(report),

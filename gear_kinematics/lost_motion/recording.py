@@ -1,21 +1,15 @@
 """The contents of a recording for measuring lost motion, whatever its file format."""
 
-import math
 from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.encoder_step import Step
 from gear_kinematics.lost_motion.transmission import Motion
 
 Array = NDArray[np.float64]
-
-_FAR = 1000
-"""Gaps over this many times the smallest one are ignored."""
-_CLEAR = 1000
-"""A step is at least this many times the rounding error."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -26,8 +20,8 @@ class Loading:
     """N·m, at the output."""
     angle: Array
     """rad, at the output: the twist of the gear, from an arbitrary zero."""
-    angle_step: float
-    """rad at the output, between readings of the angle; 0 if unknown."""
+    angle_step: Step
+    """rad at the output, between readings of the angle."""
     measured: bool
     """Whether an encoder measured the output; if not, it is taken to be locked."""
 
@@ -39,7 +33,7 @@ class Loading:
             torque: (n,), N·m, at the output, at the samples of `motion`.
             motion: whose error is the negative twist.
         """
-        step = math.hypot(motion.rotor_step, motion.output_step)
+        step = motion.rotor_step.joined(motion.output_step)
         return cls(torque, -motion.error, step, measured=True)
 
 
@@ -58,32 +52,3 @@ class Recording:
     """Sentences about what was left out or assumed."""
     error: str | None = None
     """Damage at which reading ended."""
-
-
-def smallest_step(readings: Array) -> float:
-    """Compute the step of a sensor whose readings are its multiples; 0 if they are not.
-
-    It is the greatest common divisor of the gaps between readings, by Euclid's algorithm.
-
-    Args:
-        readings: in any unit, which is also that of the step.
-    """
-    levels = np.unique(readings)
-    rounding = 4.0 * float(np.spacing(np.max(np.abs(levels), initial=0.0)))
-    gaps = np.diff(levels)
-    gaps = gaps[gaps > rounding]
-    gaps = gaps[gaps <= _FAR * np.min(gaps, initial=np.inf)]
-    step = 0.0
-    while len(gaps):
-        step = float(np.min(gaps))
-        if step < _CLEAR * rounding:
-            return 0.0
-        wholes = np.round(gaps / step)
-        rest = np.abs(gaps - wholes * step)
-        gaps = rest[rest > rounding * (1.0 + wholes)]
-    return step
-
-
-def step_of(counts: int | None, readings: Array) -> float:
-    """The step of an encoder, rad: from its counts per turn, or from its readings."""
-    return TURN / counts if counts else smallest_step(readings)

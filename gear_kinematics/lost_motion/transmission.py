@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.encoder_step import Step
 from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
@@ -56,9 +57,9 @@ class Motion:
     """1, -1, or 0 where unknown."""
     unmatched: Mapping[str, int]
     """Measured angles without an error, by cause."""
-    rotor_step: float
-    """rad at the output, between readings of the rotor's encoder; 0 if unknown."""
-    output_step: float
+    rotor_step: Step
+    """rad at the output, between readings of the rotor's encoder."""
+    output_step: Step
     """rad, the same of the output's encoder."""
 
     @classmethod
@@ -67,8 +68,8 @@ class Motion:
         comparison: TransmissionError,
         ideal: tuple[NDArray[Any], NDArray[Any], NDArray[Any]],
         measured: tuple[NDArray[Any], NDArray[Any]],
-        rotor_step: float,
-        output_step: float,
+        rotor_step: Step,
+        output_step: Step,
     ) -> 'Motion':
         """Compare ideal (stamp, turns, angle) with measured (stamp, angle), in order of stamps.
 
@@ -183,7 +184,7 @@ def figures(motion: Motion, gear: Gear) -> TransmissionFigures:
     _check(motion)
     runs = list(_runs(motion))
     ways = [[run for sign, run in runs if sign == way] for way in (1, -1)]
-    reading = math.hypot(resolution(motion.rotor_step), resolution(motion.output_step))
+    reading = resolution(motion.rotor_step.joined(motion.output_step).size)
     both = Component(math.sqrt(2.0) * reading)
     forward, backward = (_long(way) for way in ways)
     return TransmissionFigures(

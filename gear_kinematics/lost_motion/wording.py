@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 
+from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
 from gear_kinematics.lost_motion.ratio import MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
@@ -38,7 +39,8 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
             'ratio, with the output assumed to be locked. The figures include the compliance of '
             'motor, bench and clamping.'
         )
-        yield _step(found.settings.angle_step, 'the angle at the output')
+        if recording.loading:
+            yield _step(recording.loading.angle_step, 'the angle at the output')
         yield from _doubts(found)
     if motion := recording.motion:
         for step, of in (
@@ -74,10 +76,14 @@ def _ratio(fitted: RatioEstimate) -> Iterator[str]:
         )
 
 
-def _step(step: float, of: str) -> str:
-    if not step:
-        return f'The data show no steps of {of}; the uncertainty does not include them.'
-    return f'One step of {of} is {number(step * ARC_MINUTES)} arcmin.'
+def _step(step: Step, of: str) -> str:
+    size = f'{number(step.size * ARC_MINUTES)} arcmin'
+    if step.source in {Source.GIVEN, Source.FOUND}:
+        return f'One step of {of} is {size}.'
+    unknown = f'The step of {of} is not determinable from the readings'
+    if step.source == Source.RECORDING:
+        return f'{unknown}; they are recorded in steps of {size}, which the uncertainty includes.'
+    return f'{unknown}, and the uncertainty does not include it.'
 
 
 def _doubts(found: HysteresisReport) -> Iterator[str]:

@@ -8,7 +8,7 @@ from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, w
 
 from gear_kinematics.bag import BagError
 from gear_kinematics.lost_motion import Columns, CsvError, measure, read_bag, read_csv
-from gear_kinematics.lost_motion.recording import smallest_step
+from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.state import parameters
 
 TURN = 2.0 * math.pi
@@ -152,28 +152,10 @@ def test_column_that_is_not_there_is_named(tmp_path, actuator):
 # Steps of an encoder
 
 
-@pytest.mark.parametrize('step', [TURN / 65536, TURN / 2**20 / 19, 1e-3, 360 / 4096])
-@pytest.mark.parametrize('jump', [1, 7, 90])
-def test_step_is_that_of_the_readings(step, jump):
-    # The readings move by many steps at a time, and so none are next to each other.
-    counts = np.cumsum(np.random.default_rng(4).integers(jump, jump + 3, 3000))
-    assert smallest_step(counts * step) == pytest.approx(step, rel=1e-9)
-    assert smallest_step(-(counts * step)) == pytest.approx(step, rel=1e-9)
-
-
-def test_readings_without_steps_have_none():
-    generator = np.random.default_rng(6)
-    assert smallest_step(generator.standard_normal(5000)) == 0.0
-    noisy = quantised(generator.standard_normal(5000), 0.01) + generator.normal(0, 1e-4, 5000)
-    assert smallest_step(noisy) == 0.0
-    for constant in (np.zeros(0), np.ones(1), np.ones(100)):
-        assert smallest_step(constant) == 0.0
-
-
 def test_steps_can_be_given(tmp_path, actuator, angle):
     path = write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE)
     recording = read_csv(path, actuator, Columns(), TRAVEL, counts=4096)
-    assert recording.loading.angle_step == TURN / 4096
+    assert recording.loading.angle_step == Step(TURN / 4096, Source.GIVEN)
 
 
 # Bags
@@ -188,7 +170,7 @@ def ramps_on_rotor(path, angle, **changes):
 def test_efforts_of_the_rotor_are_torque_at_the_output(tmp_path, config, actuator, angle):
     recording = read_bag(ramps_on_rotor(tmp_path / 'ramps', angle), config)
     assert not recording.loading.measured
-    assert recording.loading.angle_step == pytest.approx(TURN / 2**14 / 19, rel=1e-6)
+    assert recording.loading.angle_step.size == pytest.approx(TURN / 2**14 / 19, rel=1e-6)
     np.testing.assert_allclose(recording.loading.torque, TORQUE, rtol=0, atol=1e-12)
     expected = GEAR.play + 2.0 * GEAR.friction / GEAR.stiffness
     assert hysteresis(recording, actuator) == pytest.approx(expected, abs=5e-5)

@@ -9,6 +9,7 @@ from gear_recordings import Samples, quantised, write_csv, write_recording
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.lost_motion import Columns, measure, read_bag, read_csv
+from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.transmission import Motion, MotionError, figures, marked_orders
 from gear_kinematics.state import parameters
 
@@ -18,6 +19,7 @@ START = 1_700_000_000 * 10**9
 PLAY = 3e-3
 AMPLITUDES = {19: 1.0e-3, 20: 4e-4, 2: 5e-4, 1520: 2e-4}  # by order
 RATE = 1000.0
+UNKNOWN = Step(0.0, Source.UNKNOWN)
 SPEED = 0.5  # rad/s of the output
 
 
@@ -107,8 +109,8 @@ def test_spectrum_has_its_peaks_at_these_orders(found):
 
 @pytest.mark.slow
 def test_steps_of_both_encoders_are_known(recording):
-    assert recording.motion.rotor_step == pytest.approx(TURN / 2**16 / 19, rel=1e-6)
-    assert recording.motion.output_step == pytest.approx(TURN / 2**20, rel=1e-6)
+    assert recording.motion.rotor_step.size == pytest.approx(TURN / 2**16 / 19, rel=1e-6)
+    assert recording.motion.output_step.size == pytest.approx(TURN / 2**20, rel=1e-6)
 
 
 @pytest.mark.slow
@@ -155,7 +157,7 @@ def test_coarse_samples_resolve_no_high_orders(actuator):
 def motion(angle: np.ndarray, error: np.ndarray) -> Motion:
     direction = np.ones(len(angle), np.int8)
     stamp = np.arange(len(angle))
-    return Motion(stamp, angle, error, direction, {}, rotor_step=0.0, output_step=0.0)
+    return Motion(stamp, angle, error, direction, {}, UNKNOWN, UNKNOWN)
 
 
 @pytest.mark.slow
