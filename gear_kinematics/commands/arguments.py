@@ -22,6 +22,13 @@ def positive(text: str) -> float:
     return number
 
 
+def finite(text: str) -> float:
+    """Parse a finite number."""
+    if not math.isfinite(number := float(text)):
+        raise argparse.ArgumentTypeError(f'must be a finite number, not {text}')
+    return number
+
+
 def count(text: str) -> int:
     """Parse an integer of at least 1."""
     if (number := int(text)) < 1:

@@ -21,9 +21,9 @@ from gear_kinematics.lost_motion import (
 from gear_kinematics.lost_motion.document import document
 from gear_kinematics.lost_motion.encoder_step import UNITS
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
+from gear_kinematics.lost_motion.motion import MotionError
 from gear_kinematics.lost_motion.ramps import RampError
 from gear_kinematics.lost_motion.ratio import fit_ratio
-from gear_kinematics.lost_motion.transmission import MotionError
 
 HELP = 'lost motion, stiffness, play and transmission error from recordings'
 _CSV = {'.csv', '.tsv', '.txt'}
@@ -92,6 +92,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='DEG',
         help='of the output that confirms a reversal (default: transmission_error_travel)',
     )
+    encoders.add_argument(
+        '--delay',
+        type=arguments.finite,
+        metavar='S',
+        help='by which the stamps of the output encoder are late, s, or rows of a CSV (default: '
+        'estimated; 0: none)',
+    )
     arguments.add_report_forms(parser)
 
 
@@ -133,7 +140,7 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
             gear = fitted.ratio
             recording = _read(path, options, config | {'gear_ratio': str(gear)}, gear)
     corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
-    return measure(recording, gear, options.rated_torque, corners, fitted)
+    return measure(recording, gear, options.rated_torque, corners, fitted, options.delay)
 
 
 def _read(

@@ -12,8 +12,8 @@ from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.encoder_step import Step, step_of
+from gear_kinematics.lost_motion.motion import Motion
 from gear_kinematics.lost_motion.recording import Loading, Recording
-from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSamples
 from gear_kinematics.wire.batches import decode_joint_states

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, split_turns
 from gear_kinematics.lost_motion.encoder_step import UNITS, step_of
+from gear_kinematics.lost_motion.motion import Motion
 from gear_kinematics.lost_motion.recording import Loading, Recording
-from gear_kinematics.lost_motion.transmission import Motion
 from gear_kinematics.state.transmission_error import TransmissionError
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
@@ -220,4 +220,5 @@ def _motion(
         (row, data['output']),
         step_of(counts, data['rotor']).scaled(1.0 / float(ratio)),
         step_of(output_counts, data['output']),
+        in_rows=True,
     )

@@ -78,6 +78,7 @@ def _recording(report: LostMotionReport) -> Mapping[str, Any]:
         'transmission': _without(report.transmission, 'spectra'),
         'encoders': motion
         and {
+            'delay_unit': 'rows' if motion.in_rows else 's',
             'rotor_step': motion.rotor_step.size,
             'rotor_step_source': motion.rotor_step.source,
             'output_step': motion.output_step.size,
@@ -140,7 +141,7 @@ def _tables(report: LostMotionReport) -> Iterator[Table]:
             yield _amplitude_table(found)
         yield _stiffness_table(found)
     if report.transmission:
-        yield _transmission_table(report.transmission)
+        yield _transmission_table(report.transmission, in_rows=_in_rows(report))
         yield _order_table(report.transmission)
 
 
@@ -195,12 +196,20 @@ def _stiffness_table(found: HysteresisReport) -> Table:
     )
 
 
-def _transmission_table(found: TransmissionFigures) -> Table:
+def _in_rows(report: LostMotionReport) -> bool:
+    motion = report.recording.motion
+    return motion is not None and motion.in_rows
+
+
+def _transmission_table(found: TransmissionFigures, *, in_rows: bool) -> Table:
     """Return the figures of the transmission error."""
+    delay = ('rows', 1.0) if in_rows else ('ms', 1e3)
     rows = (
         _angle('transmission accuracy forward', found.forward),
         _angle('transmission accuracy backward', found.backward),
+        _angle('backward minus forward', found.reversals),
         _angle('lost motion on reversals', found.lost_motion),
+        _row('delay of the output encoder', delay[0], found.delay, '', delay[1]),
     )
     travel = number(math.degrees(found.travel), 4)
     offset = (
@@ -257,7 +266,7 @@ def _row(
     if not estimate:
         return None
     value, spread = rounded(estimate, scale)
-    degrees = rounded(estimate, math.degrees(1.0))[0] if scale != 1.0 else ''
+    degrees = rounded(estimate, math.degrees(1.0))[0] if scale == ARC_MINUTES else ''
     return (
         Cell(label, unit=unit),
         Cell(value, unit=unit),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.transmission import Motion, MotionError
+from gear_kinematics.lost_motion.motion import Motion, MotionError
 from gear_kinematics.state.uncertainty import Estimate, student_t
 
 Array = NDArray[np.float64]
@@ -66,6 +66,19 @@ def fit_ratio(motion: Motion, assumed: GearRatio) -> RatioEstimate:
     """
     rotor = motion.angle * float(assumed)
     return estimate_ratio(rotor, motion.angle + np.unwrap(motion.error))
+
+
+def check_ratio(motion: Motion) -> None:
+    """Check that the output follows the rotor.
+
+    Raises:
+        MotionError: if not; otherwise errors within the turn mean nothing.
+    """
+    if float(np.ptp(motion.error)) >= 0.5 * TURN:
+        raise MotionError(
+            'the measured output angle does not follow the rotor: the errors cover a whole turn; '
+            'the ratio is wrong, or an encoder counts backwards'
+        )
 
 
 def estimate_ratio(rotor: Array, output: Array) -> RatioEstimate:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.encoder_step import Step
-from gear_kinematics.lost_motion.transmission import Motion
+from gear_kinematics.lost_motion.motion import Motion
 
 Array = NDArray[np.float64]
 

@@ -1,13 +1,13 @@
 """Lost motion of a recording: figures and the curves behind them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.lost_motion import hysteresis, transmission
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
 from gear_kinematics.lost_motion.ramps import RampError, Ramps, find_ramps
-from gear_kinematics.lost_motion.ratio import RatioEstimate
+from gear_kinematics.lost_motion.ratio import RatioEstimate, check_ratio
 from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.lost_motion.transmission import TransmissionFigures
 
@@ -57,6 +57,7 @@ def measure(
     rated_torque: float | None = None,
     corners: tuple[float, ...] | None = None,
     fitted: RatioEstimate | None = None,
+    delay: float | None = None,
 ) -> LostMotionReport:
     """Measure lost motion in a recording.
 
@@ -66,13 +67,20 @@ def measure(
         rated_torque: N·m at the output; None: the amplitude of the largest ramps.
         corners: N·m, rising, between ranges of stiffness; None: shares of the rated torque.
         fitted: the estimate of the ratio, if it comes from the recording.
+        delay: s, or rows of a file without times, by which the stamps of the output are late;
+            None: estimated.
 
     Raises:
         RampError, MotionError: if nothing can be measured.
     """
     remarks = list(recording.remarks)
     motion = recording.motion
-    found = transmission.figures(motion, gear) if motion else None
+    found = None
+    if motion:
+        check_ratio(motion)
+        reversals, motion = transmission.separate_delay(motion, delay)
+        found = transmission.figures(motion, gear, reversals)
+        recording = replace(recording, motion=motion)
     ramps = None
     if recording.loading:
         try:

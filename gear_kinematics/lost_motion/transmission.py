@@ -5,20 +5,17 @@ An order is a number of cycles per turn of the output.
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from heapq import merge
 from itertools import pairwise
-from operator import itemgetter
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.encoder_step import Step
-from gear_kinematics.state.transmission_error import ErrorSample, TransmissionError
+from gear_kinematics.lost_motion.motion import Motion
+from gear_kinematics.state.reversals import Pair, Reversals, separate
 from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 Array = NDArray[np.float64]
@@ -37,65 +34,6 @@ _MOST_TEETH = 100
 """Greatest number of teeth in mesh per turn of the rotor of an unknown gear."""
 _BLOCK = 16_384
 """Samples that are fitted at a time."""
-
-
-class MotionError(ValueError):
-    """A recording of both encoders without usable samples."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Motion:
-    """The transmission error as it was recorded, (n,) each, in the order of time."""
-
-    stamp: NDArray[np.int64]
-    """ns."""
-    angle: Array
-    """Ideal output angle, rad, counted from the first turn."""
-    error: Array
-    """Measured minus ideal output angle, rad."""
-    direction: NDArray[np.int8]
-    """1, -1, or 0 where unknown."""
-    unmatched: Mapping[str, int]
-    """Measured angles without an error, by cause."""
-    rotor_step: Step
-    """rad at the output, between readings of the rotor's encoder."""
-    output_step: Step
-    """rad, the same of the output's encoder."""
-
-    @classmethod
-    def from_angles(
-        cls,
-        comparison: TransmissionError,
-        ideal: tuple[NDArray[Any], NDArray[Any], NDArray[Any]],
-        measured: tuple[NDArray[Any], NDArray[Any]],
-        rotor_step: Step,
-        output_step: Step,
-    ) -> 'Motion':
-        """Compare ideal (stamp, turns, angle) with measured (stamp, angle), in order of stamps.
-
-        Raises:
-            MotionError: if there is nothing to compare.
-        """
-        stamps, turns, angles = ideal
-        columns = (stamps, turns.astype(np.int64), angles), measured
-        rows = (zip(*(column.tolist() for column in c), strict=True) for c in columns)
-        samples: list[ErrorSample] = []
-        for stamp, *angle in merge(*rows, key=itemgetter(0)):
-            add: Any = comparison.add_ideal if len(angle) > 1 else comparison.add_measured
-            samples += add(stamp, *angle)
-        if not samples:
-            causes = ', '.join(f'{cause} {count}' for cause, count in comparison.unmatched.items())
-            raise MotionError(f'no output angle could be matched with the rotor: {causes}')
-        first = samples[0].turns
-        return cls(
-            np.array([s.stamp for s in samples]),
-            np.array([(s.turns - first) * TURN + s.ideal for s in samples]),
-            np.array([s.error for s in samples]),
-            np.array([s.direction for s in samples], np.int8),
-            dict(comparison.unmatched),
-            rotor_step,
-            output_step,
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,8 +69,13 @@ class TransmissionFigures:
     forward: Estimate | None
     """Transmission accuracy, rad: peak-to-peak error of forward motion without a reversal."""
     backward: Estimate | None
+    reversals: Estimate | None
+    """rad: error of the backward minus the forward run at the same angles; None without any."""
     lost_motion: Estimate | None
-    """rad, on reversals: error of the backward minus the forward run; None without any."""
+    """rad: the same at no speed; None where it cannot be told from a delay."""
+    delay: Estimate | None
+    """s, or rows of a file without times, by which the stamps of the output are late; None if it
+    cannot be told. The other figures are without it."""
     orders: tuple[Order, ...]
     spectra: tuple[Spectrum | None, Spectrum | None]
     """Forward and backward."""
@@ -141,9 +84,9 @@ class TransmissionFigures:
 class _Run:
     """Samples in one direction."""
 
-    def __init__(self, angle: Array, error: Array) -> None:
+    def __init__(self, angle: Array, error: Array, speed: Array) -> None:
         order = np.argsort(angle, kind='stable')
-        self.angle, self.error = angle[order], error[order]
+        self.angle, self.error, self._speed = angle[order], error[order], speed[order]
         self.low, self.high = float(self.angle[0]), float(self.angle[-1])
 
     @property
@@ -155,6 +98,14 @@ class _Run:
     def spacing(self) -> float:
         """Distance between samples, 99th percentile, turns of the output."""
         return float(np.quantile(np.diff(self.angle), 0.99)) / TURN
+
+    def mean_speed(self, edges: Array) -> Array:
+        """Mean speeds between angles (n,): (n - 1,)."""
+        sums = np.concatenate([[0.0], np.cumsum(self._speed)])
+        rows = np.searchsorted(self.angle, edges)
+        counts = np.diff(rows)
+        single = np.interp(0.5 * (edges[1:] + edges[:-1]), self.angle, self._speed)
+        return np.where(counts, np.diff(sums[rows]) / np.maximum(counts, 1), single)
 
 
 def marked_orders(gear: Gear) -> dict[str, Fraction]:
@@ -175,17 +126,38 @@ def marked_orders(gear: Gear) -> dict[str, Fraction]:
     }
 
 
-def figures(motion: Motion, gear: Gear) -> TransmissionFigures:
+def separate_delay(motion: Motion, delay: float | None) -> tuple[Reversals | None, Motion]:
+    """Separate lost motion from a delay of the output's stamps, and take the delay out.
+
+    Args:
+        motion: of both encoders.
+        delay: s or rows, if it is known; None estimates it, and takes out what is more than its
+            uncertainty.
+    """
+    found = _reversals(motion, delay)
+    taken = found.delay if found else None
+    if delay is None and taken and abs(taken.value) > (taken.uncertainty or 0.0):
+        # The error is in proportion to the delay only as long as the speed hardly changes in it.
+        delay = taken.value
+        rest = _reversals(motion.without_delay(delay), None)
+        if rest and rest.delay and found:
+            late = replace(rest.delay, value=delay + rest.delay.value)
+            found = replace(found, lost_motion=rest.lost_motion, delay=late)
+    return found, motion.without_delay(delay) if delay else motion
+
+
+def figures(motion: Motion, gear: Gear, reversals: Reversals | None) -> TransmissionFigures:
     """Compute the figures of a recording.
 
-    Raises:
-        MotionError: if the output does not follow the rotor.
+    Args:
+        motion: of both encoders, without delay.
+        gear: whose orders to look for.
+        reversals: the first result of `separate_delay`.
     """
-    _check(motion)
     runs = list(_runs(motion))
     ways = [[run for sign, run in runs if sign == way] for way in (1, -1)]
-    reading = resolution(motion.rotor_step.joined(motion.output_step).size)
-    both = Component(math.sqrt(2.0) * reading)
+    reading = Component(_reading(motion))
+    both = Component(math.sqrt(2.0) * reading.standard)
     forward, backward = (_long(way) for way in ways)
     return TransmissionFigures(
         samples=len(motion.error),
@@ -193,29 +165,30 @@ def figures(motion: Motion, gear: Gear) -> TransmissionFigures:
         offset=float(np.mean(motion.error)),
         forward=_accuracy(forward, both),
         backward=_accuracy(backward, both),
-        lost_motion=_lost_motion(runs, both),
-        orders=tuple(_orders(gear, forward, backward, Component(reading))),
+        reversals=reversals.difference if reversals else None,
+        lost_motion=reversals.lost_motion if reversals else None,
+        delay=reversals.delay if reversals else None,
+        orders=tuple(_orders(gear, forward, backward, reading)),
         spectra=(_spectrum(gear, forward), _spectrum(gear, backward)),
     )
 
 
-def _check(motion: Motion) -> None:
-    """Check that the output follows the rotor; otherwise errors within the turn mean nothing."""
-    if float(np.ptp(motion.error)) < 0.5 * TURN:
-        return
-    raise MotionError(
-        'the measured output angle does not follow the rotor: the errors cover a whole turn; '
-        'the ratio is wrong, or an encoder counts backwards'
-    )
+def _reading(motion: Motion) -> float:
+    """Standard uncertainty of an error by the steps of both encoders, rad."""
+    return resolution(motion.rotor_step.joined(motion.output_step).size)
 
 
 def _runs(motion: Motion) -> Iterable[tuple[int, _Run]]:
     """The runs between reversals, each with its direction."""
+    if len(motion.stamp) < 2:  # noqa: PLR2004, no speed
+        return
+    speed = np.gradient(motion.angle, motion.time)
     known = np.flatnonzero(motion.direction)
     signs = motion.direction[known]
     for rows in np.split(known, np.flatnonzero(np.diff(signs)) + 1):
         if len(rows) > 1:
-            yield int(motion.direction[rows[0]]), _Run(motion.angle[rows], motion.error[rows])
+            run = _Run(motion.angle[rows], motion.error[rows], speed[rows])
+            yield int(motion.direction[rows[0]]), run
 
 
 def _long(runs: Sequence[_Run]) -> list[_Run]:
@@ -228,18 +201,22 @@ def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:
     return Estimate.of_mean(values, reading) if values else None
 
 
-def _lost_motion(runs: Sequence[tuple[int, _Run]], reading: Component) -> Estimate | None:
+def _reversals(motion: Motion, delay: float | None) -> Reversals | None:
     """Compare successive runs, in pairs of opposite direction, over their common angles."""
-    values = []
-    for (sign, there), (_, back) in list(pairwise(runs))[::2]:
-        low, high = max(there.low, back.low), min(there.high, back.high)
-        if low < high:
-            at = np.linspace(low, high, _LEVELS)
-            there_error, back_error = (
-                np.interp(at, run.angle, run.error) for run in (there, back)
-            )
-            values.append(sign * float(np.mean(back_error - there_error)))
-    return Estimate.of_mean(values, reading) if values else None
+    pairs = [_pair(*two) for two in list(pairwise(_runs(motion)))[::2]]
+    return separate(pairs, Component(math.sqrt(2.0) * _reading(motion)), delay=delay)
+
+
+def _pair(first: tuple[int, _Run], second: tuple[int, _Run]) -> Pair:
+    (sign, there), (_, back) = first, second
+    low, high = max(there.low, back.low), min(there.high, back.high)
+    if low >= high:
+        return Pair(np.zeros(0), np.zeros(0))
+    edges = np.linspace(low, high, _LEVELS + 1)
+    at = 0.5 * (edges[1:] + edges[:-1])
+    there_error, back_error = (np.interp(at, run.angle, run.error) for run in (there, back))
+    speed = there.mean_speed(edges) - back.mean_speed(edges)
+    return Pair(sign * (back_error - there_error), sign * speed)
 
 
 # Orders

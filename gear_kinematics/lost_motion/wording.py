@@ -48,6 +48,7 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
             (motion.output_step, 'the output encoder'),
         ):
             yield _step(step, of)
+        yield from _delay(report)
         for cause, count in motion.unmatched.items():
             yield f'{count} output angles were not compared: {cause}.'
     yield (
@@ -73,6 +74,25 @@ def _ratio(fitted: RatioEstimate) -> Iterator[str]:
         yield (
             f'Tooth pairs (ring gear/satellite) of up to {MOST_TEETH} teeth with such a ratio: '
             f'{shown}{more}.'
+        )
+
+
+def _delay(report: LostMotionReport) -> Iterator[str]:
+    found, motion = report.transmission, report.recording.motion
+    if not (found and motion and found.reversals):
+        return
+    unit = 'rows' if motion.in_rows else 's'
+    late, spread = found.delay, found.delay.uncertainty if found.delay else None
+    if late is None:
+        yield (
+            'The speed varies too little to tell lost motion from a delay between the encoders: '
+            '"backward minus forward" is the sum of lost motion and delay times twice the speed. '
+            f'Move at several speeds, or tell the delay with --delay, in {unit}.'
+        )
+    elif spread and abs(late.value) > spread:
+        yield (
+            'The stamps of the two encoders differ by a delay. It has been taken out of the '
+            'transmission error.'
         )
 
 

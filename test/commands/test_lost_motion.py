@@ -93,8 +93,19 @@ def test_rated_torque_and_ranges_can_be_told(recording, capsys):
     assert [(s['low'], round(s['high'], 3)) for s in stiffness] == [(0.0, 10.0), (10.0, 30.0)]
 
 
-def test_transmission_error_of_both_encoders(motion, capsys):
+def test_at_one_speed_a_delay_must_be_known(motion, capsys):
+    assert main(['lost-motion', str(motion)]) == 0
+    output = capsys.readouterr().out
+    assert 'tell the delay with --delay, in rows' in output
+    assert 'lost motion on reversals' not in output
     assert main(['lost-motion', str(motion), '--json']) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
+    assert found['transmission']['lost_motion'] is found['transmission']['delay'] is None
+    assert found['transmission']['reversals']['value'] == pytest.approx(2e-3, abs=1e-5)
+
+
+def test_transmission_error_of_both_encoders(motion, capsys):
+    assert main(['lost-motion', str(motion), '--json', '--delay', '0']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     transmission = found['transmission']
     assert transmission['lost_motion']['value'] == pytest.approx(2e-3, abs=1e-5)
