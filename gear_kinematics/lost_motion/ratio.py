@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
@@ -28,6 +29,12 @@ _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
 _FAR = 2.0
 """Expanded uncertainties within which a fraction or a tooth pair may be the true ratio."""
+_WRONG = 3.0
+"""Expanded uncertainties from which on an assumed ratio is wrong."""
+_ECCENTRICITY = 0.01
+"""Slope of the error that an eccentricity may have over less than a turn: no more is made."""
+MOST_PAIRS = 10
+"""Tooth pairs that are named."""
 _NEAR = 1e-3
 """Expanded uncertainties within which the estimate itself is rounded to a fraction."""
 
@@ -44,6 +51,13 @@ class RatioEstimate:
     tooth_pairs: tuple[tuple[int, int], ...]
     """Teeth (zk, zs) of ring gear and satellite that have a ratio within twice the expanded
     uncertainty, by rising zk up to `MOST_TEETH`."""
+
+    @property
+    def plus_minus(self) -> str:
+        """The measured ratio ± its expanded uncertainty, to two digits of that."""
+        spread = self.measured.uncertainty or 0.0
+        decimals = max(0, 1 - math.floor(math.log10(spread)))
+        return f'{self.measured.value:.{decimals}f} ± {spread:.{decimals}f}'
 
     @property
     def ratio(self) -> GearRatio:
@@ -68,17 +82,56 @@ def fit_ratio(motion: Motion, assumed: GearRatio) -> RatioEstimate:
     return estimate_ratio(rotor, motion.angle + np.unwrap(motion.error))
 
 
-def check_ratio(motion: Motion) -> None:
-    """Check that the output follows the rotor.
+def check_ratio(motion: Motion, assumed: GearRatio) -> str | None:
+    """Compare a recording with the ratio it was read with; return what is wrong in a sentence.
 
     Raises:
-        MotionError: if not; otherwise errors within the turn mean nothing.
+        MotionError: if the errors cover a whole turn; within the turn they then mean nothing.
     """
+    found = _other_ratio(motion, assumed)
+    cause = (
+        _wrong(found, assumed) if found else 'the ratio is wrong, or an encoder counts backwards'
+    )
     if float(np.ptp(motion.error)) >= 0.5 * TURN:
         raise MotionError(
             'the measured output angle does not follow the rotor: the errors cover a whole turn; '
-            'the ratio is wrong, or an encoder counts backwards'
+            f'{cause}'
         )
+    return f'The recording does not have the ratio {assumed}: {cause}.' if found else None
+
+
+def _other_ratio(motion: Motion, assumed: GearRatio) -> RatioEstimate | None:
+    """The ratio of a recording, if it is not the assumed one."""
+    ideal = motion.angle - np.mean(motion.angle)
+    error = np.unwrap(motion.error)
+    travel = float(np.ptp(ideal))
+    if not travel:
+        return None
+    slope = float(ideal @ error / (ideal @ ideal))
+    rest = float(np.ptp(np.quantile(error - slope * ideal, [0.01, 0.99])))
+    if abs(slope) * travel <= rest or slope == -1.0:
+        return None
+    if travel * abs(1.0 + slope) >= TURN:
+        with suppress(MotionError):
+            found = fit_ratio(motion, assumed)
+            away = abs(found.measured.value - assumed)
+            return found if away > _WRONG * (found.measured.uncertainty or 0.0) else None
+    if abs(slope) <= _ECCENTRICITY or abs(slope) * travel <= _WRONG * rest:
+        return None
+    value = assumed / (1.0 + slope)
+    standard = abs(value) * _ECCENTRICITY / student_t(_BLOCKS)
+    return _with_candidates(Estimate(value, standard, _BLOCKS, 1))
+
+
+def _wrong(found: RatioEstimate, assumed: GearRatio) -> str:
+    measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
+    if abs(found.measured.value + assumed) <= _WRONG * (found.measured.uncertainty or 0.0):
+        return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
+    named = f'--ratio={found.simplest} is the simplest'
+    if pairs := found.tooth_pairs:
+        shown = ', '.join(f'{ring}/{satellite}' for ring, satellite in pairs[:MOST_PAIRS])
+        named += f', with ring gear/satellite teeth such as {shown}'
+    return f'{measured}; {named}'
 
 
 def estimate_ratio(rotor: Array, output: Array) -> RatioEstimate:
@@ -105,7 +158,9 @@ def estimate_ratio(rotor: Array, output: Array) -> RatioEstimate:
     if not travel:
         raise MotionError('the rotor does not turn')
     x, y = (rotor - np.mean(rotor)) / travel, output - np.mean(output)
-    columns = [x, np.ones(len(x)), np.cos(output), np.sin(output)]
+    # The measured angle must not explain itself, as its sine would over less than a turn.
+    phase = x * float(x @ y / (x @ x))
+    columns = [x, np.ones(len(x)), np.cos(phase), np.sin(phase)]
     if travel >= _CYCLES * TURN:
         columns += [np.cos(rotor), np.sin(rotor)]
     direction = _direction(rotor)

@@ -77,7 +77,8 @@ def measure(
     motion = recording.motion
     found = None
     if motion:
-        check_ratio(motion)
+        wrong = check_ratio(motion, gear.gear_ratio)
+        remarks += [wrong] if wrong else []
         reversals, motion = transmission.separate_delay(motion, delay)
         found = transmission.figures(motion, gear, reversals)
         recording = replace(recording, motion=motion)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
-from gear_kinematics.lost_motion.ratio import MOST_TEETH, RatioEstimate
+from gear_kinematics.lost_motion.ratio import MOST_PAIRS, MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.report.document import number, printable
 from gear_kinematics.state.uncertainty import COVERAGE, Estimate
@@ -14,8 +14,6 @@ ARC_MINUTES = 60.0 * 180.0 / math.pi
 """Arc minutes per radian; catalogues give lost motion in arc minutes."""
 PERCENT = f'{100.0 * COVERAGE:g} %'
 """Probability with which an interval contains the value."""
-_PAIRS = 10
-"""Tooth pairs that are listed."""
 _EXACT = 1e-5
 """Relative uncertainty below which values are rounded to six digits."""
 
@@ -58,19 +56,14 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
 
 
 def _ratio(fitted: RatioEstimate) -> Iterator[str]:
-    spread = fitted.measured.uncertainty or 0.0
-    decimals = max(0, 1 - math.floor(math.log10(spread)))
-    yield (
-        f'The gear ratio is estimated as {fitted.measured.value:.{decimals}f} ± '
-        f'{spread:.{decimals}f}, and taken as {fitted.ratio}.'
-    )
+    yield f'The gear ratio is estimated as {fitted.plus_minus}, and taken as {fitted.ratio}.'
     yield (
         f'{fitted.simplest} is the simplest fraction within twice that uncertainty; one as simple '
         f'is there by coincidence with a probability of at most {number(fitted.chance, 2)}.'
     )
     if pairs := fitted.tooth_pairs:
-        shown = ', '.join(f'{ring}/{satellite}' for ring, satellite in pairs[:_PAIRS])
-        more = f' and {len(pairs) - _PAIRS} more' if len(pairs) > _PAIRS else ''
+        shown = ', '.join(f'{ring}/{satellite}' for ring, satellite in pairs[:MOST_PAIRS])
+        more = f' and {len(pairs) - MOST_PAIRS} more' if len(pairs) > MOST_PAIRS else ''
         yield (
             f'Tooth pairs (ring gear/satellite) of up to {MOST_TEETH} teeth with such a ratio: '
             f'{shown}{more}.'

@@ -1,4 +1,4 @@
-"""A delay between the stamps of both encoders is no lost motion."""
+"""A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
 
 import math
 
@@ -21,7 +21,8 @@ from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import split_turns
 from gear_kinematics.lost_motion import measure, read_bag
 from gear_kinematics.lost_motion.encoder_step import step_of
-from gear_kinematics.lost_motion.motion import Motion
+from gear_kinematics.lost_motion.motion import Motion, MotionError
+from gear_kinematics.lost_motion.ratio import check_ratio
 from gear_kinematics.lost_motion.transmission import figures, separate_delay
 from gear_kinematics.state import parameters
 from gear_kinematics.state.transmission_error import TransmissionError
@@ -111,3 +112,44 @@ def test_delay_of_a_bag_is_in_seconds_and_of_a_csv_in_rows(tmp_path, actuator, c
     assert float(number) == pytest.approx(2.0, abs=0.01)
     assert unit == 'rows'
     assert 'The stamps of the two encoders differ by a delay' in printed
+
+
+# Another ratio
+
+
+@pytest.mark.parametrize('assumed', ['-18', '-20', '-58/3', '19'])
+@pytest.mark.parametrize(
+    ('profile', 'spread'),
+    [(sine_strokes(0.5, 2.0), 0.2), (sine_strokes(14.0, 8.0), 1e-3)],
+    ids=['short', 'long'],
+)
+def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, spread):
+    drive = Drive(PLAY, ERRORS, noise=0.3 * ARC_MINUTE, **STEPS)
+    motion = recorded(drive, profile, 16.0, 100.0, ratio=GearRatio.parse(assumed))
+    try:
+        said = check_ratio(motion, GearRatio.parse(assumed))
+    except MotionError as error:
+        said = str(error)
+    value, _, uncertainty, *_ = said.split('the recorded ratio is ')[1].split()
+    assert abs(float(value) + 19) <= float(uncertainty.rstrip(',')) <= spread
+    assert f'not {assumed}' in said
+    assert '--ratio=-19 is' in said
+    assert ('an encoder counts backwards' in said) == (assumed == '19')
+    assert ('80/76' in said) == (assumed != '19')
+
+
+@pytest.mark.parametrize(
+    'profile',
+    [
+        even_strokes(3.0, 2.0),
+        sine_strokes(0.1, 2.0),
+        sine_strokes(0.5, 2.0),
+        sine_strokes(6.0, 4.0),
+        sine_strokes(14.0, 8.0),
+    ],
+)
+@pytest.mark.parametrize('eccentricity', [0.0, 20.0 * ARC_MINUTE])
+def test_right_ratio_is_not_doubted(profile, eccentricity):
+    for seed in range(5):
+        drive = Drive(PLAY, ERRORS | {1: eccentricity}, 2e-3, 0.2 * ARC_MINUTE, **STEPS)
+        assert check_ratio(recorded(drive, profile, 16.0, 100.0, seed), RATIO) is None
