@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.uncertainty import student_t
 
 Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
@@ -19,24 +20,47 @@ Stretches = NDArray[np.int64]
 
 _MOST_TEETH = 1000
 _ENOUGH_TURNING = 0.1  # rad of the rotor, to determine a ratio
+_MOST_BLOCKS, _LEAST_BLOCKS = 32, 4
+"""Number of blocks, of which there are at least half as many once there are enough samples."""
+_ROUNDING = 1e-9
+"""Relative rounding of the sums."""
+_CLEAR = 2.0
+"""Expanded uncertainties from which on a deviation is clear."""
 _MOST_BODIES = 6  # up to which all orders are tried
 _KEPT = 65_536
 """Stretches, of which samples that still wait for their outputs are in the last few thousand."""
 
 
-@dataclass(slots=True)
-class AngleFit:
-    """Straight line through recorded output angles over rotor angles, from running sums."""
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A value with its uncertainty."""
 
-    count: int = 0
-    lowest_error: float = math.inf
-    highest_error: float = -math.inf
-    _origin: tuple[float, float] = (0.0, 0.0)
-    _x: float = 0.0
-    _y: float = 0.0
-    _xx: float = 0.0
-    _xy: float = 0.0
-    _yy: float = 0.0
+    value: float
+    uncertainty: float
+    """Expanded, with a coverage of 95 %."""
+
+    def __str__(self) -> str:
+        return f'{self.value:.9g} ± {self.uncertainty:.2g}'
+
+    def is_near(self, other: float) -> bool:
+        """Whether another value is no clear deviation."""
+        return abs(self.value - other) <= _CLEAR * self.uncertainty
+
+
+class AngleFit:
+    """Slope of recorded output angles over rotor angles, and their mean error, from running sums.
+
+    Uncertainties are those of the jackknife over blocks of successive samples. The slope is that
+    within blocks, so that an angle that steps, as by homing, changes the offset alone.
+    """
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.lowest_error, self.highest_error = math.inf, -math.inf
+        self._origin = (0.0, 0.0)
+        self._blocks = np.zeros((0, 6))
+        """Sums of 1, x, y, x², xy and the error."""
+        self._size = 1
 
     def update(self, rotor_angle: Array, recorded: Array, error: Array) -> None:
         """Add samples (n,), rad; `error` is recorded minus recomputed."""
@@ -44,15 +68,24 @@ class AngleFit:
             return
         if not self.count:
             self._origin = (float(rotor_angle[0]), float(recorded[0]))
-        x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
-        self.count += len(x)
-        self._x += float(x.sum())
-        self._y += float(y.sum())
-        self._xx += float(x @ x)
-        self._xy += float(x @ y)
-        self._yy += float(y @ y)
         self.lowest_error = min(self.lowest_error, float(error.min()))
         self.highest_error = max(self.highest_error, float(error.max()))
+        with np.errstate(over='ignore', invalid='ignore'):  # of garbage, which has no slope
+            x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
+            self._add(np.stack([np.ones(len(x)), x, y, x * x, x * y, error], axis=1))
+        self.count += len(recorded)
+
+    def _add(self, products: Array) -> None:
+        """Add products of samples to the sums of their blocks, and merge blocks in pairs."""
+        numbers = (self.count + np.arange(len(products))) // self._size
+        blocks, starts = np.unique(numbers, return_index=True)
+        sums = np.add.reduceat(products, starts)
+        if blocks[0] < len(self._blocks):
+            sums[0] += self._blocks[-1]
+        self._blocks = np.concatenate([self._blocks[: blocks[0]], sums])
+        while len(self._blocks) > _MOST_BLOCKS:
+            self._blocks = np.add.reduceat(self._blocks, np.arange(0, len(self._blocks), 2))
+            self._size *= 2
 
     def offset(self, tolerance: float) -> float | None:
         """Return the constant offset of all errors, rad, or None if they are not constant."""
@@ -61,22 +94,34 @@ class AngleFit:
         offset = 0.5 * (self.lowest_error + self.highest_error)
         return offset if abs(offset) > tolerance else None
 
-    def slope(self) -> tuple[float, float] | None:
-        """Return output angle / rotor angle and its uncertainty; None without motion or a line."""
-        if self.count < 3:  # noqa: PLR2004, two points always lie on a line
-            return None
-        n = self.count
-        xx = self._xx - self._x * self._x / n  # no **, which raises on overflow
-        xy = self._xy - self._x * self._y / n
-        yy = self._yy - self._y * self._y / n
-        if xx < n * _ENOUGH_TURNING**2:
-            return None
-        slope = xy / xx
-        scatter = max(yy - slope * xy, 0.0) / n
-        if not scatter <= 1e-6 * yy / n < math.inf:  # nor is garbage a line
-            return None
-        # The rounding of the sums, and the scatter.
-        return slope, abs(slope) * 1e-9 + 5.0 * math.sqrt(scatter / xx)
+    def mean_error(self) -> Measured | None:
+        """Return the mean error, rad; None of too few samples."""
+        return _ratio_of_sums(self._blocks[:, 5], self._blocks[:, 0])
+
+    def slope(self) -> Measured | None:
+        """Return output angle / rotor angle; None without motion, or of garbage."""
+        with np.errstate(over='ignore', invalid='ignore'):
+            n, x, y, xx, xy, _ = self._blocks.T
+            within = xx - x * x / n
+            if not within.sum() >= self.count * (_ENOUGH_TURNING / _MOST_BLOCKS) ** 2:
+                return None
+            found = _ratio_of_sums(xy - x * y / n, within)
+        return None if found is None or found.is_near(0.0) else found
+
+
+def _ratio_of_sums(above: Array, below: Array) -> Measured | None:
+    """Return the quotient of two sums over blocks."""
+    blocks = len(above)
+    if blocks < _LEAST_BLOCKS:
+        return None
+    with np.errstate(over='ignore', invalid='ignore', divide='ignore'):
+        value = float(above.sum() / below.sum())
+        without = (above.sum() - above) / (below.sum() - below)
+        scatter = float(np.sum((without - without.mean()) ** 2)) * (blocks - 1) / blocks
+    if not math.isfinite(value + scatter):
+        return None
+    spread = student_t(blocks - 1) * math.sqrt(scatter)
+    return Measured(value, spread + _ROUNDING * abs(value))
 
 
 def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
@@ -93,24 +138,38 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
             f'the recorded output angle is off by a constant {offset:.12g} rad, as after homing; '
             '--allow-offset accepts it'
         )
-    line = fit.slope()
-    if line is None:
+    slope = fit.slope()
+    if slope is None:
         return None
-    slope, uncertainty = line
-    assumed = float(1 / gear.gear_ratio)
-    if abs(slope - assumed) <= uncertainty:
-        return None
-    if abs(slope + assumed) <= uncertainty:
-        return 'the sign is flipped: the recorded output turns the other way (rotor_direction?)'
-    if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope), uncertainty)):
-        ring, satellite = pair
-        flipped = ' with the sign flipped' if slope > 0.0 else ''
+    if not slope.is_near(float(1 / gear.gear_ratio)):
+        return _another_ratio(gear, slope)
+    mean = fit.mean_error()
+    if mean and abs(mean.value) > tolerance and not mean.is_near(0.0):
         return (
-            f'the recorded ratio is that of ring_teeth {ring}, satellite_teeth {satellite} '
-            f'({Fraction(-satellite, ring - satellite)}){flipped}, not of {gear.ring_teeth}, '
-            f'{gear.satellite_teeth} ({gear.gear_ratio})'
+            f'the recorded output angle is off by {mean} rad on average, and scatters from '
+            f'{fit.lowest_error:.3g} to {fit.highest_error:.3g} rad'
         )
-    return f'the recorded ratio is {1.0 / slope:.9g}, not {gear.gear_ratio}'
+    return None
+
+
+def _another_ratio(gear: Gear, slope: Measured) -> str:
+    relative = slope.uncertainty / abs(slope.value)
+    ratio = Measured(1.0 / slope.value, relative / abs(slope.value))
+    if slope.is_near(-float(1 / gear.gear_ratio)):
+        return (
+            'the sign is flipped: the recorded output turns the other way (rotor_direction?), '
+            f'with a ratio of {ratio}'
+        )
+    spread = _CLEAR * slope.uncertainty
+    if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope.value), spread)):
+        ring, satellite = pair
+        flipped = ' with the sign flipped' if slope.value > 0.0 else ''
+        return (
+            f'the recorded ratio is {ratio}, as that of ring_teeth {ring}, satellite_teeth '
+            f'{satellite} ({Fraction(-satellite, ring - satellite)}){flipped}, not of '
+            f'{gear.ring_teeth}, {gear.satellite_teeth} ({gear.gear_ratio})'
+        )
+    return f'the recorded ratio is {ratio}, not {gear.gear_ratio}'
 
 
 def _tooth_pair(mechanism: Mechanism, slope: float, uncertainty: float) -> tuple[int, int] | None:
