@@ -28,7 +28,7 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
             `ros_namespace` if the launch file is included below a namespace.
 
     Raises:
-        parameters.ConfigError: as `parameters.load` does.
+        ConfigError: as `parameters.load` does.
     """
     config = Path(configurations['config']).expanduser()
     # An absolute namespace replaces the one above it, as in launch_ros.

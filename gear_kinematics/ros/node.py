@@ -1,19 +1,13 @@
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
-import re
 import time
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
-from rcl_interfaces.msg import (
-    FloatingPointRange,
-    IntegerRange,
-    ParameterDescriptor,
-    SetParametersResult,
-)
+from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
@@ -30,10 +24,14 @@ from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
+from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state import parameters
+from gear_kinematics.state.calibrated_output import CalibratedOutput
+from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
+from gear_kinematics.state.parameter_files import calibration_path, require_any
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.transmission_error import ErrorSample
@@ -41,8 +39,6 @@ from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 _MESSAGE_TYPES = {topics.JOINT_STATE: JointState, topics.POSE_ARRAY: PoseArray}
-_QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
-_MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
 
@@ -54,22 +50,22 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         """Declare the parameters and open the topics.
 
         Args:
-            parameter_files: from the command line, to check that they contain this node.
+            parameter_files: from the command line, which must contain this node.
             options: of `Node`.
 
         Raises:
             ParameterException: if a parameter is refused.
-            ValueError: if the parameters describe no gear, one is unknown, or the files have
-                none for this node.
+            ValueError: if the parameters describe no gear, one is unknown, the files have none
+                for this node, or the calibration cannot be used.
         """
         super().__init__(parameters.NODE, **options)
-        parameters.require_any(parameter_files, self.get_fully_qualified_name())
+        require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
         for name, parameter in parameters.PARAMETERS.items():
-            self._declare(name, parameter, parameters.defaults()[name])
+            declare(self, name, parameter, parameters.defaults()[name])
         branches = self._value('branches')
         for name, (parameter, default) in parameters.branch_parameters(branches).items():
-            self._declare(name, parameter, default)
+            declare(self, name, parameter, default)
         # rclpy ignores undeclared parameters, and has no public access to them.
         given = getattr(self, '_parameter_overrides', ())
         if faults := parameters.unknown_parameters(given, branches):
@@ -78,6 +74,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         rotor, encoder = self._settings = self._settings_of_inputs()
         self._input = RotorInput(rotor)
         self._encoder = OutputEncoder(self._gear, encoder)
+        self._parameter_files = parameter_files
+        self._calibrated = self._calibrated_output(self._value('calibration'))
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
@@ -93,9 +91,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             topic: self._create_output(
                 _MESSAGE_TYPES[topics.TOPICS[topic].type], topic, QoSProfile(depth=DEPTH)
             )
-            for topic in self._messages.topics
+            for topic in (*self._messages.topics, *topics.CORRECTED_TOPICS)
         }
-        self._listened_to: list[str] = []  # only outputs with subscribers are computed
+        self._note_listeners()  # only outputs with subscribers are computed
         self._transmission_error = self._create_output(
             JointState, topics.TRANSMISSION_ERROR, QoSProfile(depth=DEPTH)
         )
@@ -103,7 +101,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             DiagnosticArray, topics.DIAGNOSTICS, QoSProfile(depth=10)
         )
         self._configure()
-        self.add_post_set_parameters_callback(lambda _: self._configure())
+        self.add_post_set_parameters_callback(self._configure)
         self.create_service(Trigger, '~/home', self._home)
         # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
@@ -137,19 +135,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             result.reason = f'{names}: {result.reason}'
         return result
 
-    def _declare(self, name: str, parameter: parameters.Parameter, default: object) -> None:
-        descriptor = ParameterDescriptor(
-            description=parameter.description,
-            additional_constraints=', '.join(parameter.choices),
-            read_only=parameter.read_only,
-        )
-        bounds = {'from_value': parameter.minimum, 'to_value': parameter.maximum}
-        if isinstance(default, int):
-            descriptor.integer_range = [IntegerRange(**bounds, step=parameter.step)]
-        elif isinstance(default, float):
-            descriptor.floating_point_range = [FloatingPointRange(**bounds)]
-        self.declare_parameter(name, default, descriptor)
-
     def _create_output(
         self,
         message_type: type,
@@ -172,11 +157,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _note_listeners(self) -> None:
         """Update the list of outputs with subscribers."""
-        self._listened_to = [
-            topic
-            for topic, publisher in self._outputs.items()
-            if publisher.get_subscription_count()
-        ]
+        self._listened_to, self._corrected_listened_to = (
+            [topic for topic in group if self._outputs[topic].get_subscription_count()]
+            for group in (self._messages.topics, topics.CORRECTED_TOPICS)
+        )
 
     def destroy_node(self) -> None:
         """Destroy the event handles too, which rclpy does not know."""
@@ -200,26 +184,37 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
         for parameter in changed:
-            known = parameters.PARAMETERS.get(parameter.name)
-            if known and (reason := known.other_fault(parameter.name, parameter.value)):
+            if reason := fault_of(parameter):
                 return SetParametersResult(successful=False, reason=reason)
-            if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
-                reason = f'{parameter.name} must be between 0 and {_MAX_DEPTH}'
-                return SetParametersResult(successful=False, reason=reason)
-            # At declaration there is no gear yet; `_configure` checks the names then.
-            if parameter.name in {'output_joint', 'frame_prefix'} and hasattr(self, '_gear'):
-                try:
+            if not hasattr(self, '_gear'):  # at declaration; the constructor checks it
+                continue
+            try:
+                if parameter.name in {'output_joint', 'frame_prefix'}:
                     joint_names(self._gear, **self._names() | {parameter.name: parameter.value})
-                except ValueError as error:
-                    return SetParametersResult(successful=False, reason=str(error))
+                elif parameter.name == 'calibration':
+                    self._next_calibrated = self._calibrated_output(parameter.value)
+            except ValueError as error:
+                return SetParametersResult(successful=False, reason=str(error))
         return SetParametersResult(successful=True)
 
-    def _configure(self) -> None:
+    def _calibrated_output(self, value: str) -> CalibratedOutput | None:
+        """Load the calibration that a value of the parameter names, if any."""
+        if not value:
+            return None
+        name = self.get_fully_qualified_name()
+        path = calibration_path(value, self._parameter_files, name)
+        return CalibratedOutput(Calibration.load(path, self._gear))
+
+    def _configure(self, changed: Collection[Parameter] = ()) -> None:
         """Apply the parameters, at the start and after every change."""
+        if any(parameter.name == 'calibration' for parameter in changed):
+            self._calibrated = self._next_calibrated
         if (settings := self._settings_of_inputs()) != self._settings:
             self._settings = settings
             self._input.settings, encoder = settings
             self._encoder = OutputEncoder(self._gear, encoder)  # discards earlier errors
+            if self._calibrated:
+                self._calibrated.reset()
         names = self._names()
         self._messages = state_messages(self._gear, **names)
         if self._display:
@@ -236,6 +231,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             return
         for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
+        if self._calibrated:  # also without a listener, to follow the motion
+            correction = self._calibrated.correct(sample, self._input)
+            wanted = self._corrected_listened_to
+            for topic, message in self._messages.encode_corrected(sample, correction, wanted):
+                self._publish(self._outputs[topic], message)
         self._monitor.published += 1
         if self._encoder.received and self._input.referenced:
             self._publish_errors(self._encoder.follow(sample))
@@ -249,7 +249,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn(f'{topics.OUTPUT_ENCODER} rejected: {rejection}')
 
-    def _publish_errors(self, samples: Iterable[ErrorSample]) -> None:
+    def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
+        if self._calibrated:
+            self._calibrated.compare(samples)
         for sample in samples:
             if self._transmission_error.get_subscription_count():
                 self._publish(self._transmission_error, self._messages.transmission_error(sample))
@@ -299,10 +301,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
         self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
+        window, limit = (self._value(f'transmission_error_{name}') for name in ('window', 'limit'))
+        fit = self._calibrated.fit(window) if self._calibrated else None
         reports = {
             'rotor input': self._monitor.report(self._input, self._gear, timeout, now),
             'transmission error': self._encoder_monitor.report(
-                self._encoder, self._value('transmission_error_limit'), timeout, now
+                self._encoder, limit, timeout, now, fit
             ),
         }
         self._publish(self._diagnostics, diagnostic_array(self, reports))

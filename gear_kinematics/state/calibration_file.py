@@ -12,7 +12,7 @@ from typing import Any, Self, get_args, get_origin, get_type_hints
 import yaml
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.state.yaml_file import read_yaml
+from gear_kinematics.state.yaml_file import Dumper, read_yaml
 
 SCHEMA = 'gear_kinematics/calibration/1'
 """Identifies the files and their version."""
@@ -170,7 +170,7 @@ class Calibration:
     def text(self) -> str:
         """The content of the file."""
         plain = _plain({'schema': SCHEMA, 'units': UNITS} | asdict(self))
-        return yaml.safe_dump(plain, sort_keys=False, allow_unicode=True, width=99)
+        return yaml.dump(plain, Dumper=Dumper, sort_keys=False, allow_unicode=True, width=99)
 
     def check(self, mechanism: Mechanism | Fraction) -> None:
         """Check that this is a calibration of a gear.

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from gear_kinematics.kinematics import Gear, Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.calibrated_output import CalibrationFit
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.reversals import Reversals
 from gear_kinematics.state.rotor_input import RotorInput
@@ -119,7 +120,12 @@ class EncoderMonitor:
     _rejected: Counter[str] = field(default_factory=Counter)
 
     def report(
-        self, encoder: OutputEncoder, limit: float, timeout: float, now: float
+        self,
+        encoder: OutputEncoder,
+        limit: float,
+        timeout: float,
+        now: float,
+        fit: CalibrationFit | None = None,
     ) -> Report | None:
         """Report on the time since the last report; None until the encoder has sent a message.
 
@@ -128,6 +134,7 @@ class EncoderMonitor:
             limit: peak-to-peak transmission error above which there is a warning, rad.
             timeout: s without input after which there is a warning.
             now: s.
+            fit: how well the calibration, if any, fits the transmission error.
         """
         if self.last_input is None:
             return None
@@ -166,6 +173,11 @@ class EncoderMonitor:
             'mean backward (rad)': _number(window.backward.mean),
             **_reversals(window.reversals),
         }
+        if fit and window.both:
+            if not fit.fits:
+                warnings.append('calibration no longer fits')
+            values['explained by the calibration (%)'] = _percent(fit.explained)
+            values['outside the interval (%)'] = _percent(fit.outside)
         return Report(WARN if warnings else OK, '; '.join(warnings) or 'ok', values)
 
 
@@ -195,6 +207,10 @@ def _estimate(estimate: Estimate | None) -> str:
 
 def _number(value: float | None) -> str:
     return 'none' if value is None else f'{value:.6g}'
+
+
+def _percent(share: float | None) -> str:
+    return 'none' if share is None else f'{100.0 * share:.1f}'
 
 
 def _residual(rotor_input: RotorInput, gear: Gear) -> str:

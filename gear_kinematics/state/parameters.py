@@ -5,15 +5,15 @@ The default values are in config/actuator.yaml alone.
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.kinematics import Branch, GearRatio
+from gear_kinematics.state.parameter_files import ConfigError, given_parameters
 from gear_kinematics.state.share import share_directory
-from gear_kinematics.state.yaml_file import Loader, read_yaml
 from gear_kinematics.wire.nearest import nearest
 
 NODE = 'gear_state_publisher'
@@ -21,16 +21,6 @@ NODE = 'gear_state_publisher'
 
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
-_NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
-"""A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
-
-
-class ConfigError(ValueError):
-    """A parameter file that cannot be used; the text names the file and the cause."""
-
-
-class _OtherNodesError(ConfigError):
-    """A parameter file that has parameters, but none of the node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,6 +118,9 @@ PARAMETERS: Mapping[str, Parameter] = {
     'transmission_error_travel': Parameter(
         'Travel of the output after a reversal until its direction counts, rad', 1e-9, 10.0
     ),
+    'calibration': Parameter(
+        "Path of a calibration file, from which corrected_state is computed; '' takes none"
+    ),
     'home_angle': Parameter('Output angle that ~/home sets, rad', -1e9, 1e9),
     'frame_prefix': Parameter('Prefix of every frame id and joint name'),
     'markers_rate': Parameter('Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True),
@@ -153,7 +146,7 @@ def default_config() -> Path:
 @cache
 def defaults() -> Mapping[str, Any]:
     """Every parameter's default value by its full name, from config/actuator.yaml."""
-    return _given(default_config(), NODE)
+    return given_parameters(default_config(), NODE)
 
 
 def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any]]:
@@ -187,6 +180,8 @@ def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[st
 def load(path: Path, node: str = NODE) -> dict[str, Any]:
     """Read a node's parameters from a file as the node would; missing ones have their defaults.
 
+    A relative path of a calibration is relative to the file.
+
     Args:
         path: a parameter file of ROS: blocks of parameters below names of nodes.
         node: the node's fully qualified name. Without a namespace, it is the only node of that
@@ -196,7 +191,7 @@ def load(path: Path, node: str = NODE) -> dict[str, Any]:
         ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
             meant, or naming every value and every name that is refused.
     """
-    given = _given(path, node)
+    given = given_parameters(path, node)
     known = {name: (parameter, defaults()[name]) for name, parameter in PARAMETERS.items()}
     faults = _faults(given, known)
     branches = given.get('branches', known['branches'][1])
@@ -207,29 +202,9 @@ def load(path: Path, node: str = NODE) -> dict[str, Any]:
         faults += unknown_parameters(given, branches)
     if faults:
         raise ConfigError(f'{path}: {"; ".join(faults)}')
+    if calibration := given.get('calibration'):
+        given['calibration'] = str(path.parent / calibration)
     return {name: given.get(name, default) for name, (_, default) in known.items()}
-
-
-def require_any(paths: Collection[Path], node: str) -> None:
-    """Check that parameter files have parameters, and at least one has some for the node.
-
-    ROS silently ignores other files, and the node would run with its default values.
-
-    Args:
-        paths: parameter files of ROS, as many as the node is started with.
-        node: the node's fully qualified name.
-
-    Raises:
-        ConfigError: if a file cannot be read or has no parameters, or none has any for the node.
-    """
-    useless = []
-    for path in paths:
-        try:
-            _given(path, node)
-        except _OtherNodesError as error:
-            useless.append(str(error))
-    if useless and len(useless) == len(paths):
-        raise ConfigError('; '.join(useless))
 
 
 def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]) -> list[str]:
@@ -239,97 +214,3 @@ def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]
         if name in given
     )
     return [fault for fault in checked if fault]
-
-
-def _given(path: Path, node: str) -> dict[str, Any]:
-    """The parameters that a file has for a node, by dotted names.
-
-    All blocks that apply to the node count, in the order in which they begin: a later value of a
-    parameter replaces an earlier one, whether its block has a wildcard or not.
-    """
-    blocks = _read(path)
-    if not blocks:
-        raise ConfigError(f'{path}: no ros__parameters in it')
-    name = f'/{node.lstrip("/")}' if '/' in node else _full_name(path, node, blocks)
-    applying = [parameters for pattern, parameters in blocks if _applies(pattern, name)]
-    if not applying:
-        there = ', '.join(pattern for pattern, _ in blocks)
-        raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
-    given: dict[str, Any] = {}
-    for parameters in applying:
-        given |= parameters
-    return given
-
-
-def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
-    """The fully qualified name of the node of this name in a file."""
-    patterns = [
-        pattern for pattern, _ in blocks if pattern.rpartition('/')[2] in {node, '*', '**'}
-    ]
-    # A node that is named takes precedence over wildcards.
-    patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
-    for pattern in patterns:
-        # A namespace that matches the pattern, with an arbitrary token for `*`.
-        namespace = pattern.rpartition('/')[0].replace('/**', '').replace('/*', '/_')
-        name = f'{namespace}/{node}'
-        if all(_applies(other, name) for other in patterns):
-            return name
-    if len(patterns) > 1:
-        raise ConfigError(
-            f'{path}: parameters of more than one node: {", ".join(patterns)}; '
-            'choose one with --node'
-        )
-    return f'/{node}'
-
-
-def _applies(pattern: str, name: str) -> bool:
-    """Whether a block of a parameter file is for a node, as rclpy and rclcpp see it."""
-    return re.fullmatch(pattern.replace('/*', r'(/\w+)'), name, re.ASCII) is not None
-
-
-def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
-    document = read_yaml(path, ConfigError, _RosLoader)
-    blocks: dict[str, dict[str, Any]] = {}
-    for name, parameters in _blocks(document):
-        blocks.setdefault(name, {}).update(parameters)
-    # `node` and `/node` mean the same to rcl, but are two blocks.
-    found = [(f'/{name.removeprefix("/")}', parameters) for name, parameters in blocks.items()]
-    for name, _ in found:
-        if not _NODE_PATTERN.fullmatch(name):
-            raise ConfigError(f'{path}: {name} is not a valid node name')
-    return found
-
-
-class _Pairs(tuple[tuple[Any, Any], ...]):
-    """A mapping with possibly repeated keys, which ROS merges."""
-
-    __slots__ = ()
-
-
-class _RosLoader(Loader):
-    """Keeps repeated keys, which ROS merges."""
-
-
-_RosLoader.add_constructor(
-    'tag:yaml.org,2002:map',
-    lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True)),
-)
-
-
-def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:
-    for key, value in tree if isinstance(tree, _Pairs) else ():
-        if key != 'ros__parameters':
-            yield from _blocks(value, f'{name}/{key}' if name.strip('/') else f'{name}{key}')
-        elif isinstance(value, _Pairs):
-            yield name, _flatten(value)
-
-
-def _flatten(tree: _Pairs, prefix: str = '') -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, value in tree:
-        if isinstance(value, _Pairs):
-            flat |= _flatten(value, f'{prefix}{key}.')
-        else:
-            flat[f'{prefix}{key}'] = value
-    return flat

@@ -144,7 +144,8 @@ class RotorInput:
         return 2 * self.rejected.total() > self.received
 
     @property
-    def _stretch(self) -> int:
+    def stretch(self) -> int:
+        """Number that rises where the turn count restarts or is uncertain."""
         return self._turns.unknown_gaps + self.resets
 
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
@@ -225,7 +226,7 @@ class RotorInput:
             direction * values[:, 2],
             rows,
             received,
-            np.full(len(stamps), self._stretch),
+            np.full(len(stamps), self.stretch),
             rejected,
         )
         if len(stamps):
@@ -251,7 +252,7 @@ class RotorInput:
                 disordered.append(stamp)
                 continue
             motion = *sample.position, sample.velocity, sample.effort
-            taken.append((sample.stamp, *motion, row, now, self._stretch))
+            taken.append((sample.stamp, *motion, row, now, self.stretch))
         table = np.array(taken, _COLUMNS)  # None becomes NaN
         columns = [table[name].copy() for name in table.dtype.names or ()]
         rejected = np.append(rejected, np.array(disordered, np.int64))

@@ -6,16 +6,27 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.shape.urdf import joint_names
+from gear_kinematics.state.correction import Correction
 from gear_kinematics.state.rotor_input import RotorSample, RotorSamples
 from gear_kinematics.state.transmission_error import ErrorSample
 from gear_kinematics.wire.batches import encode
 from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
-from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE, STATE_TOPICS
+from gear_kinematics.wire.topics import (
+    BODY_POSES,
+    CORRECTED_INTERVAL,
+    CORRECTED_STATE,
+    CORRECTED_TOPICS,
+    OUTPUT_STATE,
+    STATE_TOPICS,
+)
+
+Array = NDArray[Any]
 
 
 class OutputMessages:
@@ -47,18 +58,38 @@ class OutputMessages:
     def encode_outputs(self, samples: RotorSamples) -> dict[str, list[bytes]]:
         """Encode the recorded topics among `topics` for many samples, as `encode` does."""
         output_turns, output_rest = self._ratio.output_angle(samples.turns, samples.angle, np)
-        output_angle = TURN * output_turns + output_rest
-        output_states = len(samples.stamp) * [b'']
-        for present, template in self._output_states.items():
-            absent = np.isnan([samples.velocity, samples.effort])
-            rows = np.flatnonzero(np.all(present != absent.T, axis=1))
-            numbers = self._output_numbers(
-                present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
-            )
-            encoded = encode(template, samples.stamp[rows], *([number] for number in numbers))
-            for row, message in zip(rows.tolist(), encoded, strict=True):
-                output_states[row] = message
-        return {OUTPUT_STATE: output_states}
+        return {OUTPUT_STATE: self._output_states_of(samples, TURN * output_turns + output_rest)}
+
+    def encode_corrected(
+        self, sample: RotorSample, correction: Correction, topics: Iterable[str] = CORRECTED_TOPICS
+    ) -> Iterator[tuple[str, bytes]]:
+        """Yield topic and message for a corrected sample, for all or some of CORRECTED_TOPICS."""
+        for topic in topics:
+            if topic == CORRECTED_STATE:
+                turns, rest = self._ratio.output_angle(*sample.position, math)
+                angle = TURN * turns + rest + correction.deviation
+                stamp, position, velocity, effort = sample
+                if velocity is not None:
+                    velocity *= 1.0 + correction.slope
+                corrected = RotorSample(stamp, position, velocity, effort)
+                yield topic, self._output_state(corrected, angle)
+            else:
+                template = self._output_states[False, False]
+                yield topic, template.encode(sample.stamp, (correction.half_width,))
+
+    @np.errstate(over='ignore')
+    def encode_corrections(
+        self, samples: RotorSamples, correction: Correction
+    ) -> dict[str, list[bytes]]:
+        """Encode all CORRECTED_TOPICS for many samples, as `encode_corrected` does."""
+        turns, rest = self._ratio.output_angle(samples.turns, samples.angle, np)
+        angle = TURN * turns + rest + correction.deviation
+        corrected = samples._replace(velocity=samples.velocity * (1.0 + correction.slope))
+        template = self._output_states[False, False]
+        return {
+            CORRECTED_STATE: self._output_states_of(corrected, angle),
+            CORRECTED_INTERVAL: encode(template, samples.stamp, [correction.half_width]),
+        }
 
     def transmission_error(self, sample: ErrorSample) -> bytes:
         """Encode a transmission error, as the position of the output joint."""
@@ -69,6 +100,19 @@ class OutputMessages:
         numbers = self._output_numbers(present, output_angle, sample.velocity, sample.effort)
         template = self._output_states[present]
         return template.encode(sample.stamp, *((number,) for number in numbers))
+
+    def _output_states_of(self, samples: RotorSamples, output_angle: Array) -> list[bytes]:
+        output_states = len(samples.stamp) * [b'']
+        for present, template in self._output_states.items():
+            absent = np.isnan([samples.velocity, samples.effort])
+            rows = np.flatnonzero(np.all(present != absent.T, axis=1))
+            numbers = self._output_numbers(
+                present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
+            )
+            encoded = encode(template, samples.stamp[rows], *([number] for number in numbers))
+            for row, message in zip(rows.tolist(), encoded, strict=True):
+                output_states[row] = message
+        return output_states
 
     def _output_numbers(
         self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any

@@ -20,11 +20,16 @@ class Loader(yaml.SafeLoader):
         return super().compose_node(parent, index)
 
 
-Loader.add_implicit_resolver(
-    'tag:yaml.org,2002:float',
-    re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
-    list('-+.0123456789'),
-)
+class Dumper(yaml.SafeDumper):
+    """Writes what `Loader` reads: texts that look like numbers are quoted."""
+
+
+for _either in (Loader, Dumper):
+    _either.add_implicit_resolver(
+        'tag:yaml.org,2002:float',
+        re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
+        list('-+.0123456789'),
+    )
 
 
 def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = Loader) -> Any:

@@ -14,6 +14,8 @@ OUTPUT_ENCODER = 'output_encoder'
 OUTPUT_STATE = 'output_state'
 BODY_POSES = 'body_poses'
 JOINT_STATES = 'mechanism_joint_states'
+CORRECTED_STATE = 'corrected_state'
+CORRECTED_INTERVAL = 'corrected_interval'
 TRANSMISSION_ERROR = 'transmission_error'
 ROBOT_DESCRIPTION = 'robot_description'
 MARKERS = 'markers'
@@ -24,9 +26,10 @@ class NodeTopic(NamedTuple):
     """Type, part and publisher of a topic."""
 
     type: str
-    part: Literal['input', 'state', 'comparison', 'display', 'health']
-    """A `state` is published for every valid rotor_state, a `comparison` if there is an
-    output_encoder, and a `display` only for subscribers."""
+    part: Literal['input', 'state', 'correction', 'comparison', 'display', 'health']
+    """A `state` is published for every valid rotor_state, a `correction` too if there is a
+    calibration, a `comparison` if there is an output_encoder, and a `display` only for
+    subscribers."""
     publisher: Literal['driver', 'node']
 
 
@@ -36,6 +39,8 @@ TOPICS: Mapping[str, NodeTopic] = {
     OUTPUT_STATE: NodeTopic(JOINT_STATE, 'state', 'node'),
     BODY_POSES: NodeTopic(POSE_ARRAY, 'state', 'node'),
     JOINT_STATES: NodeTopic(JOINT_STATE, 'state', 'node'),
+    CORRECTED_STATE: NodeTopic(JOINT_STATE, 'correction', 'node'),
+    CORRECTED_INTERVAL: NodeTopic(JOINT_STATE, 'correction', 'node'),
     TRANSMISSION_ERROR: NodeTopic(JOINT_STATE, 'comparison', 'node'),
     ROBOT_DESCRIPTION: NodeTopic('std_msgs/msg/String', 'display', 'node'),
     MARKERS: NodeTopic('visualization_msgs/msg/MarkerArray', 'display', 'node'),
@@ -50,6 +55,11 @@ STATE_TOPICS: Mapping[str, str] = {
 
 BODY_TOPICS = BODY_POSES, JOINT_STATES, ROBOT_DESCRIPTION, MARKERS
 """The topics about the bodies of a mechanism, of which the ratio alone tells nothing."""
+
+CORRECTED_TOPICS: Mapping[str, str] = {
+    name: topic.type for name, topic in TOPICS.items() if topic.part == 'correction'
+}
+"""The topics of the corrected output and their types."""
 
 RECORDED_TOPICS: Mapping[str, str] = {
     f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)

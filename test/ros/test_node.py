@@ -88,7 +88,7 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 29
+    assert len(own) == 30
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
@@ -417,7 +417,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(context, monk
     assert not {f'/ratio/{name}' for name in bodies} & topics
     published = []
     monkeypatch.setattr(node, '_publish', lambda _, data: published.append(data))
-    node._listened_to = list(node._outputs)
+    node._listened_to = ['output_state']
     node._on_rotor_state(rotor_bytes(1, position=[1457.0], velocity=[5.6], effort=[2.0]))
     [data] = published
     output = deserialize_message(data, JointState)

@@ -96,6 +96,8 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
         f'{namespace}/mechanism_joint_states': ['sensor_msgs/msg/JointState'],
         f'{namespace}/robot_description': ['std_msgs/msg/String'],
         f'{namespace}/markers': ['visualization_msgs/msg/MarkerArray'],
+        f'{namespace}/corrected_state': ['sensor_msgs/msg/JointState'],
+        f'{namespace}/corrected_interval': ['sensor_msgs/msg/JointState'],
         f'{namespace}/transmission_error': ['sensor_msgs/msg/JointState'],
         '/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray'],
     }
@@ -917,6 +919,7 @@ BAD_STARTS = [
     (['output_joint:=satellite_a'], ['output_joint', 'satellite_a']),
     (['frame_prefix:=5'], ['frame_prefix', 'STRING']),
     (['executor:=multi_threaded'], ['executor', 'auto', 'events', 'single_threaded']),
+    (['calibration:=/none.yaml'], ['/none.yaml', 'No such file or directory']),
     (['rotor_jiont:=m1'], ['unknown parameter `rotor_jiont`; did you mean `rotor_joint`?']),
     (['rotor_joints:=m1'], ['unknown parameter `rotor_joints`; did you mean `rotor_joint`?']),
     (['ring_tooth:=90', 'nothing_like_it:=1'], ['`ring_tooth`', '`nothing_like_it`']),

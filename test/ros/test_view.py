@@ -19,7 +19,7 @@ from shown_markers import all_at
 from visualization_msgs.msg import Marker
 
 from gear_kinematics.ros.node import GearStatePublisher
-from gear_kinematics.state.parameters import ConfigError
+from gear_kinematics.state.parameter_files import ConfigError
 
 ROOT = Path(__file__).resolve().parents[2]
 LAUNCH_FILES = sorted((ROOT / 'launch').glob('*.launch.py'))

@@ -8,12 +8,11 @@ import yaml
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.state import parameters
+from gear_kinematics.state.parameter_files import ConfigError, calibration_path, require_any
 from gear_kinematics.state.parameters import (
     BRANCH_PARAMETERS,
     PARAMETERS,
-    ConfigError,
     load,
-    require_any,
 )
 
 CONTRACT = {
@@ -38,6 +37,7 @@ CONTRACT = {
     'frame_prefix': '',
 }
 OUR_OWN = {
+    'calibration': '',
     'max_rotor_acceleration': 6500.0,
     'markers_rate': 30.0,
     'executor': 'auto',
@@ -423,3 +423,23 @@ def test_yaml_without_ros_parameters_is_refused(tmp_path, text):
 def test_loaded_values_make_the_mechanism(tmp_path):
     mechanism = Mechanism.from_mapping(load(config(tmp_path, ring_teeth=61, satellite_teeth=58)))
     assert (mechanism.gear_ratio.numerator, mechanism.gear_ratio.denominator) == (-58, 3)
+
+
+def test_relative_path_of_a_calibration_is_relative_to_the_file_that_names_it(tmp_path):
+    assert load(config(tmp_path, calibration='mine.yaml'))['calibration'] == str(
+        tmp_path / 'mine.yaml'
+    )
+    assert load(config(tmp_path, calibration='/there/mine.yaml'))['calibration'] == (
+        '/there/mine.yaml'
+    )
+
+
+def test_node_finds_a_calibration_beside_the_file_that_names_it(tmp_path):
+    (tmp_path / 'first').mkdir()
+    files = [config(tmp_path / 'first', calibration='a.yaml'), config(tmp_path, calibration='b')]
+    name = '/gear_state_publisher'
+    assert calibration_path('a.yaml', files, name) == tmp_path / 'first' / 'a.yaml'
+    assert calibration_path('b', files, name) == tmp_path / 'b'
+    # Set in another way.
+    assert calibration_path('c.yaml', files, name) == Path('c.yaml')
+    assert calibration_path('/c.yaml', files, name) == Path('/c.yaml')

@@ -10,7 +10,7 @@ import pytest
 from geometry_msgs.msg import PoseArray
 from hypothesis import example, given
 from hypothesis import strategies as st
-from live import SECOND, rotor_bytes
+from live import SECOND, START, rotor_bytes
 from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
@@ -23,6 +23,7 @@ from gear_kinematics.kinematics import (
     solve,
     split_turns,
 )
+from gear_kinematics.state.correction import Correction
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample, RotorSamples
 from gear_kinematics.state.state_messages import StateMessages, state_messages
 
@@ -274,3 +275,62 @@ def test_name_that_is_no_joint_is_refused_for_every_gear(actuator, name):
     for gear in (actuator, GearRatio(5)):
         with pytest.raises(ValueError, match='output_joint'):
             state_messages(gear, output_joint=name, frame_prefix='')
+
+
+CORRECTIONS = st.tuples(st.floats(-0.1, 0.1), st.floats(-2.0, 2.0), st.floats(0.0, 0.1))
+CORRECTED = ('corrected_state', 'corrected_interval')
+
+
+@given(mechanisms(), st.floats(-1e3, 1e3), rates, rates, CORRECTIONS)
+def test_corrected_state_is_the_output_state_and_the_correction(
+    mechanism, position, velocity, effort, correction
+):
+    states = StateMessages(mechanism, **NAMES | {'frame_prefix': 'left/'})
+    sample = sample_at(position, velocity, effort)
+    [(_, ideal)] = states.encode(sample, ['output_state'])
+    encoded = dict(states.encode_corrected(sample, Correction(*correction)))
+    assert tuple(encoded) == CORRECTED
+    ideal, corrected, interval = (
+        deserialize_message(data, JointState) for data in (ideal, *encoded.values())
+    )
+    deviation, slope, half_width = correction
+    assert corrected.name == interval.name == ['left/output_shaft']
+    assert corrected.header == interval.header == ideal.header
+    assert list(corrected.position) == [ideal.position[0] + deviation]
+    expected = [rate * (1.0 + slope) for rate in ideal.velocity]
+    assert list(corrected.velocity) == pytest.approx(expected, rel=1e-14)
+    assert corrected.effort == ideal.effort
+    assert list(interval.position) == [half_width]
+    assert not interval.velocity
+    assert not interval.effort
+
+
+@pytest.mark.parametrize('topics', [[], ['corrected_state'], ['corrected_interval']])
+def test_only_selected_topics_of_the_correction_are_encoded(actuator, topics):
+    states = StateMessages(actuator, **NAMES)
+    correction = Correction(1e-3, 0.0, 1e-4)
+    assert [topic for topic, _ in states.encode_corrected(sample_at(1.0), correction, topics)] == (
+        topics
+    )
+
+
+@given(st.lists(st.tuples(st.floats(-1e3, 1e3), rates, rates, CORRECTIONS), max_size=20))
+def test_corrections_of_many_samples_are_those_of_each(actuator, inputs):
+    messages = [
+        rotor_bytes(
+            START + k, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both)
+        )
+        for k, (angle, *both, _) in enumerate(inputs)
+    ]
+    settings = InputSettings('', 1, 0.0, 'multi_turn', 650.0, 6500.0)
+    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
+    states = StateMessages(actuator, **NAMES)
+    corrections = [Correction(*correction) for *_, correction in inputs]
+    expected = [
+        dict(states.encode_corrected(one_by_one.accept(data, lambda: 1), correction))
+        for data, correction in zip(messages, corrections, strict=True)
+    ]
+    samples = at_once.accept_batch(messages, [1] * len(messages))
+    columns = Correction(*np.reshape(corrections, (-1, 3)).T)
+    found = states.encode_corrections(samples, columns)
+    assert found == {topic: [each[topic] for each in expected] for topic in CORRECTED}

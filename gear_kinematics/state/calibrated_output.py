@@ -1,0 +1,144 @@
+"""The calibrated output during operation, and how well the calibration fits a measured angle."""
+
+import math
+from array import array
+from collections import deque
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.state.calibration_file import Calibration
+from gear_kinematics.state.correction import Correction, Corrector
+from gear_kinematics.state.rotor_input import CLOCK_RESET, RotorInput, RotorSample
+from gear_kinematics.state.transmission_error import ErrorSample
+from gear_kinematics.wire.cdr import SECOND
+
+Array = NDArray[Any]
+
+_DEPTH = 8192  # predictions that are kept
+_SHARE = 0.05  # of samples that may be outside of a 95 % interval
+_UNLIKELY = 1e-3  # probability of what a calibration that fits does not do
+
+
+class CalibrationFit(NamedTuple):
+    """How the measured transmission error compares with the calibration."""
+
+    samples: int
+    explained: float | None
+    """Share of the variance of the error; None if the error is constant."""
+    outside: float
+    """Share of samples outside of the 95 % interval, apart from the encoder's zero."""
+    fits: bool
+    """Whether that many would be outside of a true interval by chance."""
+
+
+class CalibratedOutput:
+    """Corrects the output sample by sample, and compares the correction with measured errors.
+
+    The zero of the encoder is not known, so the mean of the comparison is taken out.
+    """
+
+    def __init__(self, calibration: Calibration) -> None:
+        self._corrector = Corrector(calibration)
+        self._referenced = True
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the motion and the comparison, as after homing."""
+        self._corrector.reset()
+        self._predicted: deque[tuple[int, float, float]] = deque(maxlen=_DEPTH)
+        self._stamps = array('q')
+        # Of each compared sample: the error, the error minus the deviation, the half width; rad.
+        self._compared = array('d'), array('d'), array('d')
+
+    def correct(self, sample: RotorSample, rotor_input: RotorInput) -> Correction:
+        """Compute the correction at the next sample of an input."""
+        if (referenced := rotor_input.referenced) != self._referenced:  # the turns were homed
+            self.reset()
+            self._referenced = referenced
+        correction = self._corrector.correct(
+            sample, stretch=rotor_input.stretch, referenced=referenced
+        )
+        if self._predicted and sample.stamp <= (last := self._predicted[-1][0]):
+            if last - sample.stamp <= CLOCK_RESET:
+                return correction
+            self._predicted.clear()
+        self._predicted.append((sample.stamp, correction.deviation, correction.half_width))
+        return correction
+
+    def compare(self, errors: Iterable[ErrorSample]) -> None:
+        """Compare measured errors, in the order of their stamps, with the corrections so far."""
+        predicted = self._predicted
+        for stamp, error, *_ in errors:
+            while len(predicted) > 1 and predicted[1][0] < stamp:
+                predicted.popleft()
+            if len(predicted) < 2 or stamp < predicted[0][0]:  # noqa: PLR2004, both sides of it
+                continue
+            start, deviation, half_width = predicted[0]
+            end, next_deviation, next_half_width = predicted[1]
+            share = (stamp - start) / (end - start)
+            deviation += share * (next_deviation - deviation)
+            if self._stamps and stamp < self._stamps[-1]:  # the clock was set back
+                self._drop(len(self._stamps))
+            self._stamps.append(stamp)
+            values = error, error - deviation, max(half_width, next_half_width)
+            for column, value in zip(self._compared, values, strict=True):
+                column.append(value)
+
+    def fit(self, window: float) -> CalibrationFit | None:
+        """Judge the samples within a window, s, and forget older ones; None without any."""
+        if not self._stamps:
+            return None
+        begin = self._stamps[-1] - round(window * SECOND)
+        self._drop(int(np.searchsorted(np.array(self._stamps), begin)))
+        error, residual, half_width = map(np.array, self._compared)
+        error, residual = (column - column[0] for column in (error, residual))  # rounds less
+        error, residual = error - error.mean(), residual - residual.mean()
+        variance = float(error @ error)
+        outside = float(np.mean(np.abs(residual) > half_width))
+        return CalibrationFit(
+            len(error),
+            1.0 - float(residual @ residual) / variance if variance else None,
+            outside,
+            _is_likely(outside, independent_samples(residual)),
+        )
+
+    def _drop(self, count: int) -> None:
+        for column in (self._stamps, *self._compared):
+            del column[:count]
+
+
+def _is_likely(outside: float, samples: float) -> bool:
+    """Whether a share of independent samples is outside of a true 95 % interval by chance.
+
+    Chernoff's bound of the binomial distribution: P ≤ exp(-n KL(outside ‖ 5 %)).
+    """
+    if outside <= _SHARE:
+        return True
+    divergence = outside * math.log(outside / _SHARE)
+    if outside < 1.0:
+        divergence += (1.0 - outside) * math.log((1.0 - outside) / (1.0 - _SHARE))
+    return samples * divergence <= -math.log(_UNLIKELY)
+
+
+def independent_samples(residual: Array) -> float:
+    """The number of independent samples that a series is worth, at least 1.
+
+    Args:
+        residual: (n,), with a mean of 0.
+
+    Returns:
+        n/τ, with the autocorrelation time τ from the initial positive autocorrelations (Geyer).
+    """
+    count = len(residual)
+    size = 1 << (2 * count - 1).bit_length()
+    spectrum = np.fft.rfft(residual, size)
+    correlation = np.fft.irfft(spectrum * spectrum.conj(), size)[:count]
+    if not correlation[0] > 0.0:
+        return float(count)
+    correlation /= correlation[0]
+    ends = np.flatnonzero(correlation <= 0.0)
+    positive = correlation[1 : ends[0] if len(ends) else count]
+    return max(1.0, count / (1.0 + 2.0 * float(positive.sum())))
