@@ -10,6 +10,7 @@ from gear_kinematics.bag.reading import Bag
 from gear_kinematics.bag.topics import listed, missing_topic
 from gear_kinematics.wire.topics import (
     BODY_POSES,
+    CORRECTED_TOPICS,
     OUTPUT_ENCODER,
     OUTPUT_STATE,
     ROTOR_STATE,
@@ -92,6 +93,22 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
         return given
     named = [topic for topic in _of_type(bag.topics, wanted) if _base(topic) == OUTPUT_ENCODER]
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
+
+
+def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
+    """Return those of CORRECTED_TOPICS that are beside the topic of the output, each by its name.
+
+    Args:
+        bag: an open bag.
+        output: the topic of output_state.
+    """
+    namespace, _, _ = output.rpartition('/')
+    beside = {name: f'{namespace}/{name}' for name in CORRECTED_TOPICS}
+    return {
+        name: topic
+        for name, topic in beside.items()
+        if bag.topics.get(topic) == CORRECTED_TOPICS[name]
+    }
 
 
 def _find_topic(bag: Bag, available: Mapping[str, str], name: str) -> str:

@@ -82,10 +82,7 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
     if options.config:
         return Path(options.config)
     default = parameters.default_config()
-    if not bag:
-        return default
-    beside = (bag if bag.is_dir() else bag.parent) / default.name
-    return beside if beside.is_file() else default
+    return (beside(bag, default.name) if bag else None) or default
 
 
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
@@ -113,6 +110,12 @@ def add_ratio(parser: argparse.ArgumentParser) -> None:
     ways.add_argument(
         '--fit-ratio', action='store_true', help='estimate the gear ratio from the recording'
     )
+
+
+def beside(bag: Path, name: str) -> Path | None:
+    """The file of a name in the folder of a bag, if there is one."""
+    path = (bag if bag.is_dir() else bag.parent) / name
+    return path if path.is_file() else None
 
 
 def add_mechanism(parser: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from gear_kinematics.bag import Bag, TopicError, listed
 from gear_kinematics.bag.roles import Topics, find_rotor_topic
-from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import ExitCode, arguments, calibrations
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.report.document import printable
 from gear_kinematics.state.compute import compute
@@ -17,6 +17,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
     arguments.add_topics(parser)
+    calibrations.add_option(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     parser.add_argument(
@@ -40,6 +41,7 @@ def run(options: argparse.Namespace) -> ExitCode:
                 rotor_topic=rotor,
                 output_topic=options.output_topic or beside.output,
                 poses_topic=options.poses_topic or beside.poses,
+                calibration=calibrations.load(options, config, options.bag),
                 topics=options.topics,
                 storage=options.storage,
                 compression=options.compression,

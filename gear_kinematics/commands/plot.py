@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import ExitCode, arguments, calibrations
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.kinematics import (
     Gear,
@@ -52,7 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         ('slides', 'slides and sliding speeds of the Oldham couplings', _slides),
         ('output', 'angle and rate of the output shaft', _output),
     ):
-        _, motions = add(name, text, draw)
+        figure, motions = add(name, text, draw)
+        if draw is _output:
+            calibrations.add_option(figure)
         motions.add_argument(
             '--speed', type=float, metavar='RAD/S', help='rotor speed (default: 3000 rpm)'
         )
@@ -99,8 +101,9 @@ def _slides(
 
 
 def _output(options: argparse.Namespace, config: Config, gear: Gear, path: Path) -> bytes:
+    calibration = calibrations.load(options, config, options.bag)
     cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
-    return plotting.output(gear, path, _moved(options, config, turns=cycle))
+    return plotting.output(gear, path, _moved(options, config, turns=cycle), calibration)
 
 
 def _moved(options: argparse.Namespace, config: Config, turns: int) -> Trajectory:

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Iterator, Sequence
 
 from gear_kinematics.bag.finding import find_bags
-from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import ExitCode, arguments, calibrations
 from gear_kinematics.commands.output import (
     Reporter,
     complain,
@@ -37,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
     arguments.add_topics(parser)
+    calibrations.add_option(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     angle, position = Tolerances()
     parser.add_argument('--tolerance-angle', type=float, default=angle, metavar='RAD')
@@ -81,6 +82,8 @@ def run(options: argparse.Namespace) -> ExitCode:
                 options.rotor_topic,
                 options.output_topic,
                 options.poses_topic,
+                calibrations.load(options, loaded, bag),
+                str(calibrations.find(options, loaded, bag) or ''),
                 options.debug,
             )
         )

@@ -12,12 +12,15 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.image import FAINT, SERIES, render
 from gear_kinematics.shape import outlines
 from gear_kinematics.shape.outlines import Array
+from gear_kinematics.state.calibration_file import Calibration
+from gear_kinematics.state.correction import Correction
 from gear_kinematics.state.trajectory import Trajectory
 
 MOST_PETALS = 1000
 """With more, a rose looks like a disc."""
 _PETAL_POINTS = 48
 _MM = 1e3  # in a metre
+_MRAD = 1e3  # in a radian
 
 
 def roses(mechanism: Mechanism, path: Path, trajectory: Trajectory | None = None) -> bytes:
@@ -53,9 +56,20 @@ def slides(mechanism: Mechanism, path: Path, trajectory: Trajectory, *, by_angle
     return render(path, (7.0, 5.0), draw)
 
 
-def output(gear: Gear, path: Path, trajectory: Trajectory) -> bytes:
-    """Plot angle and rate of the output shaft over time."""
-    return render(path, (7.0, 4.5), partial(_draw_output, gear.gear_ratio, trajectory))
+def output(
+    gear: Gear,
+    path: Path,
+    trajectory: Trajectory,
+    calibration: Calibration | None = None,
+) -> bytes:
+    """Plot angle and rate of the output shaft over time.
+
+    With a calibration, also the deviation of the real output angle with its 95 % interval.
+    """
+    correction = None if calibration is None else trajectory.correction(calibration)
+    height = 4.5 if correction is None else 6.5
+    draw = partial(_draw_output, gear.gear_ratio, trajectory, correction)
+    return render(path, (7.0, height), draw)
 
 
 def _draw_roses(mechanism: Mechanism, whole: Array, moved: Array | None, figure: Any) -> None:
@@ -113,15 +127,25 @@ def _draw_slides(
         legend.remove()
 
 
-def _draw_output(ratio: GearRatio, trajectory: Trajectory, figure: Any) -> None:
+def _draw_output(
+    ratio: GearRatio, trajectory: Trajectory, correction: Correction | None, figure: Any
+) -> None:
     turns, rest = ratio.output_angle(trajectory.turns, trajectory.angle, np)
     velocity = ratio.output_rate(trajectory.velocity)
-    angle, rate = figure.subplots(2, 1, sharex=True)
+    plots = figure.subplots(2 if correction is None else 3, 1, sharex=True)
+    angle, rate = plots[:2]
     angle.plot(trajectory.time, np.degrees(TURN * turns + rest), color=SERIES[0])
     angle.set_ylabel('output angle, °')
     rate.plot(trajectory.time, np.degrees(velocity), color=SERIES[0])
     rate.set_ylabel('output rate, °/s')
-    rate.set_xlabel('time, s')
-    for axes in (angle, rate):
+    if correction is not None:
+        deviation, half_width = _MRAD * correction.deviation, _MRAD * correction.half_width
+        bounds = deviation - half_width, deviation + half_width
+        plots[2].fill_between(trajectory.time, *bounds, color=FAINT, alpha=0.5, label='95 %')
+        plots[2].plot(trajectory.time, deviation, color=SERIES[0])
+        plots[2].set_ylabel('deviation, mrad')
+        plots[2].legend(loc='upper right')
+    plots[-1].set_xlabel('time, s')
+    for axes in plots:
         axes.grid(visible=True)
         axes.margins(x=0.0)

@@ -11,9 +11,17 @@ import numpy as np
 from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_batches
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import gear_from_mapping
+from gear_kinematics.state.calibration_file import Calibration
+from gear_kinematics.state.correction import Corrector
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.wire.topics import BODY_POSES, JOINT_STATE, OUTPUT_STATE, STATE_TOPICS
+from gear_kinematics.wire.topics import (
+    BODY_POSES,
+    CORRECTED_TOPICS,
+    JOINT_STATE,
+    OUTPUT_STATE,
+    TOPICS,
+)
 
 _BATCH = 1024  # messages
 _TOPICS = Topics()
@@ -49,6 +57,7 @@ def compute(
     rotor_topic: str = _TOPICS.rotor,
     output_topic: str = _TOPICS.output,
     poses_topic: str = _TOPICS.poses,
+    calibration: Calibration | None = None,
     topics: Collection[str] | None = None,
     storage: Literal['mcap', 'sqlite3'] = 'mcap',
     compression: Literal['none', 'zstd'] = 'none',
@@ -66,6 +75,7 @@ def compute(
         rotor_topic: name of the input in the bag.
         output_topic: name of the node's output_state in the bag.
         poses_topic: name of the node's body_poses in the bag.
+        calibration: of the gear, to compute CORRECTED_TOPICS beside the topic of the output.
         topics: other topics to copy; None copies all.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
@@ -80,11 +90,16 @@ def compute(
     names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
     messages_of = state_messages(gear, **names)
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
-    if len({rotor_topic, output_topic, poses_topic}) < 3:  # noqa: PLR2004
-        raise ValueError(f'{rotor_topic}, {output_topic}, {poses_topic}: the names must differ')
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
     topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
-    outputs = {topic: STATE_TOPICS[state] for state, topic in topic_of.items()}
+    corrector = None
+    if calibration:
+        corrector = Corrector(calibration)
+        namespace, _, _ = output_topic.rpartition('/')
+        topic_of |= {topic: f'{namespace}/{topic}' for topic in CORRECTED_TOPICS}
+    if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
+        raise ValueError(f'{", ".join(all_names)}: the names must differ')
+    outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
     chosen = {rotor_topic, *(source.topics if topics is None else topics)}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
@@ -104,10 +119,16 @@ def compute(
             answered = [rotor[row] for row in samples.row.tolist()]
             computed += len(answered)
             copied += len(messages) - len(rotor)
+            encoded_outputs = messages_of.encode_outputs(samples)
+            if corrector:
+                correction = corrector.correct_batch(
+                    *samples[:5], samples.stretch, referenced=rotor_input.referenced
+                )
+                encoded_outputs |= messages_of.encode_corrections(samples, correction)
             # A stable sort by these puts each output directly after its rotor message.
-            places = [*range(len(messages)), *(len(outputs) * answered)]
+            places = [*range(len(messages)), *(len(encoded_outputs) * answered)]
             received = [messages[place][1] for place in answered]
-            for state, encoded in messages_of.encode_outputs(samples).items():
+            for state, encoded in encoded_outputs.items():
                 messages += zip(repeat(topic_of[state]), received, encoded)
             writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
         if not computed:

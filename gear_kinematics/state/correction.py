@@ -22,7 +22,7 @@ Array = NDArray[Any]
 
 MAX_GAP = SECOND
 """ns between samples beyond which the plays are unknown again, as motion was missed."""
-_SPEED_INTERVAL = SECOND // 10  # ns over which a missing velocity is averaged
+_SPEED_INTERVAL = SECOND // 10  # ns over which a missing velocity is averaged; begins at multiples
 _FAR = 1024  # rotor turns from the reference; angles x stay small, and keep their precision
 _CHUNK = 4096  # samples, so that the arrays of a chunk fit into the processor's cache
 
@@ -36,6 +36,9 @@ class Correction(NamedTuple):
     """Derivative of the deviation with respect to the ideal output angle."""
     half_width: Any
     """rad: the real output angle is within ± this of the corrected one with 95 %."""
+    unknown_history: Any
+    """rad: the part of `half_width` that another history before the first sample would change; as
+    much of the deviation would change."""
 
 
 class Corrector:
@@ -103,7 +106,7 @@ class Corrector:
             self.reset()
         self._stretch, self._stamp = stretch, stamp
         file = self._calibration
-        deviation, slope, unknown = file.constant, 0.0, 0.0
+        deviation, slope, unknown, history = file.constant, 0.0, 0.0, 0.0
 
         turn = turns % self._period
         if not referenced:
@@ -123,7 +126,8 @@ class Corrector:
             other, other_rate = self._drag(self._most, x)
             lag, rate = 0.5 * (lag + other), 0.5 * (rate + other_rate)
             ends = zip(self._stops, self._least, self._most, strict=True)
-            unknown += sum(0.5 * abs(stop[1]) * (most - least) for stop, least, most in ends)
+            history = sum(0.5 * abs(stop[1]) * (most - least) for stop, least, most in ends)
+            unknown += history
             self._known = self._least == self._most
         deviation += lag
         slope += rate
@@ -135,6 +139,8 @@ class Corrector:
             deviation += self._wind_up(torque)
         if velocity is None:
             velocity = self._mean_speed.update(stamp, turns, angle)
+            if math.isnan(velocity):
+                history += file.outside_half_width - file.half_width
         spans = file.spans
         inside = spans.speed[0] <= velocity * self._per_rotor <= spans.speed[1]
         if torque is not None and spans.torque is not None:
@@ -142,7 +148,7 @@ class Corrector:
         if referenced and self._period > 1:
             inside = inside and self._beyond_span(turn, angle) <= spans.angle[1] - spans.angle[0]
         half_width = file.half_width if inside else file.outside_half_width
-        return Correction(deviation, slope, half_width + unknown)
+        return Correction(deviation, slope, half_width + unknown, history)
 
     def correct_batch(
         self,
@@ -179,18 +185,21 @@ class Corrector:
             deviation += cos * cosine + sin * sine
             slope += self._ratio * cycles * (sin * cosine - cos * sine)
 
-        velocity = velocity.copy()
+        velocity, history = velocity.copy(), np.zeros(count)
         coefficients = np.array([coefficient for _, coefficient in self._stops])
         for rows in self._segments(stamp, turns, stretch):
             x = self._output_angle(turns[rows], angle[rows])
             least, most, still = self._drag_all(x)
             deviation[rows] += (x[:, np.newaxis] - 0.5 * (least + most)) @ coefficients
             slope[rows] += still @ coefficients
-            unknown[rows] += 0.5 * (most - least) @ np.abs(coefficients)
+            history[rows] = 0.5 * (most - least) @ np.abs(coefficients)
             for row in rows.start + np.flatnonzero(np.isnan(velocity[rows])):
                 velocity[row] = self._mean_speed.update(
                     int(stamp[row]), int(turns[row]), float(angle[row])
                 )
+
+        unknown += history
+        history[np.isnan(velocity)] += file.outside_half_width - file.half_width
 
         torque = self._ratio * effort
         no_torque = np.isnan(torque)
@@ -205,7 +214,7 @@ class Corrector:
             length = file.spans.angle[1] - file.spans.angle[0]
             inside &= self._beyond_span(turn, angle) <= length
         half_width = np.where(inside, file.half_width, file.outside_half_width)
-        return Correction(deviation, slope, half_width + unknown)
+        return Correction(deviation, slope, half_width + unknown, history)
 
     def _wind_up(self, torque: Any) -> Any:
         return self._compliance * (torque - self._compliance_torque)
@@ -285,21 +294,27 @@ class _Order(NamedTuple):
 
 
 class _MeanSpeed:
-    """The rotor's speed where messages have no velocity, from its travel."""
+    """The rotor's speed where messages have no velocity, from its travel.
+
+    Intervals begin at multiples of their length, so that the speed does not depend on the first
+    sample once it is known.
+    """
 
     def __init__(self) -> None:
-        self._from: tuple[int, int, float] | None = None
+        self._interval: int | None = None
+        self._begin: tuple[int, int, float] | None = None
         self._speed = math.nan
 
     def update(self, stamp: int, turns: int, angle: float) -> float:
         """Add a position at a stamp, ns; returns rad/s, NaN as long as it is unknown."""
-        begin, begin_turns, begin_angle = self._from or (stamp, turns, angle)
-        elapsed = stamp - begin
-        if self._from is None or elapsed >= _SPEED_INTERVAL:
-            self._from = stamp, turns, angle
-        if elapsed >= _SPEED_INTERVAL:
-            travel = (turns - begin_turns) * TURN + angle - begin_angle
-            self._speed = travel / (elapsed / SECOND)
+        interval, before = stamp // _SPEED_INTERVAL, self._interval
+        self._interval = interval
+        if before is not None and interval != before:
+            if self._begin is not None:
+                begin, begin_turns, begin_angle = self._begin
+                travel = (turns - begin_turns) * TURN + angle - begin_angle
+                self._speed = travel / ((stamp - begin) / SECOND)
+            self._begin = stamp, turns, angle
         return self._speed
 
 

@@ -12,6 +12,8 @@ from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicMessages
 from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.calibration_file import Calibration
+from gear_kinematics.state.correction import Correction, Corrector
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND
 
@@ -63,6 +65,13 @@ class Trajectory(NamedTuple):
         """The motion of all bodies, (n, ...)."""
         with np.errstate(over='ignore'):  # nothing here shows accelerations
             return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
+
+    def correction(self, calibration: Calibration) -> Correction:
+        """The correction of the output, arrays (n,); its efforts are not known."""
+        stamp = np.round(self.time * SECOND).astype(np.int64)
+        unknown = np.full(len(stamp), np.nan)
+        motion = self.turns, self.angle, self.velocity
+        return Corrector(calibration).correct_batch(stamp, *motion, unknown, np.zeros(len(stamp)))
 
     @property
     def longest_step(self) -> float:

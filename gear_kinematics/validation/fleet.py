@@ -12,13 +12,15 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from multiprocessing.process import BaseProcess
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress
 from gear_kinematics.bag.errors import unexpected
-from gear_kinematics.bag.roles import Topics, find_topics
+from gear_kinematics.bag.roles import Topics, find_corrected_topics, find_topics
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
@@ -46,6 +48,10 @@ class Task:
     """None, as for the other topics: found by type and name."""
     output_topic: str | None = None
     poses_topic: str | None = None
+    calibration: Calibration | None = None
+    """Of the node that was recorded."""
+    calibration_file: str = ''
+    """Its file."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""
 
@@ -82,8 +88,11 @@ def validate_bag(
                 messages = play(bag, task.parameters, rotor_topic=topics.rotor)
                 # Nothing is lost by a recorder here.
                 return validate_messages(replace(task, strict=True), messages, progress)
-            messages = bag.messages(topics)
-            return validate_messages(task, messages, progress, topics, bag.message_count)
+            corrected = find_corrected_topics(bag, topics.output)
+            messages = bag.messages((*topics, *corrected.values()))
+            return validate_messages(
+                task, messages, progress, topics, bag.message_count, corrected
+            )
     except BagError as error:
         return _unusable(task, str(error))
     except Exception as error:
@@ -98,6 +107,7 @@ def validate_messages(
     progress: ReportProgress | None = None,
     topics: Topics = _TOPICS,
     total: int | None = None,
+    corrected: Mapping[str, str] = MappingProxyType({}),
 ) -> BagReport:
     """Validate the readable messages of a bag; otherwise like `validate_bag`."""
     validator = Validator(
@@ -106,13 +116,19 @@ def validate_messages(
         tolerances=task.tolerances,
         allow_offset=task.allow_offset,
         strict=task.strict,
+        calibration=task.calibration,
+        corrected=corrected,
     )
     damage = None
     try:
         validator.feed(messages, progress, total)
     except BagError as error:
         damage = str(error)
-    return replace(validator.report(str(task.bag), error=damage), config=task.config)
+    report = validator.report(str(task.bag), error=damage)
+    if validator.judges_correction:
+        finding = f'the corrected output is compared with that of {task.calibration_file}'
+        report = replace(report, findings=(finding, *report.findings))
+    return replace(report, config=task.config)
 
 
 def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagReport]:

@@ -131,10 +131,12 @@ class OutputState(OutputTopic):
         recorded = states.values[rows] - (self.offset, 0.0, 0.0)
         unseen_turns: Array | float = 0.0
         if self._unseen:
-            expected, _ = self._recompute(samples, 0.0)
+            expected = self._ideal_angle(samples['turns'], samples['angle'])
             self._unseen.learn_from_angles(stretch, recorded[:, 0], expected)
             unseen_turns = self._unseen.of(stretch)
-        angle, rotor_angle = self._recompute(samples, unseen_turns)
+        turns = samples['turns'] + unseen_turns
+        angle = self._ideal_angle(turns, samples['angle'])
+        rotor_angle = TURN * turns + samples['angle']
         velocity = self._gear.gear_ratio.output_rate(samples['velocity'])
         effort = float(self._gear.gear_ratio) * samples['effort']
         signed = recorded - np.stack([angle, velocity, effort], axis=-1)
@@ -158,15 +160,16 @@ class OutputState(OutputTopic):
             'error': signed[usable, 0],
         }
 
-    def _recompute(self, samples: Columns, unseen_turns: Array | float) -> tuple[Array, Array]:
-        """The angles of output and rotor, (n,), rad."""
-        turns, angle = samples['turns'] + unseen_turns, samples['angle']
-        if isinstance(self._gear, Mechanism):
-            output_angle = self._solver(self._gear, angle, rotor_turns=turns).output_angle
-        else:
-            output_turns, rest = self._gear.output_angle(turns, angle, np)
-            output_angle = TURN * output_turns + rest
-        return output_angle, TURN * turns + angle
+    def _ideal_angle(self, turns: Array, angle: Array) -> Array:
+        return ideal_angle(self._gear, self._solver, turns, angle)
+
+
+def ideal_angle(gear: Gear, solver: Solver, turns: Array, angle: Array) -> Array:
+    """The ideal output angle at rotor angles of 2π turns + angle, (n,), rad."""
+    if isinstance(gear, Mechanism):
+        return solver(gear, angle, rotor_turns=turns).output_angle
+    output_turns, rest = gear.output_angle(turns, angle, np)
+    return np.asarray(TURN * output_turns + rest)
 
 
 class BodyPoses(OutputTopic):

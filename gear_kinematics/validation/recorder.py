@@ -22,7 +22,8 @@ NO_INPUT = 'whose input was not recorded'
 _SETTLED = 1_000_000_000  # ns after which a recorder has settled
 _QUIET = 150_000_000  # ns without a loss after which it has settled earlier
 _END = 500_000_000  # ns by which outputs may end before their inputs
-_HOLE = 1.5  # median periods between inputs; beyond, an input between them was not recorded
+HOLE = 1.5
+"""Median periods between inputs; beyond, an input between them was not recorded."""
 _SILENCE = 2.5  # median periods between inputs; beyond, the recorder lost all topics
 _KEPT = 32_768  # stamps of inputs
 _DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
@@ -225,7 +226,7 @@ class RecordedInputs:
         after = np.searchsorted(known, stamp)
         bounds = np.concatenate([[known[0]], known, [known[-1]]])
         period = np.diff(known)
-        longest = _HOLE * float(np.median(period)) if len(period) else np.inf
+        longest = HOLE * float(np.median(period)) if len(period) else np.inf
         in_hole = (bounds[after + 1] - bounds[after] > longest) & (bounds[after + 1] != stamp)
         age = received - stamp
         too_early = (after == 0) & self._complete & (stamp < known[0])

@@ -1,9 +1,10 @@
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,12 +14,18 @@ from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.validation import checks
+from gear_kinematics.validation.corrected_topics import (
+    CORRECTED,
+    CorrectedTopic,
+    RecomputedCorrection,
+)
 from gear_kinematics.validation.diagnosis import UnseenTurns, diagnose
 from gear_kinematics.validation.matching import WINDOW, OutputTopic, Window
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Solver, Tolerances
-from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
+from gear_kinematics.validation.recorder import Completeness, Inputs, Missing, RecordedInputs
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.timeline import InputHealth, SeriesRecorder
 from gear_kinematics.wire.cdr import MalformedMessageError, joint_state_layout, pose_array_layout
@@ -28,7 +35,7 @@ Array = NDArray[Any]
 _FRAME = 'stator'
 _TOPICS, _TOLERANCES = Topics(), Tolerances()
 _Batch = tuple[TopicMessages, ...]
-"""Messages in the order of `Topics`."""
+"""Messages in the order of `Topics`, then those of the corrected output."""
 
 
 class Validator:
@@ -43,6 +50,8 @@ class Validator:
         allow_offset: bool = False,
         strict: bool = False,
         solver: Solver = solve,
+        calibration: Calibration | None = None,
+        corrected: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         """Prepare for a recording.
 
@@ -54,6 +63,8 @@ class Validator:
             strict: whether to judge all missing and extra messages, even if the recorder may have
                 caused them; see `recorder`.
             solver: recomputes the motion: `solve`, or that of the matrix method.
+            calibration: of the node; without it, the corrected output is not judged.
+            corrected: the recorded ones of CORRECTED_TOPICS, each with its name in the recording.
 
         Raises:
             ValueError: if the parameters describe no gear.
@@ -61,6 +72,7 @@ class Validator:
         self._parameters = dict(parameters)
         self._prefix_open = not parameters['frame_prefix']
         self._topics = topics
+        self._names = *topics, *corrected.values()
         self._tolerances = tolerances
         self._offset_open = allow_offset
         self._solver = solver
@@ -75,13 +87,24 @@ class Validator:
         self._unseen = UnseenTurns(gear.gear_ratio, tolerances.angle) if single_turn else None
         prefix = parameters['frame_prefix']
         common = tolerances, solver, self._unseen
-        self.output = OutputState(prefix + parameters['output_joint'], gear, *common)
+        joint = prefix + parameters['output_joint']
+        self.output = OutputState(joint, gear, *common)
         self.poses = None
-        self._outputs: tuple[OutputTopic, ...] = (self.output,)
+        outputs: tuple[OutputTopic, ...] = (self.output,)
         if isinstance(gear, Mechanism):
             self.poses = BodyPoses(prefix + _FRAME, gear, *common)
-            self._outputs = self.output, self.poses
-        self._absences = Completeness(len(self._outputs), strict=strict)
+            outputs = self.output, self.poses
+        names = topics[: 1 + len(outputs)]
+        self._groups = [_Group(names, outputs, Completeness(len(outputs), strict=strict))]
+        self._unjudged = 0  # messages of the corrected output
+        self._why_unjudged = _why_unjudged(calibration, single_turn=single_turn)
+        self._correction = None
+        if calibration and corrected and not self._why_unjudged:
+            self._correction = RecomputedCorrection(calibration)
+            for topic, name in corrected.items():
+                output = CORRECTED[topic](joint, gear, *common)
+                absences = Completeness(1, strict=strict)
+                self._groups.append(_Group((topics.rotor, name), (output,), absences))
         self._series = SeriesRecorder()
         self._checks = [make(parameters) for make in checks.CHECKS]
         self._findings: list[str] = []
@@ -92,7 +115,7 @@ class Validator:
         progress: ReportProgress | None = None,
         total: int | None = None,
     ) -> None:
-        """Process messages on the three topics, up to an exception of the iterable, if any.
+        """Process messages on the topics, up to an exception of the iterable, if any.
 
         Args:
             messages: in the order of their reception.
@@ -100,8 +123,8 @@ class Validator:
             total: number of the messages, if known.
         """
         for recorded in in_batches(messages, progress=progress, total=total):
-            batch = _empty_batch()
-            sort_by_topic(recorded, dict(zip(self._topics, batch, strict=True)))
+            batch = self._empty_batch()
+            sort_by_topic(recorded, dict(zip(self._names, batch, strict=True)))
             self._take(batch)
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
@@ -115,10 +138,10 @@ class Validator:
         self._close()
         rotor = self._health.report(self._input, self._topics.rotor)
         topics = tuple(
-            output.report(topic, lacks)
-            for output, topic, lacks in zip(
-                self._outputs, self._topics[1:], self._absences.topics, strict=False
-            )
+            output.report(name, missing)
+            for name, output, missing in self._judged()
+            # Without a calibration, the node publishes nothing on the topics of the correction.
+            if output.matcher.messages or name in self._topics
         )
         if error is None and not rotor.valid:
             error = 'no usable rotor states in it'
@@ -148,20 +171,24 @@ class Validator:
             self._settle_prefix(batch)
         if self._offset_open and there:
             self._settle_offset(batch)
-        rotor, *recorded = batch[: 1 + len(self._outputs)]
-        for topic, messages in zip(self._topics, (rotor, *recorded), strict=False):
+        recorded = dict(zip(self._names, batch, strict=False))
+        for topic, messages in recorded.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        if len(self._begun) > len(self._outputs):
-            self._absences.begin(max(self._begun.values()))
-        self._add_samples(rotor)
-        for output, messages in zip(self._outputs, recorded, strict=True):
+        for names, _, absences in self._groups:
+            if self._begun.keys() >= set(names):
+                absences.begin(max(self._begun[name] for name in names))
+        self._add_samples(recorded[self._topics.rotor])
+        for name, output, _ in self._judged():
+            messages = recorded[name]
             output.take(messages.data, messages.received, self._window, self._inputs)
+        if not self._correction:
+            self._unjudged += sum(len(messages.data) for messages in batch[len(self._topics) :])
         poses = self.poses.compared if self.poses else {}
         self._series.update(self.output.compared, poses)
         for check in self._checks:
             check.update(self.output.compared, poses)
-        done = np.all([output.matcher.matched for output in self._outputs], axis=0)
+        done = np.all([output.matcher.matched for _, output, _ in self._judged()], axis=0)
         settled = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(settled, len(done) - WINDOW))
 
@@ -178,30 +205,32 @@ class Validator:
             velocity=samples.velocity,
             effort=samples.effort,
             stretch=samples.stretch,
+            **(self._correction.columns(samples) if self._correction else {}),
         )
-        for output in self._outputs:
+        for _, output, _ in self._judged():
             output.matcher.extend(len(samples.stamp))
 
     def _drop(self, count: int) -> None:
         oldest = self._window.rows(slice(count))
-        matchers = [output.matcher for output in self._outputs]
-        answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
-        self._absences.update(Inputs(oldest['received'], oldest['stamp'], answered))
-        for matcher in matchers:
-            matcher.drop(count)
+        for _, outputs, absences in self._groups:
+            answered = np.column_stack([output.matcher.matched[:count] for output in outputs])
+            absences.update(Inputs(oldest['received'], oldest['stamp'], answered))
+        for _, output, _ in self._judged():
+            output.matcher.drop(count)
         self._window.drop(count)
 
     def _close(self) -> None:
         """Count waiting samples and messages as missing and extra, at the end."""
         for _ in range(2):  # late messages wait for one more batch
-            self._take(_empty_batch())
+            self._take(self._empty_batch())
         self._drop(len(self._window))
-        self._absences.close()
+        for group in self._groups:
+            group.absences.close()
 
     def _settle_prefix(self, batch: _Batch) -> None:
         """Adopt the frame prefix of the first output, if any."""
         joint = self._parameters['output_joint']
-        _, output, poses = batch
+        _, output, poses, *_ = batch
         for (data, *_), layout_of, name in (
             (poses.data or [b''], pose_array_layout, _FRAME),
             (output.data or [b''], joint_state_layout, joint),
@@ -213,9 +242,10 @@ class Validator:
                 self._prefix_open = False
                 if prefix := recorded.removesuffix(name):
                     self._parameters['frame_prefix'] = prefix
-                    self.output.joint = prefix + joint
                     if self.poses:
                         self.poses.frame_id = prefix + _FRAME
+                    for topic in self._of_joint():
+                        topic.joint = prefix + joint
                     self._findings.append(f'frame_prefix {prefix!r} is taken from the outputs')
                 return
 
@@ -239,9 +269,18 @@ class Validator:
         if self._trial(batch, moved).worst_position <= trial.worst_position:
             self._input.settings = replace(self._input.settings, **moved)
         else:
-            self.output.offset = offset
+            for topic in self._of_joint():
+                topic.offset = offset
         self._findings.append(
             f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
+        )
+
+    @property
+    def judges_correction(self) -> bool:
+        """Whether there were messages of the corrected output that are judged."""
+        return any(
+            isinstance(output, CorrectedTopic) and output.matcher.messages > 0
+            for _, output, _ in self._judged()
         )
 
     @property
@@ -257,8 +296,21 @@ class Validator:
             solver=self._solver,
             strict=self._strict,
         )
-        trial._take(batch)
+        trial._take(batch[: len(self._topics)])
         return trial
+
+    def _of_joint(self) -> Iterator[OutputState | CorrectedTopic]:
+        for _, output, _ in self._judged():
+            if isinstance(output, (OutputState, CorrectedTopic)):
+                yield output
+
+    def _judged(self) -> Iterator[tuple[str, OutputTopic, Missing]]:
+        """Yield name, comparison and missing messages of each output."""
+        for (_, *names), outputs, absences in self._groups:
+            yield from zip(names, outputs, absences.topics, strict=True)
+
+    def _empty_batch(self) -> _Batch:
+        return tuple(TopicMessages() for _ in self._names)
 
     def _diagnoses(self) -> Iterable[str]:
         if not self.output.position.passed:
@@ -269,7 +321,9 @@ class Validator:
             yield from self.poses.findings()
         if self._unseen:
             yield from self._unseen.findings()
-        for topic, missing in zip(self._topics[1:], self._absences.topics, strict=False):
+        if self._unjudged:
+            yield f'the corrected output is not judged: {self._why_unjudged}'
+        for topic, _, missing in self._judged():
             if missing.ended_early is not None:
                 yield (
                     f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '
@@ -277,5 +331,18 @@ class Validator:
                 )
 
 
-def _empty_batch() -> _Batch:
-    return tuple(TopicMessages() for _ in Topics._fields)
+class _Group(NamedTuple):
+    """Outputs that are recorded from the same time on."""
+
+    names: Sequence[str]
+    """Of the rotor's topic and those of the outputs."""
+    outputs: Sequence[OutputTopic]
+    absences: Completeness
+
+
+def _why_unjudged(calibration: Calibration | None, *, single_turn: bool) -> str:
+    if not calibration:
+        return '--calibration names its calibration'
+    if single_turn and calibration.period > 1:
+        return 'a recording does not tell when a single-turn encoder was referenced'
+    return ''

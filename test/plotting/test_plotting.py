@@ -1,6 +1,7 @@
 """The data given to matplotlib, against 50-digit and matrix-method motion."""
 
 import math
+from fractions import Fraction
 from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
@@ -8,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import oracle
 import pytest
+from calibrations import calibration
 from properties import numbers_of
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
 from gear_kinematics.shape.outlines import bodies
+from gear_kinematics.state.calibration_file import Order
 from gear_kinematics.state.trajectory import Trajectory
 
 figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
@@ -217,6 +220,27 @@ def test_output_turns_by_the_ratio(actuator, figures):
     degree = math.pi / 180.0
     assert angles[1] == pytest.approx([0.0, -1.0 / 19 / degree, -50.0 / 19 / degree])
     assert rates[1] == pytest.approx([-1.0 / 19 / degree, 2.0 / 19 / degree, -300 / 19 / degree])
+
+
+def test_deviation_is_drawn_with_its_interval(actuator, figures):
+    turns, angle = split_turns(np.array([0.0, 1.0, 50.0]))
+    moved = Trajectory(np.array([0.0, 0.1, 0.3]), turns, angle, np.array([1.0, 1.0, 1.0]))
+    made = calibration(
+        constant=0.0,
+        orders=(Order('rotor × 1', Fraction(1), 1e-3, 0.0),),
+        hysteresis=(),
+        compliance=None,
+        half_width=2e-4,
+    )
+    plotting.output(actuator, PNG, moved, made)
+    *_, deviation = figures[0].axes
+    assert len(figures[0].axes) == 3
+    expected = np.cos([0.0, 1.0, 50.0])  # mrad
+    assert deviation.get_lines()[0].get_data()[1] == pytest.approx(expected)
+    (band,) = deviation.collections
+    corners = band.get_paths()[0].vertices
+    at_start = corners[corners[:, 0] == 0.0, 1]
+    assert (min(at_start), max(at_start)) == (pytest.approx(0.8), pytest.approx(1.2))
 
 
 @pytest.fixture(scope='module')

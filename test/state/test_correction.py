@@ -80,7 +80,7 @@ def test_deviation_and_unknown_part_are_those_of_the_definition(steps, turns):
         zip(motion, expected_deviations(made, motion), strict=True)
     ):
         sample = RotorSample(START + k * MS, RotorPosition(*moved[:2]), STEADY, moved[2])
-        deviation, _, half_width = corrector.correct(sample)
+        deviation, _, half_width, _ = corrector.correct(sample)
         assert abs(MP.mpf(deviation) - expected[0]) < 1e-14
         inside = math.isclose(half_width - float(expected[1]), made.half_width, abs_tol=1e-14)
         outside = made.outside_half_width
@@ -97,7 +97,12 @@ def test_batches_give_the_same_as_single_samples(motion, cuts, referenced):
         corrector.correct_batch(*columns(motion[start:stop]), referenced=referenced)
         for start, stop in pairwise(bounds)
     ]
-    for field, scale in (('deviation', 1.0), ('slope', 100.0), ('half_width', 1.0)):
+    for field, scale in (
+        ('deviation', 1.0),
+        ('slope', 100.0),
+        ('half_width', 1.0),
+        ('unknown_history', 1.0),
+    ):
         expected = [getattr(correction, field) for correction in single]
         found = np.concatenate([getattr(batch, field) for batch in batches])
         np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-15 * scale, err_msg=field)
@@ -229,7 +234,7 @@ def test_span_of_the_angle_does_not_matter_where_orders_repeat_every_turn():
 def test_orders_of_the_output_are_unknown_until_referenced():
     made = calibration(hysteresis=(), compliance=None)
     corrector = Corrector(made)
-    deviation, slope, width = corrector.correct(at(7, 0.3), referenced=False)
+    deviation, slope, width, _ = corrector.correct(at(7, 0.3), referenced=False)
     rotor = 1e-3 * math.cos(0.3) - 4e-4 * math.sin(0.3) + 2e-4 * math.sin(0.6)
     assert deviation == pytest.approx(1e-5 + rotor, rel=1e-13)
     along_rotor = -1e-3 * math.sin(0.3) - 4e-4 * math.cos(0.3) + 4e-4 * math.cos(0.6)
@@ -254,8 +259,8 @@ def test_missing_velocity_is_that_of_the_travel(speed, inside):
     noise = np.tile([5e-3, -5e-3], 125)  # of the encoder: 10 rad/s from sample to sample
     motion = at_angles(*(angles + noise), velocity=None)
     widths = [correction.half_width for correction in correct_all(corrector, motion)]
-    assert widths[99] == 2e-3  # unknown up to here
-    assert set(widths[100:]) == {1e-4 if inside else 2e-3}
+    assert widths[199] == 2e-3  # unknown up to here: the first of two tenths may be incomplete
+    assert set(widths[200:]) == {1e-4 if inside else 2e-3}
 
 
 def test_correction_keeps_its_precision_after_many_turns():
@@ -268,9 +273,9 @@ def test_correction_keeps_its_precision_after_many_turns():
 
 def test_calibration_without_terms_adds_its_constant():
     made = calibration(orders=(), hysteresis=(), compliance=None)
-    assert Corrector(made).correct(at()) == (1e-5, 0.0, 1e-4)
+    assert Corrector(made).correct(at()) == (1e-5, 0.0, 1e-4, 0.0)
     batch = Corrector(made).correct_batch(*columns([at(), at()]))
-    np.testing.assert_array_equal(np.transpose(batch), 2 * [(1e-5, 0.0, 1e-4)])
+    np.testing.assert_array_equal(np.transpose(batch), 2 * [(1e-5, 0.0, 1e-4, 0.0)])
 
 
 @given(
@@ -294,3 +299,14 @@ def test_play_bounds_are_those_of_step_by_step_play(x, radii, known):
                 ]
             ).reshape(2, -1)
             np.testing.assert_array_equal([least[k], most[k]], ends)
+
+
+@given(motions(), st.integers(1, 39))
+def test_history_before_the_first_sample_changes_no_more_than_is_said(motion, start):
+    made = calibration()
+    whole = correct_all(Corrector(made), motion)[start:]
+    part = correct_all(Corrector(made), motion[start:])
+    for known, unknown in zip(whole, part, strict=True):
+        less = unknown.half_width - known.half_width
+        assert -1e-12 <= less <= unknown.unknown_history + 1e-12
+        assert abs(known.deviation - unknown.deviation) <= unknown.unknown_history + 1e-12

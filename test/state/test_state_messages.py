@@ -277,7 +277,9 @@ def test_name_that_is_no_joint_is_refused_for_every_gear(actuator, name):
             state_messages(gear, output_joint=name, frame_prefix='')
 
 
-CORRECTIONS = st.tuples(st.floats(-0.1, 0.1), st.floats(-2.0, 2.0), st.floats(0.0, 0.1))
+CORRECTIONS = st.tuples(
+    st.floats(-0.1, 0.1), st.floats(-2.0, 2.0), st.floats(0.0, 0.1), st.just(0.0)
+)
 CORRECTED = ('corrected_state', 'corrected_interval')
 
 
@@ -293,7 +295,7 @@ def test_corrected_state_is_the_output_state_and_the_correction(
     ideal, corrected, interval = (
         deserialize_message(data, JointState) for data in (ideal, *encoded.values())
     )
-    deviation, slope, half_width = correction
+    deviation, slope, half_width, _ = correction
     assert corrected.name == interval.name == ['left/output_shaft']
     assert corrected.header == interval.header == ideal.header
     assert list(corrected.position) == [ideal.position[0] + deviation]
@@ -308,7 +310,7 @@ def test_corrected_state_is_the_output_state_and_the_correction(
 @pytest.mark.parametrize('topics', [[], ['corrected_state'], ['corrected_interval']])
 def test_only_selected_topics_of_the_correction_are_encoded(actuator, topics):
     states = StateMessages(actuator, **NAMES)
-    correction = Correction(1e-3, 0.0, 1e-4)
+    correction = Correction(1e-3, 0.0, 1e-4, 0.0)
     assert [topic for topic, _ in states.encode_corrected(sample_at(1.0), correction, topics)] == (
         topics
     )
@@ -331,6 +333,6 @@ def test_corrections_of_many_samples_are_those_of_each(actuator, inputs):
         for data, correction in zip(messages, corrections, strict=True)
     ]
     samples = at_once.accept_batch(messages, [1] * len(messages))
-    columns = Correction(*np.reshape(corrections, (-1, 3)).T)
+    columns = Correction(*np.reshape(corrections, (-1, 4)).T)
     found = states.encode_corrections(samples, columns)
     assert found == {topic: [each[topic] for each in expected] for topic in CORRECTED}

@@ -1,0 +1,100 @@
+"""gearkin validate, compute and plot with a calibration, as a user runs them."""
+
+import json
+import shutil
+from fractions import Fraction
+
+import pytest
+from blocked_bags import BAGS
+from calibrations import calibration
+
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands.cli import main
+
+SERVO = BAGS / 'servo_point_to_point'
+CORRECTED = ('/corrected_state', '/corrected_interval')
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / 'mine.yaml'
+    path.write_text(calibration().text(), 'utf-8')
+    return path
+
+
+@pytest.fixture
+def computed(file, tmp_path):
+    out = tmp_path / 'computed'
+    assert main(['compute', str(SERVO), str(out), '--calibration', str(file)]) == 0
+    return out
+
+
+def topics_of(path, capsys, *options) -> dict[str, dict]:
+    """Validate a bag; gives what is reported of its topics, by name."""
+    assert main(['validate', str(path), '--json', *map(str, options)]) == 0
+    (bag,) = json.loads(capsys.readouterr().out)['bags']
+    return {topic['topic']: topic for topic in bag['topics']}
+
+
+def test_computed_bag_has_the_corrected_output_and_passes(computed, file, capsys):
+    with Bag(computed) as bag:
+        assert {bag.topics[topic] for topic in CORRECTED} == {'sensor_msgs/msg/JointState'}
+    capsys.readouterr()
+    topics = topics_of(computed, capsys, '--calibration', file)
+    assert {topic: topics[topic]['compared'] for topic in CORRECTED} == dict.fromkeys(
+        CORRECTED, 3000
+    )
+
+
+def test_calibration_beside_the_bag_is_used(computed, file, tmp_path, capsys):
+    shutil.copy(file, computed / 'calibration.yaml')
+    capsys.readouterr()
+    assert set(CORRECTED) < set(topics_of(computed, capsys))
+    assert set(CORRECTED) < set(topics_of(next(computed.glob('*.mcap')), capsys))
+    assert main(['validate', str(computed)]) == 0
+    named = f'the corrected output is compared with that of {computed / "calibration.yaml"}'
+    assert named in capsys.readouterr().out
+    again = tmp_path / 'again'
+    assert main(['compute', str(computed), str(again)]) == 0
+    with Bag(again) as bag, Bag(computed) as before:
+        assert list(bag.messages(CORRECTED)) == list(before.messages(CORRECTED))
+
+
+def test_calibration_that_the_config_names_is_used(computed, file, tmp_path, capsys):
+    config = tmp_path / 'actuator.yaml'
+    config.write_text(f'/**:\n  ros__parameters:\n    calibration: {file.name}\n', 'utf-8')
+    capsys.readouterr()
+    assert set(CORRECTED) < set(topics_of(computed, capsys, '--config', config))
+
+
+def test_without_a_calibration_the_rest_is_validated_and_the_report_says_so(computed, capsys):
+    capsys.readouterr()
+    assert main(['validate', str(computed)]) == 0
+    shown = capsys.readouterr().out
+    assert 'the corrected output is not judged: --calibration names its calibration' in shown
+    assert '/corrected_state position' not in shown
+
+
+@pytest.mark.parametrize('command', ['validate', 'compute', 'plot'])
+def test_calibration_of_another_gear_is_refused(command, tmp_path, capsys):
+    path, out = tmp_path / 'other.yaml', tmp_path / 'out.svg'
+    other = calibration(ring_teeth=61, satellite_teeth=58, gear_ratio=Fraction(-58, 3))
+    path.write_text(other.text(), 'utf-8')
+    words = {
+        'validate': ['validate', SERVO],
+        'compute': ['compute', SERVO, out],
+        'plot': ['plot', 'output', out, '--bag', SERVO],
+    }[command]
+    assert main([*map(str, words), '--calibration', str(path)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert f'{path}: calibrated for gear ratio -58/3' in line
+    assert not out.exists()
+
+
+def test_computed_topic_of_that_name_is_refused_as_input(file, tmp_path, capsys):
+    words = ['--rotor-topic', '/rotor_state', '--output-topic', '/corrected_state']
+    out = tmp_path / 'out'
+    options = ['--calibration', str(file)]
+    assert main(['compute', str(SERVO), str(out), *words, *options]) == 2
+    assert 'the names must differ' in capsys.readouterr().err
+    assert not out.exists()

@@ -1,0 +1,323 @@
+"""The corrected output in recordings: the node's passes, and what differs is found and named."""
+
+import math
+import struct
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+import replaying
+from calibrations import calibration
+from live import rotor_bytes
+from rosbags.rosbag2 import Reader
+
+from gear_kinematics.bag import BagWriter, Message
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.state import parameters
+from gear_kinematics.state.calibration_file import Order, Stop
+from gear_kinematics.state.correction import Corrector
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.validation.fleet import Task, validate_bag
+from gear_kinematics.validation.output_topics import Tolerances
+from gear_kinematics.validation.validator import Validator
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+BAGS = Path(__file__).resolve().parents[2] / 'bags'
+STATE, INTERVAL = '/corrected_state', '/corrected_interval'
+NAMES = {'corrected_state': STATE, 'corrected_interval': INTERVAL}
+IDEAL = ('output_state', 'body_poses')
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+MADE = replace(calibration(), spans=replace(calibration().spans, speed=(-40.0, 40.0)))
+WITHIN_TURN = replace(
+    MADE,
+    orders=(Order('rotor × 1', Fraction(1), 1e-3, 2e-4),),
+    covariance=tuple(tuple(float(k == n) for k in range(5)) for n in range(5)),
+)
+
+
+@pytest.fixture(scope='module')
+def config() -> dict:
+    return parameters.load(parameters.default_config())
+
+
+def read(name: str) -> list[Message]:
+    with Reader(BAGS / name) as reader:
+        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
+
+
+def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
+    """Add what the node publishes, one message after the other."""
+    names = {name: config[name] for name in ('output_joint', 'frame_prefix')}
+    states = StateMessages(Mechanism.from_mapping(config), **names)
+    rotor, corrector = RotorInput(InputSettings.from_mapping(config)), Corrector(made)
+    added = []
+    for topic, received, data in messages:
+        added.append((topic, received, data))
+        if topic != '/rotor_state':
+            continue
+        try:
+            sample = rotor.accept(data, lambda received=received: received)
+        except RejectedInputError:
+            continue
+        correction = corrector.correct(sample, stretch=rotor.stretch, referenced=referenced)
+        added += (
+            (NAMES[name], received, message)
+            for name, message in states.encode_corrected(sample, correction)
+        )
+    return added
+
+
+@pytest.fixture(scope='module')
+def servo(config) -> list[Message]:
+    return corrected(read('servo_point_to_point'), config)
+
+
+def validate(messages, config, made=MADE, **options):
+    validator = Validator(config, calibration=made, corrected=NAMES, **options)
+    validator.feed(messages)
+    return validator.report('bag')
+
+
+def of_topic(report, name):
+    (found,) = (topic for topic in report.topics if topic.topic == name)
+    return found
+
+
+def changed(messages, topic: str, number: int, **fields):
+    """Change numbers of a message of a topic, given by its number."""
+    found = [k for k, message in enumerate(messages) if message[0] == topic][number]
+    _, received, data = messages[found]
+    message = replaying.TYPESTORE.deserialize_cdr(data, JOINT_STATE)
+    for name, by in fields.items():
+        setattr(message, name, getattr(message, name) + by)
+    data = bytes(replaying.TYPESTORE.serialize_cdr(message, JOINT_STATE))
+    return [*messages[:found], (topic, received, data), *messages[found + 1 :]]
+
+
+@pytest.mark.parametrize(
+    ('name', 'samples'),
+    [('servo_point_to_point', 3000), ('constant_speed_3000rpm', 3000), ('driver_faults', 1265)],
+)
+def test_what_the_node_publishes_passes(config, name, samples):
+    report = validate(corrected(read(name), config), config)
+    assert report.verdict == Verdict.PASS, report.findings
+    for topic in (STATE, INTERVAL):
+        assert of_topic(report, topic).compared == samples
+    assert [field.name for field in of_topic(report, STATE).fields] == [
+        'position',
+        'velocity',
+        'effort',
+    ]
+    assert max(field.max_error for field in of_topic(report, STATE).fields) < 1e-11
+    (half_width,) = of_topic(report, INTERVAL).fields
+    assert half_width.max_error < 1e-12
+
+
+@pytest.mark.parametrize(
+    ('topic', 'fields', 'name'),
+    [
+        (STATE, {'position': 2e-9}, 'position'),
+        (STATE, {'velocity': -2e-9}, 'velocity'),
+        (STATE, {'effort': 2e-9}, 'effort'),
+        (INTERVAL, {'position': 2e-9}, 'half width'),
+        (INTERVAL, {'position': -2e-9}, 'half width'),
+        (STATE, {'position': math.nan}, 'position'),
+    ],
+)
+def test_changed_number_is_found_and_located(config, servo, topic, fields, name):
+    messages = changed(servo, topic, 2000, **fields)
+    report = validate(messages, config)
+    assert report.verdict == Verdict.FAIL
+    failed = [
+        (found.topic, field)
+        for found in report.topics
+        for field in found.fields
+        if not field.passed
+    ]
+    ((where, field),) = failed
+    assert (where, field.name) == (topic, name)
+    if not math.isnan(sum(fields.values())):
+        assert field.max_error == pytest.approx(2e-9, rel=1e-3)
+        stamps = [struct.unpack_from('<iI', m[2], 4) for m in messages if m[0] == topic]
+        assert divmod(field.worst_stamp, 10**9) == stamps[2000]
+
+
+def test_another_calibration_is_found(config, servo):
+    other = replace(MADE, constant=2e-5)
+    report = validate(servo, config, other)
+    assert report.verdict == Verdict.FAIL
+    assert of_topic(report, STATE).fields[0].max_error == pytest.approx(1e-5)
+    assert of_topic(report, INTERVAL).passed
+
+
+def test_missing_message_is_found(config, servo):
+    at = [k for k, message in enumerate(servo) if message[0] == STATE][2000]
+    report = validate(servo[:at] + servo[at + 1 :], config)
+    assert report.verdict == Verdict.FAIL
+    assert [topic.missing for topic in report.topics] == [0, 0, 1, 0]
+
+
+def test_only_the_topics_that_were_recorded_are_judged(config, servo):
+    messages = [message for message in servo if message[0] != INTERVAL]
+    report = validate(messages, config)
+    assert report.verdict == Verdict.PASS
+    assert [topic.topic for topic in report.topics][2:] == [STATE]
+
+
+def test_recording_in_which_nothing_was_corrected_is_judged_as_before(config):
+    report = validate(read('servo_point_to_point'), config)
+    assert report.verdict == Verdict.PASS
+    assert [topic.topic for topic in report.topics] == ['/output_state', '/body_poses']
+
+
+def test_calibration_that_was_set_later_leaves_the_rest_judged(config, servo):
+    set_at = servo[len(servo) // 2][1]
+    messages = [
+        message for message in servo if message[0] not in NAMES.values() or message[1] > set_at
+    ]
+    report = validate(messages, config)
+    assert report.verdict == Verdict.PASS, report.findings
+    assert 1000 < of_topic(report, STATE).compared < 2000
+    at = [k for k, message in enumerate(messages) if message[0] == '/output_state'][1400]
+    report = validate(messages[:at] + messages[at + 1 :], config)
+    assert [topic.missing for topic in report.topics] == [1, 0, 0, 0]
+
+
+@pytest.mark.parametrize('share', [0.2, 0.35, 0.5, 0.65, 0.8])
+def test_recording_may_begin_at_any_time(config, servo, share):
+    begin = [k for k, m in enumerate(servo) if m[0] == '/rotor_state'][round(share * 3000)]
+    report = validate(servo[begin:], config, allow_offset=True)
+    assert report.verdict == Verdict.PASS, report.findings
+    assert of_topic(report, STATE).compared >= (1.0 - share) * 3000 - 1
+
+
+def swings(config) -> list[Message]:
+    """Simulate a rotor that swings, and the ideal outputs."""
+    messages = []
+    for k in range(4000):
+        phase = math.tau * k / 1000
+        angle, velocity = 5.0 * math.sin(phase), 5.0 * math.tau * math.cos(phase)
+        stamp = 10**18 + k * 10**6
+        data = rotor_bytes(stamp, position=[angle], velocity=[velocity], effort=[0.1])
+        messages.append(('/rotor_state', stamp, data))
+    return answered(messages, config)
+
+
+def answered(rotor_states, config, **names) -> list[Message]:
+    """Add the ideal outputs."""
+    named = {name: config[name] for name in ('output_joint', 'frame_prefix')} | names
+    states = StateMessages(Mechanism.from_mapping(config), **named)
+    rotor, messages = RotorInput(InputSettings.from_mapping(config)), []
+    for message in rotor_states:
+        sample = rotor.accept(message[2], lambda: 0)
+        messages += [message]
+        messages += ((f'/{name}', message[1], data) for name, data in states.encode(sample, IDEAL))
+    return messages
+
+
+def test_lost_inputs_leave_the_history_unknown_and_not_wrong(config):
+    """At a turning point, where the play depends on the position that is missing."""
+    bag = corrected(swings(config), config)
+    stamps = {10**18 + k * 10**6 for k in range(1740, 1761)}
+    kept = [m for m in bag if not (m[0] == '/rotor_state' and m[1] in stamps)]
+    assert len(kept) == len(bag) - 21
+    report = validate(kept, config)
+    assert report.verdict == Verdict.PASS, report.findings
+    # And once the output has travelled far enough, all is judged again.
+    assert validate(changed(kept, STATE, 2500, velocity=1e-8), config).verdict == Verdict.FAIL
+
+
+def test_missing_velocities_are_those_of_the_travel_wherever_the_recording_begins(config):
+    def without_velocity(message):
+        topic, received, data = message
+        if topic == '/body_poses':
+            return message
+        state = replaying.TYPESTORE.deserialize_cdr(data, JOINT_STATE)
+        state.velocity = state.velocity[:0]
+        return topic, received, bytes(replaying.TYPESTORE.serialize_cdr(state, JOINT_STATE))
+
+    made = replace(MADE, spans=replace(MADE.spans, speed=(-0.5, 0.5)))
+    bag = [without_velocity(message) for message in read('servo_point_to_point')]
+    messages = corrected(bag, config, made)
+    widths = {
+        replaying.decode(data, JOINT_STATE).position[0] > 1.9e-3
+        for topic, _, data in messages[5000:]
+        if topic == INTERVAL
+    }
+    assert widths == {False, True}  # outside of the span, and inside
+    assert validate(messages, config, made).verdict == Verdict.PASS
+    assert validate(messages[5 * 1003 :], config, made).verdict == Verdict.PASS
+
+
+def test_prefix_is_that_of_the_other_outputs(config):
+    rotor_states = [m for m in read('servo_point_to_point') if m[0] == '/rotor_state']
+    messages = answered(rotor_states, config, frame_prefix='left_')
+    messages = corrected(messages, config | {'frame_prefix': 'left_'})
+    assert validate(messages, config).verdict == Verdict.PASS
+
+
+def test_zero_of_the_rotor_moves_the_orders_with_the_ideal_output(config):
+    rotor_states = [m for m in read('servo_point_to_point') if m[0] == '/rotor_state']
+    homed = config | {'rotor_zero': 0.5}
+    messages = corrected(answered(rotor_states, homed), homed)
+    assert validate(messages, config).verdict == Verdict.FAIL
+    report = validate(messages, config, allow_offset=True)
+    assert report.verdict == Verdict.PASS, report.findings
+
+
+def test_gear_of_which_only_the_ratio_is_known_is_corrected_too(config, servo):
+    messages = [message for message in servo if message[0] != '/body_poses']
+    other = config | {'gear_ratio': '-19'}
+    report = validate(messages, other)
+    assert report.verdict == Verdict.PASS, report.findings
+    assert [topic.compared for topic in report.topics] == [3000, 3000, 3000]
+    assert not validate(changed(messages, STATE, 2000, position=2e-9), other).passed
+
+
+def test_messages_without_a_calibration_are_named(config, servo):
+    report = validate(servo, config, None)
+    assert report.verdict == Verdict.PASS
+    assert len(report.topics) == 2
+    assert 'the corrected output is not judged: --calibration names its calibration' in (
+        report.findings
+    )
+
+
+def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
+    config = parameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
+    bag = read('single_turn_encoder')
+    report = validate(corrected(bag, config, WITHIN_TURN), config, WITHIN_TURN)
+    assert report.verdict == Verdict.PASS, report.findings
+    assert of_topic(report, STATE).compared == 2500
+    report = validate(corrected(bag, config, MADE, referenced=False), config, MADE)
+    assert report.verdict == Verdict.PASS
+    assert len(report.topics) == 2
+    assert any('when a single-turn encoder was referenced' in text for text in report.findings)
+
+
+def test_operator_that_never_settles_is_judged_within_its_reach(config):
+    # The recording travels less: 1e-5 · 100 rad are unknown, less what it does travel.
+    wide = replace(MADE, hysteresis=(Stop(4e-4, 0.6), Stop(100.0, 1e-5)))
+    messages = corrected(swings(config), config, wide)
+    assert validate(messages, config, wide).passed
+    assert validate(changed(messages, STATE, 2000, position=9.9e-4), config, wide).passed
+    assert not validate(changed(messages, STATE, 2000, position=1.01e-3), config, wide).passed
+    assert validate(changed(messages, INTERVAL, 2000, position=-9.9e-4), config, wide).passed
+    assert not validate(changed(messages, INTERVAL, 2000, position=1e-8), config, wide).passed
+
+
+def test_bag_with_the_topics_in_a_namespace_is_validated(config, servo, tmp_path):
+    path = tmp_path / 'bag'
+    kinds = dict.fromkeys(['/rotor_state', '/output_state', STATE, INTERVAL], JOINT_STATE)
+    with BagWriter(path) as writer:
+        for topic, kind in (kinds | {'/body_poses': 'geometry_msgs/msg/PoseArray'}).items():
+            writer.add_topic(f'/left{topic}', kind)
+        for topic, received, data in servo:
+            writer.write(f'/left{topic}', received, data)
+    task = Task(path, config, '', Tolerances(), calibration=MADE)
+    report = validate_bag(task)
+    assert report.verdict == Verdict.PASS, report
+    assert [topic.topic for topic in report.topics][2:] == [f'/left{STATE}', f'/left{INTERVAL}']
