@@ -50,4 +50,11 @@ def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = L
     try:
         return yaml.load(text, loader)  # noqa: S506, it is safe
     except (yaml.YAMLError, ValueError, RecursionError) as error:
-        raise error_type(f'{path}: not YAML: {" ".join(str(error).split())}') from error
+        raise error_type(f'{path}: not YAML: {_cause(error)}') from error
+
+
+def _cause(error: Exception) -> str:
+    """The cause without the lines of the file, which may be any file and a secret."""
+    if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark:
+        return f'{error.problem} in line {error.problem_mark.line + 1}'
+    return ' '.join(str(error).split())

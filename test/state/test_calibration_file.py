@@ -208,3 +208,12 @@ def test_calibration_by_ratio_fits_every_gear_of_that_ratio(file):
     assert Calibration.load(path, mechanism(40, 38)).gear_ratio == -19
     with pytest.raises(CalibrationError, match='calibrated for gear ratio -19, not for'):
         Calibration.load(path, mechanism(61, 58))
+
+
+def test_lines_of_another_file_are_not_shown(tmp_path):
+    path = tmp_path / 'passwords'
+    path.write_text('root:secret:0\n\tadmin: [hidden\n', 'utf-8')
+    with pytest.raises(CalibrationError, match=r'not YAML: .* in line 2$') as error:
+        Calibration.load(path)
+    assert 'secret' not in str(error.value)
+    assert 'hidden' not in str(error.value)
