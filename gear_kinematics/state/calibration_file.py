@@ -170,7 +170,14 @@ class Calibration:
     def text(self) -> str:
         """The content of the file."""
         plain = _plain({'schema': SCHEMA, 'units': UNITS} | asdict(self))
-        return yaml.dump(plain, Dumper=Dumper, sort_keys=False, allow_unicode=True, width=99)
+        return yaml.dump(
+            plain,
+            Dumper=Dumper,
+            sort_keys=False,
+            allow_unicode=True,
+            default_flow_style=None,  # a line for each order, stop and row of the covariance
+            width=math.inf,
+        )
 
     def check(self, mechanism: Mechanism | Fraction) -> None:
         """Check that this is a calibration of a gear.
