@@ -346,10 +346,10 @@ def test_manifest_agrees_with_metadata(manifest, metadata):
 
 @pytest.mark.filterwarnings('ignore::DeprecationWarning')  # in those tools
 def test_changelog_is_one_to_the_release_tools(manifest):
-    """REP 132; they put the version in the place of Forthcoming."""
+    """REP 132; they put the next version in the place of Forthcoming."""
     catkin_changelog = pytest.importorskip('catkin_pkg.changelog')
     version, text = manifest.findtext('version'), (ROOT / 'CHANGELOG.rst').read_text('utf-8')
-    heading = f'{version} (2026-01-01)'
+    heading = '999.0.0 (2026-01-01)'
     text = text.replace(f'Forthcoming\n{"-" * 11}\n', f'{heading}\n{"-" * len(heading)}\n')
     found = catkin_changelog.Changelog(manifest.findtext('name'))
     catkin_changelog.populate_changelog_from_rst(found, text)
