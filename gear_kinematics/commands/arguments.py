@@ -10,6 +10,8 @@ from gear_kinematics.commands.output import message_progress
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.csv_files import Columns
+from gear_kinematics.lost_motion.encoder_step import UNITS
 from gear_kinematics.state import parameters
 from gear_kinematics.state.trajectory import Trajectory, read_trajectory
 
@@ -68,6 +70,54 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
             f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
         )
     parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+
+
+_COLUMNS = {
+    'angle': 'under torque',
+    'torque': 'N·m',
+    'rotor': 'angle of the rotor',
+    'output': 'angle of the output encoder',
+    'time': 's, unless its name ends in a unit',
+}
+_CSV = {'.csv', '.tsv', '.txt'}
+
+
+def is_csv(path: Path) -> bool:
+    """Whether a recording is a CSV file, by its suffix."""
+    return path.suffix.lower() in _CSV
+
+
+def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
+    """Add the options for the columns of a CSV file; see `columns`."""
+    group = parser.add_argument_group('columns of a CSV', 'by default found by name')
+    for role in roles:
+        group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
+    group.add_argument(
+        '--angle-unit', choices=tuple(UNITS), help='of all angles (default: by name, or rad)'
+    )
+    what = 'angle and torque are' if 'angle' in roles else 'the torque is'
+    group.add_argument(
+        '--on-rotor', action='store_true', help=f'{what} of the rotor, not the output'
+    )
+
+
+def columns(options: argparse.Namespace) -> Columns:
+    """The columns given by the options."""
+    names = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
+    return Columns(**names, unit=options.angle_unit, on_rotor=options.on_rotor)
+
+
+def add_encoder_topics(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the topics of both encoders in a bag."""
+    topics = parser.add_argument_group('topics of a bag')
+    for topic in ('rotor', 'encoder'):
+        topics.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
+    topics.add_argument(
+        '--max-gap',
+        type=positive,
+        metavar='S',
+        help='between interpolated rotor states (default: transmission_error_max_gap)',
+    )
 
 
 def add_topics(parser: argparse.ArgumentParser) -> None:

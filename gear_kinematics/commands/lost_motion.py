@@ -11,7 +11,6 @@ from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.kinematics import Gear, gear_from_mapping
 from gear_kinematics.lost_motion import (
-    Columns,
     LostMotionReport,
     Recording,
     measure,
@@ -19,14 +18,12 @@ from gear_kinematics.lost_motion import (
     read_csv,
 )
 from gear_kinematics.lost_motion.document import document
-from gear_kinematics.lost_motion.encoder_step import UNITS
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
 from gear_kinematics.lost_motion.motion import MotionError
 from gear_kinematics.lost_motion.ramps import RampError
 from gear_kinematics.lost_motion.ratio import fit_ratio
 
 HELP = 'lost motion, stiffness, play and transmission error from recordings'
-_CSV = {'.csv', '.tsv', '.txt'}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,31 +45,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N·m',
         help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
     )
-    columns = parser.add_argument_group('columns of a CSV', 'by default found by name')
-    for role, text in (
-        ('angle', 'under torque'),
-        ('torque', 'N·m'),
-        ('rotor', 'angle of the rotor'),
-        ('output', 'angle of the output encoder'),
-    ):
-        columns.add_argument(f'--{role}-column', metavar='NAME', help=text)
-    columns.add_argument(
-        '--angle-unit', choices=tuple(UNITS), help='of all angles (default: by name, or rad)'
-    )
-    columns.add_argument(
-        '--on-rotor',
-        action='store_true',
-        help='angle and torque are of the rotor, not the output',
-    )
-    topics = parser.add_argument_group('topics of a bag')
-    for topic in ('rotor', 'encoder'):
-        topics.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
-    topics.add_argument(
-        '--max-gap',
-        type=arguments.positive,
-        metavar='S',
-        help='between interpolated rotor states (default: transmission_error_max_gap)',
-    )
+    arguments.add_columns(parser, 'angle', 'torque', 'rotor', 'output')
+    arguments.add_encoder_topics(parser)
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(
         '--counts',
@@ -146,19 +120,11 @@ def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
 def _read(
     path: Path, options: argparse.Namespace, config: Mapping[str, Any], gear: Gear
 ) -> Recording:
-    if path.suffix.lower() in _CSV:
-        columns = Columns(
-            options.angle_column,
-            options.torque_column,
-            options.rotor_column,
-            options.output_column,
-            options.angle_unit,
-            on_rotor=options.on_rotor,
-        )
+    if arguments.is_csv(path):
         return read_csv(
             path,
             gear,
-            columns,
+            arguments.columns(options),
             config['transmission_error_travel'],
             options.counts,
             options.output_counts,

@@ -3,10 +3,13 @@
 import csv
 import math
 import re
+from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,12 +29,19 @@ _NAMES: Mapping[str, tuple[str, ...]] = {
     'torque': ('torque', 'effort', 'measured_torque', 'motor_torque'),
     'rotor': ('rotor_position', 'rotor_angle', 'rotor'),
     'output': ('output_position', 'output_angle', OUTPUT_ENCODER, 'output'),
+    'time': ('time', 't', 'stamp', 'timestamp'),
 }
 """Names of columns, in upper or lower case, with or without a unit appended."""
-_SETS = (('angle', 'torque'), ('rotor', 'output'), ('rotor', 'output', 'torque'))
-"""Sets of columns that can be evaluated."""
+_ANGLES = ('angle', 'rotor', 'output')
+ENCODERS = (('rotor', 'output'), ('rotor', 'output', 'torque'), ('rotor', 'output', 'time'))
+"""Sets of columns of recordings with an encoder at rotor and output."""
+_SETS = (('angle', 'torque'), *ENCODERS[:2])
+"""Sets of columns that can be evaluated for lost motion."""
+_TIME_UNITS = {'s': 1.0, 'ms': 1e-3, 'us': 1e-6, 'µs': 1e-6, 'ns': 1e-9}
+"""s."""
 _UNIT = re.compile(rf'[\s_]*[\[(]?({"|".join(UNITS)})[\])]?$')
 _TORQUE_UNIT = re.compile(r'[\s_]*[\[(]?n[·*.]?m[\])]?$')
+_TIME_UNIT = re.compile(r'[\s_]*(?:_|[\[(])(s|ms|us|µs|ns)[\])]?$')
 _MOTEUS = {'position', 'torque', 'q_current'}
 """Registers of moteus motor controllers, which give positions in revolutions."""
 
@@ -48,6 +58,7 @@ class Columns:
     torque: str | None = None
     rotor: str | None = None
     output: str | None = None
+    time: str | None = None
     unit: str | None = None
     """Unit of all angles, a key of UNITS."""
     on_rotor: bool = False
@@ -75,13 +86,8 @@ def read_csv(
     Raises:
         CsvError: if it cannot be read, or has no such columns.
     """
-    header, rows = _table(path)
-    found = _find(path, header, columns)
-    values = _numbers(path, header, rows, list(found.values()))
-    unit, why = _unit(path, header, columns, found)
-    for column, role in enumerate(found):
-        if role != 'torque':
-            values[:, column] *= UNITS[unit]
+    table = read_columns(path, columns, _SETS)
+    found, values = table.found, table.values
     usable = np.all(np.abs(values) <= LARGEST_ANGLE, axis=1)  # NaN compares false
     data = dict(zip(found, values[usable].T, strict=True))
     left_out = int(np.count_nonzero(~usable))
@@ -98,7 +104,7 @@ def read_csv(
         loading = Loading.of_gear(data['torque'], motion)
     return Recording(
         path.name,
-        tuple(_described(found, unit, why, on_rotor=columns.on_rotor)),
+        tuple(_described(table, on_rotor=columns.on_rotor)),
         len(usable),
         loading,
         motion,
@@ -106,29 +112,60 @@ def read_csv(
     )
 
 
-def _table(path: Path) -> tuple[list[str], list[list[str]]]:
+class Table(NamedTuple):
+    """Columns of a file."""
+
+    found: Mapping[str, str]
+    """Their names, by what they hold."""
+    values: Array
+    """(rows, columns), rad, N·m and s; NaN in empty rows."""
+    unit: str
+    """Of the angles."""
+    why: str
+    """Where the unit comes from."""
+
+
+def read_columns(path: Path, columns: Columns, sets: Sequence[tuple[str, ...]]) -> Table:
+    """Read the columns of a CSV file that are needed, row by row.
+
+    Args:
+        path: of the file.
+        columns: names that are known.
+        sets: of columns that can be used together.
+
+    Raises:
+        CsvError: if it cannot be read, or has none of the sets.
+    """
     try:
-        text = path.read_text('utf-8-sig')
+        with path.open(encoding='utf-8-sig') as file:
+            first = file.readline()
+            rows = csv.reader(chain([first], file), delimiter=max(',;\t', key=first.count))
+            header = [name.strip() for name in next(rows)]
+            found = _find(path, header, columns, sets) if header else {}
+            values = _numbers(path, header, rows, list(found.values()))
     except (OSError, UnicodeDecodeError) as error:
         cause = getattr(error, 'strerror', None) or 'not text in UTF-8'
         raise CsvError(f'{path}: {cause}') from error
-    first = text.partition('\n')[0]
-    delimiter = max(',;\t', key=first.count)
-    try:
-        rows = list(csv.reader(text.splitlines(), delimiter=delimiter))
     except csv.Error as error:
         raise CsvError(f'{path}: {error}') from error
-    if len(rows) < 2:  # noqa: PLR2004, names and a sample
+    if not len(values):
         raise CsvError(f'{path}: no samples in it')
-    header = [name.strip() for name in rows[0]]
+    unit, why = _unit(path, header, columns, found)
+    for column, (role, name) in enumerate(found.items()):
+        if role in _ANGLES:
+            values[:, column] *= UNITS[unit]
+        elif role == 'time' and (suffix := _TIME_UNIT.search(name.lower())):
+            values[:, column] *= _TIME_UNITS[suffix[1]]
+    return Table(found, values, unit, why)
+
+
+def _find(
+    path: Path, header: Sequence[str], columns: Columns, sets: Sequence[tuple[str, ...]]
+) -> dict[str, str]:
+    """The columns to read, by their role."""
     twice = [name for name, count in Counter(header).items() if count > 1]
     if twice:
         raise CsvError(f'{path}: more than one column {twice[0]!r}')
-    return header, rows[1:]
-
-
-def _find(path: Path, header: Sequence[str], columns: Columns) -> dict[str, str]:
-    """The columns to read, by their role."""
     given = {role: name for role in _NAMES if (name := getattr(columns, role))}
     for name in given.values():
         if name not in header:
@@ -139,33 +176,43 @@ def _find(path: Path, header: Sequence[str], columns: Columns) -> dict[str, str]
         for role, names in _NAMES.items()
         if (name := given.get(role) or next((plain[n] for n in names if n in plain), None))
     }
-    together = [roles for roles in _SETS if found.keys() >= {*roles}]
+    together = [roles for roles in sets if found.keys() >= {*roles}]
     if not together:
+        pairs = dict.fromkeys(' and '.join(map(_with_article, roles[:2])) for roles in sets)
+        lacking = 'neither' if len(pairs) > 1 else 'not both'
+        options = ', '.join(f'--{role}-column' for role in _NAMES if any(role in s for s in sets))
         raise CsvError(
-            f'{path}: neither an angle and a torque nor a rotor and an output among the columns '
-            f'{", ".join(header)}; name them with --angle-column, --torque-column, '
-            '--rotor-column, --output-column'
+            f'{path}: {lacking} {" nor ".join(pairs)} among the columns '
+            f'{", ".join(header)}; name them with {options}'
         )
     return {role: found[role] for roles in together for role in roles}
 
 
+def _with_article(role: str) -> str:
+    return f'{"an" if role[0] in "aeiou" else "a"} {role}'
+
+
 def _plain(name: str) -> str:
     """A name without its unit, in the form of `_NAMES`."""
-    return _TORQUE_UNIT.sub('', _UNIT.sub('', name.lower())).strip().replace(' ', '_')
+    plain = name.lower()
+    for unit in (_UNIT, _TORQUE_UNIT, _TIME_UNIT):
+        plain = unit.sub('', plain)
+    return plain.strip().replace(' ', '_')
 
 
 def _numbers(
-    path: Path, header: Sequence[str], rows: Sequence[Sequence[str]], names: Sequence[str]
+    path: Path, header: Sequence[str], rows: Iterable[Sequence[str]], names: Sequence[str]
 ) -> Array:
     places = [header.index(name) for name in names]
-    values = np.empty((len(rows), len(names)))
-    for k, row in enumerate(rows):
+    values = array('d')  # a row takes no more memory than its numbers
+    nothing = len(places) * [math.nan]
+    for line, row in enumerate(rows, start=2):
         try:
-            values[k] = [float(row[place]) for place in places] if row else math.nan
+            values.extend([float(row[place]) for place in places] if row else nothing)
         except (ValueError, IndexError) as error:
             cause = 'too few columns' if isinstance(error, IndexError) else str(error)
-            raise CsvError(f'{path}, line {k + 2}: {cause}') from error
-    return values
+            raise CsvError(f'{path}, line {line}: {cause}') from error
+    return np.frombuffer(values).reshape(-1, max(1, len(places)))
 
 
 def _unit(
@@ -174,7 +221,7 @@ def _unit(
     """The unit of the angles, and where it comes from."""
     if columns.unit:
         return columns.unit, 'as given'
-    suffixes = [_UNIT.search(name.lower()) for role, name in found.items() if role != 'torque']
+    suffixes = [_UNIT.search(name.lower()) for role, name in found.items() if role in _ANGLES]
     units = sorted({suffix[1] for suffix in suffixes if suffix})
     if len(units) > 1:
         raise CsvError(f'{path}: all angles have to be in one unit, not in {" and ".join(units)}')
@@ -185,7 +232,8 @@ def _unit(
     return 'rad', 'assumed'
 
 
-def _described(found: Mapping[str, str], unit: str, why: str, *, on_rotor: bool) -> Iterable[str]:
+def _described(table: Table, *, on_rotor: bool) -> Iterable[str]:
+    found, _, unit, why = table
     side = 'of the rotor' if on_rotor else 'at the output'
     if 'angle' in found:
         yield f'angle {found["angle"]} {side}, {unit} ({why})'

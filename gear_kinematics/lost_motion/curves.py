@@ -71,7 +71,7 @@ def _transmission(report: LostMotionReport) -> Iterator[Panel]:
         rows = motion.direction == way
         if rows.any():
             error = (motion.error[rows] - found.offset) * ARC_MINUTES
-            angle, error = _envelope(np.degrees(motion.angle[rows]), error)
+            angle, error = envelope(np.degrees(motion.angle[rows]), error)
             lines.append(Line(name, pen, angle, error, points=way == 0))
     yield Panel(
         'transmission error less its mean',
@@ -80,7 +80,7 @@ def _transmission(report: LostMotionReport) -> Iterator[Panel]:
         tuple(lines),
     )
     spectra = [
-        Line(name, pen, *_peaks(spectrum.orders[1:], spectrum.amplitude[1:] * ARC_MINUTES))
+        Line(name, pen, *peaks(spectrum.orders[1:], spectrum.amplitude[1:] * ARC_MINUTES))
         for spectrum, (_, name, pen) in zip(found.spectra, ways[1:], strict=True)
         if spectrum
     ]
@@ -114,7 +114,7 @@ def _mark(orders: Sequence[Order]) -> tuple[float, str]:
     return float(orders[0].cycles), ', '.join(order.name for order in orders)
 
 
-def _envelope(x: Array, y: Array) -> tuple[Array, Array]:
+def envelope(x: Array, y: Array) -> tuple[Array, Array]:
     """Reduce points that are too dense for a plot to their minima and maxima."""
     order = np.argsort(x, kind='stable')
     x, y = x[order], y[order]
@@ -125,7 +125,7 @@ def _envelope(x: Array, y: Array) -> tuple[Array, Array]:
     return np.repeat(x[starts], 2), bounds.ravel()
 
 
-def _peaks(x: Array, y: Array) -> tuple[Array, Array]:
+def peaks(x: Array, y: Array) -> tuple[Array, Array]:
     """Reduce points that are too dense for a logarithmic axis to their maxima."""
     starts = np.unique(np.geomspace(1, len(x), _MOST).astype(np.intp) - 1)
     return x[starts], np.maximum.reduceat(y, starts)

@@ -73,7 +73,7 @@ def _recording(report: LostMotionReport) -> Mapping[str, Any]:
         'samples': recording.rows,
         'error': recording.error,
         'gear_ratio': str(report.gear_ratio),
-        'fitted_ratio': _plain(report.fitted),
+        'fitted_ratio': plain(report.fitted),
         'hysteresis': _without(report.hysteresis, 'ramps'),
         'transmission': _without(report.transmission, 'spectra'),
         'encoders': motion
@@ -90,14 +90,14 @@ def _recording(report: LostMotionReport) -> Mapping[str, Any]:
 
 
 def _without(content: Any, curves: str) -> Any:
-    plain = _plain(content)
-    if plain:
-        del plain[curves]
-    return plain
+    members = plain(content)
+    if members:
+        del members[curves]
+    return members
 
 
-def _plain(value: Any) -> Any:
-    """Convert dataclasses to mappings, without arrays."""
+def plain(value: Any) -> Any:
+    """Convert dataclasses to mappings for JSON, without arrays."""
     match value:
         case Estimate():
             return {
@@ -112,9 +112,9 @@ def _plain(value: Any) -> Any:
         case np.ndarray():
             return None
         case tuple():
-            return [_plain(item) for item in value]
+            return [plain(item) for item in value]
     if is_dataclass(value):
-        return {field.name: _plain(getattr(value, field.name)) for field in fields(value)}
+        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
     return value
 
 

@@ -120,7 +120,7 @@ def _other_ratio(motion: Motion, assumed: GearRatio) -> RatioEstimate | None:
         return None
     value = assumed / (1.0 + slope)
     standard = abs(value) * _ECCENTRICITY / student_t(_BLOCKS)
-    return _with_candidates(Estimate(value, standard, _BLOCKS, 1))
+    return with_candidates(Estimate(value, standard, _BLOCKS, 1))
 
 
 def _wrong(found: RatioEstimate, assumed: GearRatio) -> str:
@@ -178,7 +178,7 @@ def estimate_ratio(rotor: Array, output: Array) -> RatioEstimate:
     if not _FAR * student_t(freedom) * standard < abs(slope):
         raise MotionError('the output does not follow the rotor: no ratio fits')
     value = travel / slope
-    return _with_candidates(Estimate(value, abs(value / slope) * standard, freedom, _BLOCKS))
+    return with_candidates(Estimate(value, abs(value / slope) * standard, freedom, _BLOCKS))
 
 
 def _blocks(count: int) -> Iterator[slice]:
@@ -199,7 +199,8 @@ def _direction(rotor: Array) -> Array:
     return direction
 
 
-def _with_candidates(measured: Estimate) -> RatioEstimate:
+def with_candidates(measured: Estimate) -> RatioEstimate:
+    """Find the simple fraction and the tooth pairs that fit a measured ratio."""
     low, high = _interval(measured, _FAR)
     simplest = simplest_fraction(low, high)
     small, width = simplest.denominator, high - low

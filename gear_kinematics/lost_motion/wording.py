@@ -28,7 +28,7 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
     if recording.error:
         yield f'{recording.error}; the figures describe the data before it'
     if fitted := report.fitted:
-        yield from _ratio(fitted)
+        yield from ratio_remarks(fitted)
     if found := report.hysteresis:
         yield (
             'Output and rotor were both measured: the wind-up is that of the gear.'
@@ -55,7 +55,8 @@ def _remarks(report: LostMotionReport) -> Iterator[str]:
     )
 
 
-def _ratio(fitted: RatioEstimate) -> Iterator[str]:
+def ratio_remarks(fitted: RatioEstimate) -> Iterator[str]:
+    """Describe an estimated ratio, in sentences."""
     yield f'The gear ratio is estimated as {fitted.plus_minus}, and taken as {fitted.ratio}.'
     yield (
         f'{fitted.simplest} is the simplest fraction within twice that uncertainty; one as simple '

@@ -78,8 +78,8 @@ class Compliance:
 class Spans:
     """What the recordings covered, each from its least to its greatest value, of the output."""
 
-    speed: tuple[float, float]
-    """rad/s."""
+    speed: tuple[float, float] | None
+    """rad/s; None if time was not recorded."""
     torque: tuple[float, float] | None
     """N·m; None if no effort was recorded."""
     angle: tuple[float, float]

@@ -142,7 +142,8 @@ class Corrector:
             if math.isnan(velocity):
                 history += file.outside_half_width - file.half_width
         spans = file.spans
-        inside = spans.speed[0] <= velocity * self._per_rotor <= spans.speed[1]
+        speed = velocity * self._per_rotor
+        inside = spans.speed is None or spans.speed[0] <= speed <= spans.speed[1]
         if torque is not None and spans.torque is not None:
             inside = inside and spans.torque[0] <= torque <= spans.torque[1]
         if referenced and self._period > 1:
@@ -206,7 +207,9 @@ class Corrector:
         deviation += np.where(no_torque, 0.0, self._wind_up(torque))
         unknown += np.where(no_torque, self._unknown_wind_up, 0.0)
         speed = velocity * self._per_rotor
-        inside = (file.spans.speed[0] <= speed) & (speed <= file.spans.speed[1])
+        inside = np.ones(count, bool)
+        if file.spans.speed is not None:
+            inside &= (file.spans.speed[0] <= speed) & (speed <= file.spans.speed[1])
         if file.spans.torque is not None:
             covered = (file.spans.torque[0] <= torque) & (torque <= file.spans.torque[1])
             inside &= no_torque | covered

@@ -1,0 +1,64 @@
+"""`gearkin calibrate`: a calibration file from recordings of both encoders."""
+
+import argparse
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from gear_kinematics.calibration.document import document
+from gear_kinematics.calibration.fit import fit
+from gear_kinematics.calibration.reading import read_bag, read_csv
+from gear_kinematics.calibration.recording import Recording
+from gear_kinematics.calibration.to_file import check_target, to_calibration
+from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands.output import Reporter, message_progress, write_file
+from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+
+HELP = 'calibrate the real output angle, from recordings with an encoder at rotor and output'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
+    parser.add_argument(
+        '-o',
+        '--output',
+        default='calibration.yaml',
+        metavar='FILE',
+        help='the calibration (default: %(default)s); replaces nothing but a calibration',
+    )
+    arguments.add_config(parser)
+    arguments.add_ratio(parser)
+    arguments.add_columns(parser, 'rotor', 'output', 'torque', 'time')
+    arguments.add_encoder_topics(parser)
+    arguments.add_report_forms(parser)
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Calibrate with all recordings together."""
+    reporter = Reporter(options)
+    check_target(Path(options.output))
+    # All recordings are of one gear, so one configuration applies to all.
+    config = arguments.load_config(options, options.recordings[0])
+    if options.max_gap is not None:
+        config['transmission_error_max_gap'] = options.max_gap
+    gear = gear_from_mapping(config)
+    recordings = [_read(path, options, config) for path in options.recordings]
+    result = fit(
+        recordings,
+        gear.gear_ratio,
+        gear if isinstance(gear, Mechanism) and not options.fit_ratio else None,
+        fit_ratio=options.fit_ratio,
+    )
+    if result.helps:
+        write_file(options.output, to_calibration(result).text().encode())
+    reporter.write(document(result, options.output))
+    return ExitCode.DONE if result.helps else ExitCode.FAILED
+
+
+def _read(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) -> Recording:
+    if arguments.is_csv(path):
+        ratio = gear_from_mapping(config).gear_ratio
+        return read_csv(path, arguments.columns(options), float(ratio))
+    with message_progress(path.name) as report_progress:
+        return read_bag(path, config, options.rotor_topic, options.encoder_topic, report_progress)

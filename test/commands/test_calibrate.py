@@ -1,0 +1,146 @@
+"""gearkin calibrate as a user runs it."""
+
+import json
+
+import numpy as np
+import pytest
+from gear_recordings import Samples, write_csv, write_recording
+from lxml import html
+from simulated_gear import GearSet, gears, simulate, strokes
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.state.calibration_file import Calibration
+
+
+@pytest.fixture(scope='module')
+def simulated():
+    random = np.random.default_rng(2)
+    setting = GearSet(1)
+    return simulate(setting, gears(setting, random), strokes(25.0, random), random)
+
+
+@pytest.fixture(scope='module')
+def recording(simulated, tmp_path_factory):
+    return write_csv(
+        tmp_path_factory.mktemp('csv') / 'gear.csv',
+        time_ms=1e3 * simulated.time,
+        rotor_deg=np.degrees(simulated.rotor[:, 0]),
+        output_deg=np.degrees(simulated.measured[:, 0]),
+        torque=-19.0 * simulated.effort[:, 0],
+    )
+
+
+@pytest.fixture(scope='module')
+def bag(simulated, tmp_path_factory):
+    stamps = 10**18 + np.round(simulated.time * 1e9).astype(np.int64)
+    return write_recording(
+        tmp_path_factory.mktemp('bag') / 'gear',
+        Samples(stamps, simulated.rotor[:, 0], simulated.effort[:, 0]),
+        Samples(stamps, simulated.measured[:, 0]),
+    )
+
+
+@pytest.fixture(scope='module')
+def noise(tmp_path_factory):
+    random = np.random.default_rng(4)
+    ideal = strokes(20.0, random)
+    measured = ideal + 1e-3 * random.standard_normal(len(ideal))
+    path = tmp_path_factory.mktemp('csv') / 'noise.csv'
+    return write_csv(path, rotor=-19.0 * ideal, output=measured)
+
+
+def test_file_and_reports_are_written(recording, tmp_path, capsys):
+    target, page = tmp_path / 'calibration.yaml', tmp_path / 'report.html'
+    report = tmp_path / 'report.json'
+    forms = ['--json', str(report), '--html', str(page)]
+    assert main(['calibrate', str(recording), '-o', str(target), *forms]) == 0
+    calibration = Calibration.load(target)
+    (source,) = calibration.recordings
+    assert (source.name, source.samples) == ('gear.csv', 25_000)
+    assert source.duration == pytest.approx(24.999)
+    assert calibration.ring_teeth == 80
+    assert calibration.spans.speed[0] < -1.0 < 1.0 < calibration.spans.speed[1]
+    assert {'rotor × 1', 'teeth × 1'} <= {order.name for order in calibration.orders}
+    assert calibration.validation.rms_after < 0.2 * calibration.validation.rms_before
+    document = json.loads(report.read_text())
+    assert document['schema'] == 'gear_kinematics/calibration_report'
+    assert document['left_out']['rms_after'] == calibration.validation.rms_after
+    assert {term['name'] for term in document['terms']} >= {'rotor × 1', 'teeth × 1'}
+    told = capsys.readouterr().out
+    assert 'rotor × 1: likely cause: eccentricity or runout of the cams' in told
+    assert 'verdict: passed' in told
+    assert html.parse(page).xpath('//h1')
+
+
+def test_bag_and_csv_of_the_same_samples_agree(recording, bag, tmp_path):
+    targets = [tmp_path / 'csv.yaml', tmp_path / 'bag.yaml']
+    for source, target in zip((recording, bag), targets, strict=True):
+        assert main(['calibrate', str(source), '-o', str(target)]) == 0
+    csv, bag = map(Calibration.load, targets)
+    for order, other in zip(csv.orders, bag.orders, strict=True):
+        assert order.name == other.name
+        assert order.cos == pytest.approx(other.cos, abs=3e-5)
+        assert order.sin == pytest.approx(other.sin, abs=3e-5)
+    assert csv.half_width == pytest.approx(bag.half_width, rel=0.1)
+
+
+def test_nothing_is_written_that_does_not_help(noise, tmp_path, capsys):
+    target = tmp_path / 'calibration.yaml'
+    assert main(['calibrate', str(noise), '-o', str(target)]) == 1
+    assert not target.exists()
+    told = capsys.readouterr().out
+    assert 'Nothing is written' in told
+    assert 'Time was not recorded' in told
+
+
+def test_other_files_are_not_replaced(noise, tmp_path, capsys):
+    other = tmp_path / 'actuator.yaml'
+    other.write_text('ring_teeth: 80\n')
+    assert main(['calibrate', str(noise), '-o', str(other)]) == 2
+    assert other.read_text() == 'ring_teeth: 80\n'
+    assert 'something else than a calibration' in capsys.readouterr().err
+    assert main(['calibrate', str(noise), '-o', str(tmp_path)]) == 2
+
+
+def test_a_calibration_is_replaced(recording, tmp_path):
+    target = tmp_path / 'calibration.yaml'
+    target.write_text('schema: gear_kinematics/calibration/0\nbroken')
+    assert main(['calibrate', str(recording), '-o', str(target)]) == 0
+    assert Calibration.load(target).gear_ratio == -19
+
+
+def test_ratio_can_be_given_and_fitted(recording, tmp_path, capsys):
+    given, fitted = tmp_path / 'given.yaml', tmp_path / 'fitted.yaml'
+    assert main(['calibrate', str(recording), '-o', str(given), '--ratio', '-19']) == 0
+    assert main(['calibrate', str(recording), '-o', str(fitted), '--fit-ratio']) == 0
+    assert 'The gear ratio is estimated as -19.0' in capsys.readouterr().out
+    for target in (given, fitted):
+        calibration = Calibration.load(target)
+        assert (calibration.gear_ratio, calibration.ring_teeth) == (-19, None)
+
+
+def test_bag_without_an_output_encoder_is_refused_in_one_line(tmp_path, capsys):
+    stamps = 10**18 + np.arange(200) * 1_000_000
+    path = write_recording(tmp_path / 'bag', Samples(stamps, np.linspace(0.0, 9.0, 200)))
+    assert main(['calibrate', str(path), '-o', str(tmp_path / 'c.yaml')]) == 2
+    assert capsys.readouterr().err.endswith(
+        'no output_encoder; name its topic with --encoder-topic\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ('content', 'complaint'),
+    [
+        ('rotor,torque\n1,2\n', 'not both a rotor and an output'),
+        ('rotor,output\n1,nan\n', 'no usable rows'),
+        ('time,rotor,output\n2,1,1\n1,1,1\n', 'the time in time runs backwards'),
+        ('rotor,output\n1,1\n', '1 output angles are too few'),
+    ],
+)
+def test_unusable_files_get_one_line(content, complaint, tmp_path, capsys):
+    path = tmp_path / 'bad.csv'
+    path.write_text(content)
+    assert main(['calibrate', str(path), '-o', str(tmp_path / 'c.yaml')]) == 2
+    error = capsys.readouterr().err
+    assert complaint in error
+    assert error.count('\n') == 1

@@ -1,0 +1,96 @@
+"""Calibrations of simulated gears, judged on a recording that was not used."""
+
+from dataclasses import replace
+from fractions import Fraction
+from typing import NamedTuple
+
+import numpy as np
+from simulated_gear import GearSet, Simulated, gears, simulate, strokes
+
+from gear_kinematics.calibration.fit import fit
+from gear_kinematics.calibration.recording import Recording, RotorMotion
+from gear_kinematics.calibration.result import Fit
+from gear_kinematics.calibration.to_file import to_calibration
+from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.kinematics.rotor_turns import split_turns
+from gear_kinematics.state.correction import Corrector
+
+MECHANISM = Mechanism(80, 76, 0.0011, (Branch('a'),))
+IN_CLASS = {
+    'usual': GearSet(1),
+    'late stamps': GearSet(1, delay=2e-3),
+    'noisy': GearSet(1, white_noise=5e-4, coloured_noise=3e-4),
+    'coloured noise': GearSet(1, white_noise=5e-5, coloured_noise=3e-4, colour_time=0.5),
+    'drift': GearSet(1, drift=3e-4),
+    'coarse encoders': GearSet(1, rotor_counts=2**10, output_counts=2**13),
+    'no load': GearSet(1, load=0.0),
+    'play': GearSet(1, backlash=3e-3, wind_up=0.0),
+    'friction': GearSet(1, backlash=0.0, wind_up=1.5e-3, bristle_travel=2e-2),
+}
+"""Scenarios that the model can describe."""
+OUT_OF_CLASS = {
+    'creep': GearSet(1, creep=0.1, compliance=1e-4),
+    'friction grows with load': GearSet(1, load_friction=0.5, wind_up=1e-3, backlash=0.0),
+}
+"""Scenarios that it cannot describe."""
+
+
+class Judged(NamedTuple):
+    """What a calibration is worth on a recording that was not used."""
+
+    relative_rms: float
+    """Of the corrected error, over that of what no calibration can predict."""
+    coverage: float
+    """Share of samples within the interval."""
+    fit: Fit
+
+
+def recorded(simulated: Simulated, gear: int, *, separate: bool = True) -> Recording:
+    """What the encoders of one gear read."""
+    turns, angle = split_turns(np.ascontiguousarray(simulated.rotor[:, gear]))
+    stamp = np.round(simulated.time * 1e9).astype(np.int64)
+    effort = np.ascontiguousarray(simulated.effort[:, gear])
+    return Recording(
+        f'gear {gear}',
+        '',
+        RotorMotion(stamp, turns, angle, effort),
+        timed=True,
+        separate=separate,
+        before=np.arange(len(turns)),
+        share=np.zeros(len(turns)),
+        measured=np.ascontiguousarray(simulated.measured[:, gear]),
+    )
+
+
+def judge(result: Fit, simulated: Simulated, gear: int) -> Judged:
+    """Correct another recording as the node does."""
+    rotor = recorded(simulated, gear).rotor
+    count = len(rotor.stamp)
+    correction = Corrector(to_calibration(result)).correct_batch(
+        rotor.stamp, rotor.turns, rotor.angle, np.full(count, np.nan), rotor.effort,
+        np.zeros(count, int),
+    )  # fmt: skip
+    ideal = simulated.rotor[:, gear] / float(result.ratio)
+    error = simulated.undelayed[:, gear] - ideal - correction.deviation
+    error -= error.mean()
+    return Judged(
+        float(error.std() / simulated.noise[gear]),
+        float(np.mean(np.abs(error) <= correction.half_width)),
+        result,
+    )
+
+
+def judged(setting: GearSet, count: int, duration: float = 60.0, seed: int = 7) -> list[Judged]:
+    """Calibrate gears from one recording each, and judge each on another one."""
+    random = np.random.default_rng(seed)
+    setting = replace(setting, seeds=count)
+    gear = gears(setting, random)
+
+    def again() -> Simulated:
+        motion = np.stack([strokes(duration, random) for _ in range(count)], axis=1)
+        return simulate(setting, gear, motion, random)
+
+    first, second = again(), again()
+    return [
+        judge(fit([recorded(first, k)], Fraction(-19), MECHANISM), second, k) for k in range(count)
+    ]
