@@ -1,6 +1,6 @@
 """The panels of a report on a calibration, in arc minutes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
@@ -47,16 +47,29 @@ def panels(fit: Fit) -> Iterator[Panel]:
 
 
 def _error(fit: Fit, title: str, label: str, places: list[Array]) -> Panel:
-    at = np.concatenate(places)
-    lines = []
-    for name, pen in _WAYS:
-        error = np.concatenate([getattr(r, name) for r in fit.recordings]) * ARC_MINUTES
-        lines.append(Line(name, pen, *envelope(at, error)))
-    width = fit.half_width * ARC_MINUTES
+    errors = {
+        name: np.concatenate([getattr(r, name) for r in fit.recordings]) for name, _ in _WAYS
+    }
+    return error_panel(title, label, np.concatenate(places), errors, fit.half_width)
+
+
+def error_panel(
+    title: str, label: str, at: Array, errors: Mapping[str, Array], half_width: float
+) -> Panel:
+    """Draw the error before and after the correction, with the interval.
+
+    Args:
+        title: of the panel.
+        label: of the x axis.
+        at: (n,), places on the x axis.
+        errors: `before` and `after`, (n,), rad.
+        half_width: of the interval, rad.
+    """
+    width = half_width * ARC_MINUTES
     return Panel(
         title,
         label,
         'measured less computed [arcmin]',
-        tuple(lines),
+        tuple(Line(name, pen, *envelope(at, errors[name] * ARC_MINUTES)) for name, pen in _WAYS),
         levels=((-width, ''), (width, '')),
     )

@@ -5,14 +5,17 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics.calibration import judgement
 from gear_kinematics.calibration.document import document
 from gear_kinematics.calibration.fit import fit
+from gear_kinematics.calibration.judgement import judge
 from gear_kinematics.calibration.reading import read_bag, read_csv
 from gear_kinematics.calibration.recording import Recording
 from gear_kinematics.calibration.to_file import check_target, to_calibration
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, message_progress, write_file
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+from gear_kinematics.state.calibration_file import Calibration
 
 HELP = 'calibrate the real output angle, from recordings with an encoder at rotor and output'
 
@@ -27,6 +30,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='the calibration (default: %(default)s); replaces nothing but a calibration',
     )
+    parser.add_argument(
+        '--check',
+        type=Path,
+        metavar='FILE',
+        help='judge this calibration by recordings that it was not made from, and make none',
+    )
     arguments.add_config(parser)
     arguments.add_ratio(parser)
     arguments.add_columns(parser, 'rotor', 'output', 'torque', 'time')
@@ -35,13 +44,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Calibrate with all recordings together."""
-    reporter = Reporter(options)
-    check_target(Path(options.output))
+    """Calibrate with all recordings together, or judge a calibration by each."""
+    reporter = Reporter(options, len(options.recordings) if options.check else 1)
     # All recordings are of one gear, so one configuration applies to all.
     config = arguments.load_config(options, options.recordings[0])
     if options.max_gap is not None:
         config['transmission_error_max_gap'] = options.max_gap
+    if options.check:
+        return _check(options, config, reporter)
+    check_target(Path(options.output))
     gear = gear_from_mapping(config)
     recordings = [_read(path, options, config) for path in options.recordings]
     result = fit(
@@ -54,6 +65,14 @@ def run(options: argparse.Namespace) -> ExitCode:
         write_file(options.output, to_calibration(result).text().encode())
     reporter.write(document(result, options.output))
     return ExitCode.DONE if result.helps else ExitCode.FAILED
+
+
+def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Reporter) -> ExitCode:
+    calibration = Calibration.load(options.check)
+    config['gear_ratio'] = str(calibration.gear_ratio)
+    judgements = [judge(_read(path, options, config), calibration) for path in options.recordings]
+    reporter.write(judgement.document(options.check, judgements))
+    return ExitCode.DONE if all(one.holds for one in judgements) else ExitCode.FAILED
 
 
 def _read(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) -> Recording:

@@ -4,7 +4,7 @@ import math
 from array import array
 from collections import deque
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,12 +33,31 @@ class CalibrationFit(NamedTuple):
     fits: bool
     """Whether that many would be outside of a true interval by chance."""
 
+    @classmethod
+    def of(cls, error: Array, residual: Array, half_width: Array) -> Self:
+        """Judge samples, (n,) each, rad.
+
+        The zero of the encoder is not known, so the means are taken out.
+
+        Args:
+            error: measured minus ideal output angle.
+            residual: measured minus corrected output angle.
+            half_width: of the interval.
+        """
+        error, residual = (column - column[0] for column in (error, residual))  # rounds less
+        error, residual = error - error.mean(), residual - residual.mean()
+        variance = float(error @ error)
+        outside = float(np.mean(np.abs(residual) > half_width))
+        return cls(
+            len(error),
+            1.0 - float(residual @ residual) / variance if variance else None,
+            outside,
+            _is_likely(outside, independent_samples(residual)),
+        )
+
 
 class CalibratedOutput:
-    """Corrects the output sample by sample, and compares the correction with measured errors.
-
-    The zero of the encoder is not known, so the mean of the comparison is taken out.
-    """
+    """Corrects the output sample by sample, and compares the correction with measured errors."""
 
     def __init__(self, calibration: Calibration) -> None:
         self._corrector = Corrector(calibration)
@@ -93,17 +112,7 @@ class CalibratedOutput:
             return None
         begin = self._stamps[-1] - round(window * SECOND)
         self._drop(int(np.searchsorted(np.array(self._stamps), begin)))
-        error, residual, half_width = map(np.array, self._compared)
-        error, residual = (column - column[0] for column in (error, residual))  # rounds less
-        error, residual = error - error.mean(), residual - residual.mean()
-        variance = float(error @ error)
-        outside = float(np.mean(np.abs(residual) > half_width))
-        return CalibrationFit(
-            len(error),
-            1.0 - float(residual @ residual) / variance if variance else None,
-            outside,
-            _is_likely(outside, independent_samples(residual)),
-        )
+        return CalibrationFit.of(*map(np.array, self._compared))
 
     def _drop(self, count: int) -> None:
         for column in (self._stamps, *self._compared):

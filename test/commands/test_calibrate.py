@@ -1,6 +1,7 @@
 """gearkin calibrate as a user runs it."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -38,6 +39,27 @@ def bag(simulated, tmp_path_factory):
         Samples(stamps, simulated.rotor[:, 0], simulated.effort[:, 0]),
         Samples(stamps, simulated.measured[:, 0]),
     )
+
+
+@pytest.fixture(scope='module')
+def simulated_pair(tmp_path_factory):
+    """Give two recordings of a gear, and what of its error no calibration can predict, rad rms."""
+    random = np.random.default_rng(8)
+    setting = GearSet(1)
+    gear = gears(setting, random)
+    paths = []
+    for name in ('first', 'second'):
+        simulated = simulate(setting, gear, strokes(50.0, random), random)
+        paths.append(
+            write_csv(
+                tmp_path_factory.mktemp(name) / f'{name}.csv',
+                time=simulated.time,
+                rotor=simulated.rotor[:, 0],
+                output=simulated.measured[:, 0],
+                torque=-19.0 * simulated.effort[:, 0],
+            )
+        )
+    return paths, float(simulated.noise[0])
 
 
 @pytest.fixture(scope='module')
@@ -91,6 +113,30 @@ def test_nothing_is_written_that_does_not_help(noise, tmp_path, capsys):
     told = capsys.readouterr().out
     assert 'Nothing is written' in told
     assert 'Time was not recorded' in told
+
+
+def test_a_calibration_is_judged_by_another_recording(simulated_pair, tmp_path, capsys):
+    (first, second), noise = simulated_pair
+    target, report = tmp_path / 'calibration.yaml', tmp_path / 'report.json'
+    assert main(['calibrate', str(first), '-o', str(target)]) == 0
+    made, page = target.read_bytes(), tmp_path / 'page.html'
+    forms = ['--json', str(report), '--html', str(page), '--check', str(target)]
+    assert main(['calibrate', str(second), *forms]) == 0
+    (judged,) = json.loads(report.read_text())['recordings']
+    assert judged['holds']
+    assert judged['rms_after'] < 1.1 * noise < 0.3 * judged['rms_before']
+    assert 0.9 < judged['within_interval'] < 0.98
+    assert judged['uncalibrated'] < 0.5
+    assert 'of the measured angles are within the 95 % interval' in capsys.readouterr().out
+    assert html.parse(page).xpath('//h1')
+    assert target.read_bytes() == made
+    # The calibration of the same gear with its errors on the other side of the shaft.
+    other = tmp_path / 'other.yaml'
+    calibration = Calibration.load(target)
+    orders = tuple(replace(o, cos=-o.cos, sin=-o.sin) for o in calibration.orders)
+    other.write_text(replace(calibration, orders=orders).text(), 'utf-8')
+    assert main(['calibrate', str(second), '--check', str(other)]) == 1
+    assert 'verdict: failed' in capsys.readouterr().out
 
 
 def test_other_files_are_not_replaced(noise, tmp_path, capsys):

@@ -47,7 +47,7 @@ def follow(output, errors, speed=10.0, start=0) -> None:
         output.correct(sample(k, speed * k * PERIOD / SECOND), INPUT)
         if k > start:
             stamp = START + k * PERIOD - PERIOD // 2
-            output.compare([ErrorSample(stamp, float(error), 0, 0.0, 1)])
+            output.compare([ErrorSample(stamp, float(error), 0, 0.0, 1, 0.0)])
 
 
 def measured(rng, amplitude=AMPLITUDE, noise=1e-4 / 1.96, count=COUNT, speed=10.0):
@@ -133,10 +133,10 @@ def test_wide_interval_of_unknown_play_is_respected():
 def test_nothing_is_said_without_a_comparison():
     output = CalibratedOutput(MADE)
     assert output.fit(WINDOW) is None
-    output.compare([ErrorSample(START, 0.0, 0, 0.0, 1)])  # before any sample of the rotor
+    output.compare([ErrorSample(START, 0.0, 0, 0.0, 1, 0.0)])  # before any sample of the rotor
     output.correct(sample(1, 0.0), INPUT)
     output.correct(sample(2, 0.0), INPUT)
-    output.compare([ErrorSample(START, 0.0, 0, 0.0, 1)])
+    output.compare([ErrorSample(START, 0.0, 0, 0.0, 1, 0.0)])
     assert output.fit(WINDOW) is None
 
 
@@ -159,7 +159,7 @@ def test_same_stamp_is_corrected_and_compared_once():
     output = CalibratedOutput(MADE)
     for k in (0, 1, 1, 2):
         output.correct(sample(k, 10.0 * k), INPUT)
-    output.compare([ErrorSample(START + PERIOD, AMPLITUDE, 0, 0.0, 1)])
+    output.compare([ErrorSample(START + PERIOD, AMPLITUDE, 0, 0.0, 1, 0.0)])
     assert output.fit(WINDOW).samples == 1
 
 
