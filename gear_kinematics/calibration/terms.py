@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.wording import ARC_MINUTES
+from gear_kinematics.report.document import number
 
 Array = NDArray[Any]
 
@@ -67,7 +69,7 @@ class StopTerm:
     @property
     def name(self) -> str:
         """The name in reports."""
-        return f'hysteresis ±{self.radius:.3g} rad'
+        return f'hysteresis ±{number(self.radius * ARC_MINUTES)} arcmin'
 
 
 @dataclass(frozen=True, slots=True)

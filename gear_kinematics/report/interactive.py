@@ -62,7 +62,9 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
             plots['data'].append(_styled(trace, line))
             named.add(line.name)
         layout['shapes'] += [_mark(place, x, k) for place, _ in panel.marks]
-        layout['shapes'] += [_level(scale(y) if scale else y, text, k) for y, text in panel.levels]
+        layout['shapes'] += [
+            _level(scale(y) if scale else y, text, x, k) for y, text in panel.levels
+        ]
         layout['annotations'] += [
             _note(math.log10(place) if panel.scale == 'log' else place, text, x, k)
             for place, text in panel.marks
@@ -192,10 +194,10 @@ def _mark(place: float, x: str, k: int) -> dict[str, Any]:
     return _line(x, (place, place), f'y{k} domain', (0, 1), meta='faint')
 
 
-def _level(height: float, text: str, k: int) -> dict[str, Any]:
+def _level(height: float, text: str, x: str, k: int) -> dict[str, Any]:
     # Inside the plot, where there is always room.
     label = {'text': escape(text), 'textposition': 'start', 'yanchor': 'top'}
-    return _line('paper', (0, 1), f'y{k}', (height, height), label=label)
+    return _line(f'{x} domain', (0, 1), f'y{k}', (height, height), label=label)
 
 
 def _line(
