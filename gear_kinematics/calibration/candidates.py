@@ -6,7 +6,14 @@ from fractions import Fraction
 import numpy as np
 
 from gear_kinematics.calibration.model import Samples
-from gear_kinematics.calibration.terms import OrderTerm, StopTerm, TorqueTerm, known_orders
+from gear_kinematics.calibration.terms import (
+    OrderTerm,
+    StopTerm,
+    TorqueTerm,
+    known_orders,
+    output_cycles,
+    trend,
+)
 from gear_kinematics.kinematics import Mechanism
 
 _CYCLES = 2.0
@@ -31,17 +38,27 @@ def orders(
     mechanism: Mechanism | None,
     refused: dict[str, str],
 ) -> tuple[list[OrderTerm], list[OrderTerm]]:
-    """The known orders of which a recording contains two cycles, and the other ones."""
+    """The known orders of which a recording contains two cycles, and trends instead of others.
+
+    Those are of the output. Other ones repeat within the calibrated span of the output, so that
+    they would be used where they are not known.
+    """
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
-    kept, slow = [], []
+    output = output_cycles(ratio)
+    kept, trends = [], []
     for term in known_orders(ratio, mechanism):
         cycles = travel * float(term.cycles)
         if cycles >= _CYCLES:
             kept.append(term)
         else:
-            slow.append(term)
             refused[term.name] = f'the longest travel holds {cycles:.2g} cycles, less than 2'
-    return kept, slow
+            multiple = term.cycles / output
+            # Higher ones do not differ from the first over a part of its cycle, and a whole number
+            # of cycles in a turn of the rotor is not tied to the output's angle.
+            few = multiple.denominator == 1 and multiple <= 1.0 + travel * float(output)
+            if few and term.cycles.denominator > 1:
+                trends.append(trend(int(multiple), ratio))
+    return kept, trends
 
 
 def wind_up(samples: Sequence[Samples], refused: dict[str, str]) -> list[TorqueTerm]:

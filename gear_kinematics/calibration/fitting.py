@@ -64,7 +64,7 @@ class Fitting:
         if fit_ratio:
             travel = max(float(np.ptp(s.output)) for s in self._samples)
             self._slope = [RatioTerm(travel)]
-        self._orders, self._slow = candidates.orders(
+        self._orders, self._trends = candidates.orders(
             self._samples, ratio, mechanism, self._refused
         )
         self._wind_up = candidates.wind_up(self._samples, self._refused)
@@ -105,7 +105,7 @@ class Fitting:
     def select(self) -> None:
         """Select the terms."""
         if self._slope:
-            self._slow = []  # over less than two cycles, they leave hardly anything to the ratio
+            self._trends = []  # they would leave hardly anything to the ratio
         stops = self._choose_hysteresis()
         for _ in range(_ROUNDS):
             found = self._found_orders()
@@ -129,13 +129,21 @@ class Fitting:
 
     def _choose(self, stops: Sequence[StopTerm]) -> None:
         """Select among these stop operators and all other terms."""
-        terms: list[Term] = [*self._slope, *self._orders, *self._wind_up, *stops]
+        terms: list[Term] = [
+            *self._slope,
+            *self._trends,
+            *self._orders,
+            *self._wind_up,
+            *stops,
+        ]
         candidates.use_known(self._samples, stops)
         self._blocks = blocks_of([len(s.used) for s in self._samples])
-        self._model = Model(self._samples, terms, self._slow)
+        self._model = Model(self._samples, terms)
         self._products = block_products(self._model.columns, self._blocks)
         self._equations = self._normal_equations(self._nuisance(self._drift), self._own())
-        self._selection = Selection(self._equations, terms, range(len(self._slope)))
+        # Any output has errors that vary slowly with its angle, and limit where others hold.
+        fixed = range(len(self._slope) + bool(self._trends))
+        self._selection = Selection(self._equations, terms, fixed)
         self._selection.run(prune=not self._delayed)
         self._chosen = [terms[k] for k in self._selection.chosen]
         for k, other in self._selection.inseparable.items():
@@ -143,7 +151,7 @@ class Fitting:
 
     def _own(self) -> list[int]:
         """The own unknowns of a recording that its prediction may use while terms are selected."""
-        return [0, *([self._model.speed] if self._delayed else []), *self._model.slow]
+        return [0, *([self._model.speed] if self._delayed else [])]
 
     def _nuisance(self, drift: int) -> list[int]:
         """The own unknowns of a recording in the fit."""
@@ -168,7 +176,7 @@ class Fitting:
         found = self._spectrum([r.after for r in self._residuals(self._own())])
         if not found:
             return []
-        taken = {term.cycles for term in self._orders}
+        taken = {term.cycles for term in (*self._orders, *self._trends)}
         period = math.lcm(*(cycles.denominator for cycles in taken))
         orders = []
         output = output_cycles(self._ratio)
@@ -248,14 +256,18 @@ class Fitting:
         judging = self._normal_equations(self._nuisance(self._drift), [0])
         half_width = widening(judging.errors(columns)) * _half_width(after)
         nothing = selection.errors([])
+        fitted = self._fitted(coefficients, without)
+        outside = _half_width(before) + _half_width(deviation + constant)
+        # Beyond the calibrated angles, a trend can be as wrong as it becomes large.
+        outside += sum(f.amplitude.value for f in fitted if f.term in self._trends)
         return Fit(
             self._ratio,
             self._mechanism,
-            tuple(self._fitted(coefficients, without)),
+            tuple(fitted),
             (len(without) - 1) * np.cov(without.T, ddof=0).reshape(2 * (len(columns),)),
             constant,
             half_width,
-            max(half_width, _half_width(before) + _half_width(deviation + constant)),
+            max(half_width, outside),
             self._coverage(after),
             _rms(before),
             _rms(after),

@@ -61,27 +61,20 @@ class Samples:
 class Model:
     """The columns of terms, then those of the recordings' own unknowns, then the error."""
 
-    def __init__(
-        self, samples: Sequence[Samples], terms: Sequence[Term], slow: Sequence[OrderTerm]
-    ) -> None:
+    def __init__(self, samples: Sequence[Samples], terms: Sequence[Term]) -> None:
         """Collect the terms.
 
         Args:
             samples: of the recordings.
             terms: whose coefficients are common to all recordings.
-            slow: orders of which too few cycles were recorded to be terms, but which would make
-                coefficients of others wrong if they were left out.
         """
         self.samples = samples
         self.terms = terms
-        self._slow = slow
         self.common = sum(term.columns for term in terms)
         """Number of columns of the terms."""
         self.speed = 1
         """Place of the speed among the own unknowns, of which the zero is the first."""
-        self.slow = range(2, 2 + sum(term.columns for term in slow))
-        """Places of the slow orders among them."""
-        self.drift = range(self.slow.stop, self.slow.stop + MOST_DRIFT)
+        self.drift = range(2, 2 + MOST_DRIFT)
         """Places of cosines over time."""
 
     def columns(self, recording: int, rows: slice) -> Array:
@@ -92,12 +85,11 @@ class Model:
         return np.column_stack([*parts, self.own_values(samples, at), samples.error[at]])
 
     def own_values(self, samples: Samples, at: Array) -> Array:
-        """Columns of a recording's own unknowns: zero, speed, slow orders, drift."""
+        """Columns of a recording's own unknowns: zero, speed, drift."""
         speed = samples.speed[at] if samples.recording.separate else np.zeros(len(at))
-        slow = [term_values(term, samples, at) for term in self._slow]
         time = math.pi * samples.seconds[at] / samples.seconds[-1]
         waves = np.cos(np.multiply.outer(time, np.arange(1, MOST_DRIFT + 1)))
-        return np.column_stack([np.ones(len(at)), speed, *slow, waves])
+        return np.column_stack([np.ones(len(at)), speed, waves])
 
 
 def term_values(term: Term, samples: Samples, at: Array) -> Array:

@@ -151,5 +151,8 @@ class Selection:
         mine, theirs = self._places[k], self.columns(others)
         cross = total[np.ix_(theirs, mine)]
         explained = cross.T @ np.linalg.lstsq(total[np.ix_(theirs, theirs)], cross, rcond=1e-10)[0]
-        left = np.linalg.eigvalsh(total[np.ix_(mine, mine)] - explained)
-        return float(left[0] / max(np.trace(total[np.ix_(mine, mine)]) / len(mine), 1e-300))
+        own = total[np.ix_(mine, mine)]
+        left = np.linalg.eigvals(
+            np.linalg.pinv(own, rcond=1e-12, hermitian=True) @ (own - explained)
+        )
+        return float(left.real.min())

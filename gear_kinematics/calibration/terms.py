@@ -33,7 +33,7 @@ _CAUSES: Mapping[str, tuple[str, str]] = {
     'teeth': ('tooth spacing and tooth form', 'tooth form'),
 }
 """Likely causes of the first and of the higher multiples."""
-
+_TREND = 'not told by so short a travel; known over the calibrated output angles only'
 
 _LARGEST_DENOMINATOR = 2**16
 """Of an order; a ratio that was fitted may have a longer one."""
@@ -127,6 +127,11 @@ def known_orders(ratio: Fraction, mechanism: Mechanism | None) -> list[OrderTerm
             )
             found.setdefault(term.cycles, term)
     return list(found.values())
+
+
+def trend(multiple: int, ratio: Fraction) -> OrderTerm:
+    """An order of the output of which only a part was recorded: what it does, not what it is."""
+    return OrderTerm(f'trend × {multiple}', multiple * output_cycles(ratio), _TREND)
 
 
 def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> OrderTerm:

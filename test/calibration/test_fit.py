@@ -5,18 +5,21 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from calibrating import IN_CLASS, MECHANISM, OUT_OF_CLASS, judged, recorded
-from simulated_gear import GearSet, gears, simulate, strokes
+from calibrating import IN_CLASS, LIMITED, MECHANISM, OUT_OF_CLASS, halves, judge, judged, recorded
+from simulated_gear import GearSet, gears, simulate, strokes, wandering
 
 from gear_kinematics.calibration.fit import fit
 from gear_kinematics.calibration.recording import RecordingError
 from gear_kinematics.calibration.terms import OrderTerm, StopTerm
+from gear_kinematics.calibration.to_file import to_calibration
+from gear_kinematics.state.correction import Corrector
+from gear_kinematics.state.rotor_input import RotorSample
 
 RATIO = Fraction(-19)
 USUAL = GearSet(1)
 ERRORS = {
-    'rotor × 1': USUAL.rotor_error,
-    'rotor × 2': USUAL.rotor_error / 3,
+    'rotor × 1': USUAL.rotor_errors[0],
+    'rotor × 2': USUAL.rotor_errors[1],
     'output × 1': USUAL.output_error,
     'satellite × 1': USUAL.satellite_error,
     'teeth × 1': USUAL.tooth_error,
@@ -86,6 +89,42 @@ def test_orders_of_less_than_two_cycles_are_refused_by_name():
     assert not {'output × 1'} & {f.term.name for f in result.terms}
 
 
+@pytest.mark.parametrize('delay', [0.0, 2e-3])
+@pytest.mark.parametrize('fit_ratio', [False, True])
+@pytest.mark.parametrize('ratio', [-50, 100])
+def test_travel_of_less_than_a_turn_is_corrected_over_its_span(ratio, fit_ratio, delay):
+    setting = replace(LIMITED, ratio=float(ratio), delay=delay)
+    random = np.random.default_rng(1)
+    motion = wandering(60.0, random)
+    first, second = halves(simulate(setting, gears(setting, random), motion, random))
+    # The second half reaches farther, where the interval has to be wider.
+    assert np.ptp(second.rotor) > 1.3 * np.ptp(first.rotor)
+    result = fit([recorded(first, 0, separate=False)], Fraction(ratio), fit_ratio=fit_ratio)
+    before = second.measured[:, 0] - second.rotor[:, 0] / ratio
+    after = judge(result, second._replace(undelayed=second.measured), 0)
+    # Every joint is to be improved by 2.5 at the least.
+    assert after.relative_rms * second.noise[0] < before.std() / 2.5
+    assert 0.9 <= after.coverage <= 0.99
+
+
+def test_trend_is_not_trusted_beyond_the_calibrated_angles():
+    random = np.random.default_rng(1)
+    simulated = simulate(LIMITED, gears(LIMITED, random), wandering(30.0, random), random)
+    result = fit([recorded(simulated, 0)], RATIO)
+    (trend,) = (f for f in result.terms if f.term.name == 'trend × 1')
+    # The output's error once per turn is not known to be one.
+    assert 'only' in trend.term.cause
+    assert 'output × 1' in result.refused
+    assert result.outside_half_width > result.half_width + trend.amplitude.value
+    corrector = Corrector(to_calibration(result))
+    # Away and back, so that the hysteresis is known; 1.2 rad are 3.6 turns of the rotor.
+    _, beyond, within = (
+        corrector.correct(RotorSample(k, (turns, 0.0), 0.0, 0.0)).half_width
+        for k, turns in enumerate((0, 6, 0))
+    )
+    assert (beyond, within) == (result.outside_half_width, result.half_width)
+
+
 def test_late_stamps_are_told_from_play():
     simulated, _ = one_gear(replace(USUAL, delay=2e-3), duration=60.0)
     recording = recorded(simulated, 0)
@@ -110,7 +149,7 @@ def test_the_same_gear_has_its_own_zero_in_each_recording():
 
 def test_nothing_is_corrected_where_there_is_only_noise():
     perfect = replace(
-        USUAL, rotor_error=0.0, output_error=0.0, satellite_error=0.0, tooth_error=0.0,
+        USUAL, rotor_errors=(0.0, 0.0), output_error=0.0, satellite_error=0.0, tooth_error=0.0,
         backlash=0.0, wind_up=0.0, load=0.0,
     )  # fmt: skip
     simulated, _ = one_gear(perfect)

@@ -15,6 +15,11 @@ from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.kinematics.rotor_turns import split_turns
 from gear_kinematics.state.correction import Corrector
 
+LIMITED = GearSet(
+    1, rotor_errors=(2e-3, 1e-3, 5e-4), output_error=2.5e-3, satellite_error=0.0, tooth_error=0.0,
+    backlash=1.5e-3, load=0.0, white_noise=2e-4, coloured_noise=2e-4,
+)  # fmt: skip
+"""A geared joint that turns less than once."""
 MECHANISM = Mechanism(80, 76, 0.0011, (Branch('a'),))
 IN_CLASS = {
     'usual': GearSet(1),
@@ -60,6 +65,18 @@ def recorded(simulated: Simulated, gear: int, *, separate: bool = True) -> Recor
         share=np.zeros(len(turns)),
         measured=np.ascontiguousarray(simulated.measured[:, gear]),
     )
+
+
+def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:
+    """Divide a recording in the middle of its time."""
+    half = len(simulated.time) // 2
+    first, second = (
+        simulated._replace(
+            **{name: getattr(simulated, name)[part] for name in Simulated._fields[:-1]}
+        )
+        for part in (slice(half), slice(half, None))
+    )
+    return first, second._replace(time=second.time - second.time[0])
 
 
 def judge(result: Fit, simulated: Simulated, gear: int) -> Judged:

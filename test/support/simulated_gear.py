@@ -7,6 +7,7 @@ equation over the travel. All gears of a set step together: arrays are (time, ge
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +21,8 @@ class GearSet:
     seeds: int
     ratio: float = -19.0
     ring_teeth: int = 80
-    rotor_error: float = 1e-3
-    """Amplitude of the first order of the rotor; its second has a third of it."""
+    rotor_errors: tuple[float, ...] = (1e-3, 1e-3 / 3.0)
+    """Amplitudes of the first, second ... order of the rotor."""
     output_error: float = 1.5e-3
     satellite_error: float = 5e-4
     tooth_error: float = 2e-4
@@ -52,8 +53,7 @@ class GearSet:
     effort_noise: float = 0.02
 
 
-@dataclass(frozen=True)
-class Simulated:
+class Simulated(NamedTuple):
     """Recordings of a set of gears, (time, gears) unless said otherwise."""
 
     time: np.ndarray
@@ -92,10 +92,31 @@ def strokes(
     return np.cumsum(velocity[:count]) / RATE
 
 
+def wandering(
+    duration: float, random: np.random.Generator, reach: float = 1.2, pace: float = 1.0
+) -> np.ndarray:
+    """Smooth random motion of the output that reaches both ends, (time,), rad.
+
+    Args:
+        duration: s.
+        random: source.
+        reach: rad, from the middle.
+        pace: s, below which nothing changes much.
+    """
+    count = int(duration * RATE)
+    frequencies = np.fft.rfftfreq(count, 1.0 / RATE)
+    spectrum = random.standard_normal(len(frequencies)) + 1j * random.standard_normal(
+        len(frequencies)
+    )
+    motion = np.fft.irfft(spectrum * np.exp(-((frequencies * np.pi * pace) ** 2)), count)
+    return reach * motion / np.abs(motion).max()
+
+
 def gears(setting: GearSet, random: np.random.Generator) -> dict[str, np.ndarray]:
     """The random properties of each gear: amplitudes and phases."""
-    amplitude = random.uniform(0.5, 1.5, (5, setting.seeds))
-    phase = random.uniform(-np.pi, np.pi, (5, setting.seeds))
+    count = 3 + len(setting.rotor_errors)
+    amplitude = random.uniform(0.5, 1.5, (count, setting.seeds))
+    phase = random.uniform(-np.pi, np.pi, (count, setting.seeds))
     return {'amplitude': amplitude, 'phase': phase}
 
 
@@ -115,8 +136,7 @@ def simulate(
     cam = abs(s.ratio)
     amplitude, phase = gear['amplitude'], gear['phase']
     errors = (
-        (s.rotor_error, 1.0),
-        (s.rotor_error / 3.0, 2.0),
+        *((size, multiple) for multiple, size in enumerate(s.rotor_errors, 1)),
         (s.output_error, 1.0 / cam),
         (s.satellite_error, 1.0 + 1.0 / cam),
         (s.tooth_error, float(s.ring_teeth)),
