@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test' / 'support'))
 
-from calibrating import IN_CLASS, OUT_OF_CLASS, judged
+from calibrating import IN_CLASS, MOTIONS, OUT_OF_CLASS, judged
 
 
 def main() -> None:
@@ -18,6 +18,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--gears', type=int, default=200, help='of each scenario')
     parser.add_argument('--duration', type=float, default=60.0, help='of a recording, s')
+    parser.add_argument('--motion', choices=MOTIONS, default='fast')
     parser.add_argument('--scenario', nargs='+', choices=[*IN_CLASS, *OUT_OF_CLASS])
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
@@ -26,7 +27,7 @@ def main() -> None:
         if options.scenario and name not in options.scenario:
             continue
         start = time.process_time()
-        found = judged(setting, options.gears, options.duration)
+        found = judged(setting, options.gears, options.duration, options.motion)
         rms = [one.relative_rms for one in found]
         results[name] = {
             'relative_rms': float(np.mean(rms)),

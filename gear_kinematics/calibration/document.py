@@ -71,7 +71,7 @@ def remarks(fit: Fit) -> Iterator[str]:
         yield f'{name} is not fitted: {cause}.'
     for r in fit.recordings:
         delay = r.delay
-        if delay and abs(delay.value) > (delay.uncertainty or 0.0):
+        if r.delayed:
             yield (
                 f'{r.samples.recording.name}: the stamps of the output are later than its angles '
                 f'by {plus_minus(delay, _MILLI)} ms, or the gear winds up in proportion to its '
@@ -80,7 +80,7 @@ def remarks(fit: Fit) -> Iterator[str]:
         elif delay is None and r.samples.recording.separate:
             yield (
                 f'{r.samples.recording.name}: a delay of the stamps of the output is not told '
-                'from hysteresis; this takes several strokes at different speeds.'
+                'from hysteresis; this takes three strokes or more.'
             )
     if not all(r.samples.recording.timed for r in fit.recordings):
         yield 'Time was not recorded: the interval does not depend on the speed.'

@@ -7,6 +7,7 @@ which the interval comes as well; the coefficients' uncertainties are those of t
 the same blocks (B. Efron, C. Stein, Annals of Statistics 9 (1981) 586). Neither needs white noise.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -15,7 +16,7 @@ import numpy as np
 
 from gear_kinematics.calibration.fitting import Fitting
 from gear_kinematics.calibration.recording import Recording, thinned
-from gear_kinematics.calibration.result import Fit
+from gear_kinematics.calibration.result import Fit, is_certain
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.ratio import RatioEstimate, estimate_ratio, with_candidates
@@ -23,6 +24,8 @@ from gear_kinematics.state.uncertainty import Estimate
 
 _SHIFTS = 4
 """Corrections of the delays, each for what the ones before left."""
+_CLOSE = 0.2
+"""Share of its uncertainty to which a delay is corrected."""
 
 
 def fit(
@@ -57,10 +60,17 @@ def fit(
     fitting = Fitting(recordings, ratio, mechanism)
     fitting.select()
     result = fitting.result()
-    residuals = zip(result.recordings, delays, strict=True)
+    residuals = tuple(
+        replace(r, delay=delay) for r, delay in zip(result.recordings, delays, strict=True)
+    )
+    # What the delays leave is the same in all blocks, so that leaving some out does not show it.
+    left = math.sqrt(np.mean([r.delay_half_width**2 for r in residuals]))
+    half_width = math.hypot(result.half_width, left)
     return replace(
         result,
-        recordings=tuple(replace(r, delay=delay) for r, delay in residuals),
+        half_width=half_width,
+        outside_half_width=max(half_width, result.outside_half_width),
+        recordings=residuals,
         fitted_ratio=estimate,
     )
 
@@ -89,16 +99,15 @@ def _undelayed(
     shifted = list(recordings)
     for _ in range(_SHIFTS):
         left = Fitting(shifted, ratio, mechanism, fit_ratio=fit_ratio).delays()
-        certain = [d is not None and abs(d.value) > (d.uncertainty or 0.0) for d in left]
         delays = [
             d and replace(d, value=d.value + shift) for d, shift in zip(left, shifts, strict=True)
         ]
-        if not any(certain):
+        before, shifts = shifts, [d.value if d and is_certain(d) else 0.0 for d in delays]
+        if all(
+            abs(now - shift) <= _CLOSE * ((d and d.uncertainty) or 0.0)
+            for now, shift, d in zip(shifts, before, delays, strict=True)
+        ):
             break
-        shifts = [
-            d.value if d and sure else shift
-            for d, sure, shift in zip(delays, certain, shifts, strict=True)
-        ]
         shifted = [
             recording.earlier(shift) if shift else recording
             for recording, shift in zip(recordings, shifts, strict=True)

@@ -1,8 +1,11 @@
 """What the calibration of a gear consists of."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+
+import numpy as np
 
 from gear_kinematics.calibration.model import Samples
 from gear_kinematics.calibration.normal import Array
@@ -11,6 +14,9 @@ from gear_kinematics.calibration.terms import Term
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.lost_motion.ratio import RatioEstimate
 from gear_kinematics.state.uncertainty import Estimate
+
+_CERTAIN = 2.0
+"""Expanded uncertainties from which on a delay is no coincidence; less is more likely none."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -36,6 +42,23 @@ class Residuals:
     """rad: what the encoder's zero adds."""
     delay: Estimate | None = None
     """s: by how much the output's stamps are later than its angles; None if not separable."""
+
+    @property
+    def delayed(self) -> bool:
+        """Whether a delay was taken out."""
+        return is_certain(self.delay)
+
+    @property
+    def delay_half_width(self) -> float:
+        """What the uncertainty of a delay that was taken out adds to the interval, rad."""
+        if self.delay is None or not self.delayed:
+            return 0.0
+        return (self.delay.uncertainty or 0.0) * math.sqrt(np.mean(np.square(self.samples.speed)))
+
+
+def is_certain(delay: Estimate | None) -> bool:
+    """Whether a delay is large enough to be taken out."""
+    return delay is not None and abs(delay.value) > _CERTAIN * (delay.uncertainty or 0.0)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -5,8 +5,18 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from calibrating import IN_CLASS, LIMITED, MECHANISM, OUT_OF_CLASS, halves, judge, judged, recorded
-from simulated_gear import GearSet, gears, simulate, strokes, wandering
+from calibrating import (
+    IN_CLASS,
+    LIMITED,
+    MECHANISM,
+    MOTIONS,
+    OUT_OF_CLASS,
+    halves,
+    judge,
+    judged,
+    recorded,
+)
+from simulated_gear import GearSet, gears, simulate, slow_strokes, strokes, wandering
 
 from gear_kinematics.calibration.fit import fit
 from gear_kinematics.calibration.recording import RecordingError
@@ -136,6 +146,27 @@ def test_late_stamps_are_told_from_play():
     assert fit([recorded(simulated, 0, separate=False)], RATIO).recordings[0].delay is None
 
 
+def test_few_slow_strokes_tell_a_delay():
+    setting, random = replace(USUAL, delay=2e-3), np.random.default_rng(1)
+    motion = slow_strokes(60.0, random)
+    moving = np.sign(np.diff(motion))
+    moving = moving[moving != 0.0]
+    assert np.count_nonzero(np.diff(moving)) < 5
+    simulated = simulate(setting, gears(setting, random), motion, random)
+    (r,) = fit([recorded(simulated, 0)], RATIO, MECHANISM).recordings
+    assert r.delayed
+    assert abs(r.delay.value - 2e-3) <= 2.0 * r.delay.uncertainty
+    assert 0.0 < r.delay_half_width < 4e-4  # 0.2 ms at 2 rad/s
+
+
+@pytest.mark.parametrize('delay', [0.0, 1e-4])
+def test_a_delay_that_is_not_certain_is_left_in(delay):
+    simulated, _ = one_gear(replace(IN_CLASS['coloured noise'], delay=delay))
+    (r,) = fit([recorded(simulated, 0)], RATIO, MECHANISM).recordings
+    assert not r.delayed
+    assert r.delay_half_width == 0.0
+
+
 def test_the_same_gear_has_its_own_zero_in_each_recording():
     random = np.random.default_rng(5)
     gear = gears(USUAL, random)
@@ -181,9 +212,10 @@ def test_standstill_and_short_recordings_are_refused():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize('motion', MOTIONS)
 @pytest.mark.parametrize('name', IN_CLASS)
-def test_interval_and_correction_hold_on_another_recording(name):
-    found = judged(IN_CLASS[name], 8)
+def test_interval_and_correction_hold_on_another_recording(name, motion):
+    found = judged(IN_CLASS[name], 8, motion=motion)
     assert np.mean([one.relative_rms for one in found]) <= 1.1
     # Of 200 gears, it is 0.93 to 0.97 (benchmark/calibration.py); 8 scatter more.
     assert 0.91 <= np.mean([one.coverage for one in found]) <= 0.99

@@ -5,7 +5,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
-from simulated_gear import GearSet, Simulated, gears, simulate, strokes
+from simulated_gear import GearSet, Simulated, gears, simulate, slow_strokes, strokes
 
 from gear_kinematics.calibration.fit import fit
 from gear_kinematics.calibration.recording import Recording, RotorMotion
@@ -38,6 +38,7 @@ OUT_OF_CLASS = {
     'friction grows with load': GearSet(1, load_friction=0.5, wind_up=1e-3, backlash=0.0),
 }
 """Scenarios that it cannot describe."""
+MOTIONS = {'fast': strokes, 'slow': slow_strokes}
 
 
 class Judged(NamedTuple):
@@ -97,15 +98,17 @@ def judge(result: Fit, simulated: Simulated, gear: int) -> Judged:
     )
 
 
-def judged(setting: GearSet, count: int, duration: float = 60.0, seed: int = 7) -> list[Judged]:
+def judged(
+    setting: GearSet, count: int, duration: float = 60.0, motion: str = 'fast', seed: int = 7
+) -> list[Judged]:
     """Calibrate gears from one recording each, and judge each on another one."""
     random = np.random.default_rng(seed)
     setting = replace(setting, seeds=count)
     gear = gears(setting, random)
 
     def again() -> Simulated:
-        motion = np.stack([strokes(duration, random) for _ in range(count)], axis=1)
-        return simulate(setting, gear, motion, random)
+        motions = [MOTIONS[motion](duration, random) for _ in range(count)]
+        return simulate(setting, gear, np.stack(motions, axis=1), random)
 
     first, second = again(), again()
     return [

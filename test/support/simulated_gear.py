@@ -78,8 +78,21 @@ def strokes(
 
     The first ones go from end to end, the others end anywhere.
     """
+    return _strokes(duration, random, reach, speed, [-0.95 * reach, 0.95 * reach])
+
+
+def slow_strokes(
+    duration: float, random: np.random.Generator, reach: float = 14.0, speed: float = 2.0
+) -> np.ndarray:
+    """The same with strokes of which all end anywhere: few in a minute."""
+    return _strokes(duration, random, reach, speed, [])
+
+
+def _strokes(
+    duration: float, random: np.random.Generator, reach: float, speed: float, ends: list[float]
+) -> np.ndarray:
     count = int(duration * RATE)
-    velocity, position, ends = [], 0.0, [-0.95 * reach, 0.95 * reach]
+    velocity, position = [], 0.0
     while len(velocity) < count:
         goal = ends.pop() if ends else random.uniform(-reach, reach)
         top = random.uniform(0.2, 1.0) * speed
