@@ -43,15 +43,31 @@ def is_as_good(errors: Array, best: Array) -> bool:
     return bool(difference.mean() <= standard_error(difference).value)
 
 
-def widening(errors: Array) -> float:
+def widening(errors: Array, means: Sequence[Array]) -> float:
     """Factor by which an interval has to be wider because its width is an estimate itself.
 
     Student's t for the degrees of freedom with which the blocks' mean squares determine their
-    mean, over that for infinitely many.
+    mean, over that for infinitely many. Drift over a whole recording is correlated among all of
+    its blocks. It consists of few cosine waves, and each has a single degree of freedom (F. E.
+    Satterthwaite, Biometrics Bulletin 2 (1946) 110).
+
+    Args:
+        errors: mean squares of the errors of blocks, about as long each.
+        means: of each recording, the mean errors of its blocks, in the order of time.
     """
-    relative = standard_error(errors).value / float(errors.mean())
-    degrees = 2.0 / relative**2 if relative else math.inf
+    total = float(errors.sum())
+    waves = np.concatenate([_wave_powers(values) for values in means])
+    variance = (standard_error(errors).value / float(errors.mean())) ** 2
+    variance += 2.0 * float(np.sum(np.square(waves / total)))
+    degrees = 2.0 / variance if variance else math.inf
     return student_t(max(1, int(min(degrees, 1e9)))) / student_t(10**9)
+
+
+def _wave_powers(values: Array) -> Array:
+    """Sum of squares of each cosine wave of which values consist, without their mean."""
+    spectrum = np.fft.rfft(np.concatenate([values, values[::-1]]))
+    powers: Array = np.square(np.abs(spectrum[1:])) / (2.0 * len(values))
+    return powers
 
 
 def jackknife(value: float, repeats: Sequence[float]) -> Estimate:

@@ -254,7 +254,11 @@ class Fitting:
         constant = -float(deviation.mean())
         selection = self._selection
         judging = self._normal_equations(self._nuisance(self._drift), [0])
-        half_width = widening(judging.errors(columns)) * _half_width(after)
+        means = [
+            np.array([r.after[b.rows].mean() for b in self._blocks if b.recording == number])
+            for number, r in enumerate(residuals)
+        ]
+        half_width = widening(judging.errors(columns), means) * _half_width(after)
         nothing = selection.errors([])
         fitted = self._fitted(coefficients, without)
         outside = _half_width(before) + _half_width(deviation + constant)
