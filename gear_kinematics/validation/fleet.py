@@ -1,21 +1,12 @@
 """Validates one bag, or many in processes of this machine or on a Dask cluster."""
 
-import concurrent.futures
-import logging
-import multiprocessing
-import os
-import signal
-import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from gear_kinematics.bag import Bag, BagError, Message, ReportProgress
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import Topics, find_corrected_topics, find_topics
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
@@ -25,10 +16,6 @@ from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
 
-_TRIES = 3
-"""Attempts at a bag whose worker dies."""
-_CONNECT_TIMEOUT = 10.0  # s
-_PATIENCE = 60.0  # s to wait for a cluster without workers
 _TOPICS = Topics()
 
 
@@ -54,10 +41,6 @@ class Task:
     """Its file."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""
-
-
-class SchedulerError(ValueError):
-    """The Dask cluster cannot be used; the text names it and the cause."""
 
 
 def validate_bag(
@@ -136,158 +119,28 @@ def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagRe
 
     A bag whose process dies is tried again, and finally reported as unusable.
     """
-    left = list(tasks)
-    while left:
-        lost = []
-        for task, report in _in_a_pool(left, jobs):
-            if report:
-                yield report
-            else:
-                lost.append(task)
-        # A process that dies ends its pool. It was working on one of the first unfinished bags;
-        # to find out on which, each of them gets a pool of its own.
-        numbers = {id(task): number for number, task in enumerate(left)}
-        lost.sort(key=lambda task: numbers[id(task)])
-        for task in lost[:jobs]:
-            tries = (_in_a_pool([task], jobs=1) for _ in range(_TRIES - 1))
-            reports = (report for attempt in tries for _, report in attempt if report)
-            yield next(reports, None) or _lost(task)
-        left = lost[jobs:]
-
-
-def _in_a_pool(tasks: Sequence[Task], jobs: int) -> Iterator[tuple[Task, BagReport | None]]:
-    """Yield each bag with its report, or None if a process died."""
-    # Forking would copy the threads of a progress bar in an arbitrary state.
-    context = multiprocessing.get_context('spawn')
-    others = multiprocessing.active_children()
-    with (
-        _current_folder_shunned(),
-        concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool,
-    ):
-        try:
-            with _interrupts_blocked():
-                futures = {_submit(pool, task): task for task in tasks}
-            for future in concurrent.futures.as_completed(futures):
-                try:
-                    yield futures[future], future.result()
-                except BrokenProcessPool:
-                    yield futures[future], None
-        except BaseException:  # the remaining reports are not wanted
-            for process in multiprocessing.active_children():
-                if process not in others:
-                    process.terminate()
-            raise
-
-
-def _submit(pool: concurrent.futures.Executor, task: Task) -> concurrent.futures.Future[BagReport]:
-    try:
-        return pool.submit(validate_bag, task)
-    except BrokenProcessPool as error:
-        failed = concurrent.futures.Future[BagReport]()
-        failed.set_exception(error)
-        return failed
-
-
-def _end_with_parent() -> None:
-    """End this process of a pool when its owner is killed."""
-    if parent := multiprocessing.parent_process():
-        threading.Thread(target=_end_after, args=[parent], daemon=True).start()
-
-
-def _end_after(process: BaseProcess) -> None:
-    process.join()
-    os._exit(1)
-
-
-@contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Start processes that ignore Ctrl-C, on which their owner ends them."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextmanager
-def _current_folder_shunned() -> Iterator[None]:
-    """Start processes, run with `python -c`, that import nothing from the current folder."""
-    name = 'PYTHONSAFEPATH'
-    before = os.environ.get(name, '')  # an empty value means unset
-    os.environ[name] = '1'
-    try:
-        yield
-    finally:
-        os.environ[name] = before
+    return (report for _, report in fleet.on_this_machine(_WORK, tasks, jobs))
 
 
 def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagReport]:
     """Validate bags on a Dask cluster; yields the reports as they are ready.
 
-    This package must be installed on the scheduler and the workers, and the workers must see the
-    bags under the same paths. A bag whose worker dies is tried again on another, and finally
-    reported as unusable.
-
-    Args:
-        tasks: the bags.
-        scheduler: such as tcp://host:8786.
-
-    Raises:
-        SchedulerError: if the cluster cannot be reached.
-        ModuleNotFoundError: if dask is not installed.
+    Otherwise like `bag.fleet.on_cluster`.
     """
-    import distributed  # noqa: PLC0415, an extra
-
-    for name in ('distributed', 'distributed.client'):  # the reports have all that matters
-        logging.getLogger(name).setLevel(logging.CRITICAL)
-    try:
-        distributed.comm.get_address_host_port(scheduler)  # a client would take long to close
-        client = distributed.Client(scheduler, timeout=_CONNECT_TIMEOUT, set_as_default=False)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise SchedulerError(f'{scheduler}: no Dask scheduler there: {error}') from error
-    with client:
-        lost = []
-        for task, report in _on_workers(client, tasks):
-            if report:
-                yield report
-            else:
-                lost.append(task)
-        # Dask gives up every bag that was assigned to a dead worker; to find the cause, each is
-        # tried alone.
-        for task in lost:
-            for _, report in _on_workers(client, [task]):
-                yield report or _lost(task)
+    for task, report in fleet.on_cluster(_WORK, tasks, scheduler):
+        yield replace(report, bag=str(task.bag))
 
 
-def _on_workers(client: Any, tasks: Sequence[Task]) -> Iterator[tuple[Task, BagReport | None]]:
-    """Yield each bag with its report, or None if workers died."""
-    import distributed  # noqa: PLC0415, an extra
-
-    waiting = {
-        # The workers have another working directory.
-        client.submit(validate_bag, replace(task, bag=task.bag.absolute()), pure=False): task
-        for task in tasks
-    }
-    while waiting:
-        with suppress(TimeoutError):
-            for future in distributed.as_completed(waiting, client.loop, timeout=_PATIENCE):
-                task = waiting.pop(future)
-                try:
-                    yield task, replace(future.result(), bag=str(task.bag))
-                except distributed.KilledWorker:
-                    yield task, None
-                except Exception as error:  # noqa: BLE001, of the cluster, not the bag
-                    cause = ' '.join(str(error).split())
-                    yield task, _unusable(task, f'{task.bag}: not done by the cluster: {cause}')
-        if waiting and not client.scheduler_info()['workers']:
-            for task in waiting.values():
-                yield task, _unusable(task, f'{task.bag}: the cluster has no workers for it')
-            return
+def _absolute(task: Task) -> Task:
+    return replace(task, bag=task.bag.absolute())
 
 
-def _lost(task: Task) -> BagReport:
-    return _unusable(task, f'{task.bag}: its worker died repeatedly')
+def _lost(task: Task, cause: str) -> BagReport:
+    return _unusable(task, f'{task.bag}: {cause}')
 
 
 def _unusable(task: Task, error: str) -> BagReport:
     return BagReport(str(task.bag), Verdict.UNUSABLE, config=task.config, error=error)
+
+
+_WORK = fleet.Work(validate_bag, _lost, _absolute)

@@ -265,7 +265,7 @@ def test_imports_within_bag_point_one_way(imports):
         ('reading', 'storage_writers'),
         ('writing',),
         ('__init__',),
-        ('schedule', 'finding', 'roles'),
+        ('schedule', 'finding', 'roles', 'fleet'),
     )
     files = {f'bag/{name}.py' for layer in layers for name in layer}
     assert files == {path for path in imports if path.startswith('bag/')}

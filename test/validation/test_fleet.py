@@ -358,8 +358,7 @@ def test_a_bag_that_kills_every_worker_is_lost_and_no_other(tmp_path):
 
 
 IMPATIENT = (
-    'import gear_kinematics.validation.fleet as f; f._PATIENCE = f._CONNECT_TIMEOUT = 1.0; '
-    f'{GEARKIN}'
+    f'import gear_kinematics.bag.fleet as f; f._PATIENCE = f._CONNECT_TIMEOUT = 1.0; {GEARKIN}'
 )
 
 
