@@ -65,6 +65,11 @@ class Columns:
     """Whether angle and torque are the rotor's, not those at the output."""
 
 
+def is_csv(path: Path) -> bool:
+    """Return whether a recording is a CSV file, by its name; otherwise it is a bag."""
+    return path.suffix.lower() in {'.csv', '.tsv', '.txt'}
+
+
 def read_csv(
     path: Path,
     gear: Gear,

@@ -17,7 +17,7 @@ class HysteresisReport:
     """Figures of torque ramps, by amplitude from small to large."""
 
     settings: Settings
-    rated_by: Literal['given', 'largest ramps']
+    rated_by: Literal['given', 'largest ramps', 'least of the recordings']
     """Source of the rated torque."""
     measured: bool
     """Whether an encoder measured the output; if not, figures are inferred from the motor's."""

@@ -67,28 +67,68 @@ class Estimate:
             )
             for factor, values in terms
         ]
-        parts = (*own, *others)
-        standard = math.hypot(*(part.standard for part in parts))
-        # Shares of the variance, since fourth powers of large numbers overflow.
-        spread = sum(
-            (part.standard / standard) ** 4 / part.degrees_of_freedom for part in parts if standard
-        )
-        return cls(value, standard, 1.0 / spread if spread else math.inf, repeats)
+        return cls(value, *combined((*own, *others)), repeats)
 
     @property
     def uncertainty(self) -> float | None:
         """Expanded uncertainty, by Student's t for `COVERAGE` (GUM G.3)."""
         if self.standard is None:
             return None
-        # Rounding must not cost a whole degree of freedom.
-        degrees = int(min(self.degrees_of_freedom, _MANY) + 1e-6)
-        return student_t(degrees) * self.standard
+        return student_t(_whole(self.degrees_of_freedom)) * self.standard
+
+    def minus(self, other: 'Estimate') -> 'Estimate':
+        """Estimate the difference from a quantity that was measured independently.
+
+        Its degrees of freedom are those of Welch and Satterthwaite (GUM G.4.1).
+        """
+        value, repeats = self.value - other.value, min(self.repeats, other.repeats)
+        if self.standard is None or other.standard is None:
+            return Estimate(value, None, 0.0, repeats)
+        parts = [
+            Component(estimate.standard, estimate.degrees_of_freedom)
+            for estimate in (self, other)
+            if estimate.standard is not None
+        ]
+        return Estimate(value, *combined(parts), repeats)
+
+    def times(self, factor: float) -> 'Estimate':
+        """Estimate a multiple of the quantity."""
+        standard = None if self.standard is None else abs(factor) * self.standard
+        return Estimate(factor * self.value, standard, self.degrees_of_freedom, self.repeats)
+
+    def probability_of_zero(self) -> float | None:
+        """Probability of a value as far from zero if the quantity is zero; None if unknown."""
+        if self.standard is None:
+            return None
+        if not self.standard:
+            return float(self.value == 0.0)
+        return student_tail(self.value / self.standard, self.degrees_of_freedom)
 
     def inverse(self) -> 'Estimate':
         """Estimate the reciprocal of the quantity."""
         value = 1.0 / self.value
         standard = None if self.standard is None else value * value * self.standard
         return Estimate(value, standard, self.degrees_of_freedom, self.repeats)
+
+
+def combined(parts: Sequence[Component]) -> tuple[float, float]:
+    """Combine independent components (GUM 5.1.2).
+
+    Returns:
+        The standard uncertainty, and its effective degrees of freedom (GUM G.4.1).
+    """
+    standard = math.hypot(*(part.standard for part in parts))
+    # Shares of the variance, since fourth powers of large numbers overflow.
+    spread = sum(
+        (part.standard / standard) ** 4 / part.degrees_of_freedom for part in parts if standard
+    )
+    return standard, 1.0 / spread if spread else math.inf
+
+
+def _whole(degrees: float) -> int:
+    """Round degrees of freedom down."""
+    # Rounding must not cost a whole degree of freedom.
+    return int(min(degrees, _MANY) + 1e-6)
 
 
 def _deviation(values: Sequence[float]) -> float:
@@ -119,6 +159,19 @@ def student_t(degrees: int) -> float:
             low = middle
         else:
             high = middle
+
+
+def student_tail(t: float, degrees: float) -> float:
+    """Probability that Student's distribution exceeds t in magnitude.
+
+    Args:
+        t: of either sign.
+        degrees: of freedom, at least 1; fractions are rounded down.
+    """
+    whole = _whole(degrees)
+    if whole >= _MANY:
+        return math.erfc(abs(t) / math.sqrt(2.0))
+    return max(0.0, 1.0 - _share_within(math.atan(abs(t) / math.sqrt(whole)), whole))
 
 
 def _share_within(angle: float, degrees: int) -> float:

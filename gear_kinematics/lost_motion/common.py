@@ -1,0 +1,182 @@
+"""The figures of several recordings at one common torque, so that they can be compared."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from gear_kinematics.lost_motion import hysteresis
+from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures
+from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
+from gear_kinematics.lost_motion.wording import ARC_MINUTES, torque
+from gear_kinematics.state.uncertainty import Estimate
+
+_ALIKE = 1.5
+"""Ratio up to which the amplitudes of ramps may differ for their figures to be compared."""
+_CLOSE = 1.02
+"""Ratio up to which an amplitude counts as reached."""
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """One figure of several recordings."""
+
+    name: str
+    unit: str
+    scale: float
+    """Of the unit, per SI unit."""
+    values: tuple[Estimate | None, ...]
+    """One per recording, SI; None where it has no such figure."""
+    relative: bool = False
+    """Whether changes are told in percent."""
+
+
+def at_common_torque(
+    reports: Sequence[LostMotionReport],
+    rated_torque: float | None,
+    corners: Sequence[float] | None,
+) -> list[LostMotionReport]:
+    """Take the figures of all recordings at one rated torque, over the same ranges of torque.
+
+    Args:
+        reports: with or without ramps.
+        rated_torque: N·m; None: the least of those of the recordings.
+        corners: N·m, between ranges of stiffness; None: shares of the rated torque.
+    """
+    found = [report.hysteresis for report in reports if report.hysteresis]
+    if len(found) < 2:  # noqa: PLR2004, nothing to compare
+        return list(reports)
+    rated = rated_torque or min(ramps.settings.rated_torque for ramps in found)
+    reach = _reach(found, rated)
+    limits = corners or tuple(share * rated for share in STIFFNESS_SHARES)
+    limits = (*(limit for limit in limits if limit < reach), reach)
+
+    def again(ramps: HysteresisReport) -> HysteresisReport:
+        settings = replace(ramps.settings, rated_torque=rated, corners=limits)
+        return replace(
+            ramps,
+            settings=settings,
+            rated_by='given' if rated_torque else 'least of the recordings',
+            figures=hysteresis.figures(ramps.ramps, settings),
+        )
+
+    return [
+        replace(report, hysteresis=again(report.hysteresis)) if report.hysteresis else report
+        for report in reports
+    ]
+
+
+def _reach(found: Sequence[HysteresisReport], rated: float) -> float:
+    """Greatest torque up to the rated one that all recordings reach, N·m."""
+    return min(rated, *(ramps.largest.amplitude for ramps in found))
+
+
+def quantities(reports: Sequence[LostMotionReport]) -> list[Quantity]:
+    """Return what can be compared among recordings at a common torque, at least two each."""
+    found = [report.hysteresis for report in reports]
+    known = [ramps for ramps in found if ramps]
+    listed: list[Quantity] = []
+    if known:
+        least = max(ramps.smallest.amplitude for ramps in known)
+        reach = _reach(known, known[0].settings.rated_torque)
+        small = [_like(ramps, least) if ramps else None for ramps in found]
+        loaded = [_loaded(ramps, reach) if ramps else None for ramps in found]
+        listed += [
+            _angle('hysteresis', small, lambda figures: figures.hysteresis),
+            _angle('backlash', small, lambda figures: figures.play),
+            _of(small, lambda figures: figures.friction, 'friction', 'N·m'),
+            _angle('lost motion', loaded, lambda figures: figures.lost_motion),
+            *(_stiffness(loaded, low, high) for low, high in _ranges(loaded, reach)),
+        ]
+    listed += [
+        _transmission(reports, 'lost motion on reversals', 'lost_motion'),
+        _transmission(reports, 'transmission accuracy', 'forward'),
+    ]
+    return [q for q in listed if sum(value is not None for value in q.values) > 1]
+
+
+def doubts(reports: Sequence[LostMotionReport]) -> list[str]:
+    """Say in sentences which recordings can be compared with others in part only."""
+    known = [(report, report.hysteresis) for report in reports if report.hysteresis]
+    if not known:
+        return []
+    least = max(ramps.smallest.amplitude for _, ramps in known)
+    reach = _reach([ramps for _, ramps in known], known[0][1].settings.rated_torque)
+    said = [
+        f'{report.recording.name} has no ramps to about {torque(least)} N·m, on which others are '
+        'compared: hysteresis, backlash and friction depend on the amplitude, and are left out.'
+        for report, ramps in known
+        if not _like(ramps, least)
+    ]
+    wider = [
+        report.recording.name
+        for report, ramps in known
+        if (figures := _loaded(ramps, reach)) and figures.amplitude > _ALIKE * reach
+    ]
+    if wider:
+        said.append(
+            f'Lost motion and stiffness are compared up to {torque(reach)} N·m, to which all '
+            f'recordings load the gear. {", ".join(wider)} went much further: it widens a curve.'
+        )
+    return said
+
+
+def _like(ramps: HysteresisReport, amplitude: float) -> Figures | None:
+    """The figures of the ramps nearest to an amplitude."""
+
+    def ratio(figures: Figures) -> float:
+        return max(figures.amplitude / amplitude, amplitude / figures.amplitude)
+
+    nearest = min(ramps.figures, key=ratio)
+    return nearest if ratio(nearest) <= _ALIKE else None
+
+
+def _loaded(ramps: HysteresisReport, reach: float) -> Figures | None:
+    """The figures of the smallest ramps that reach a torque."""
+    reaching = (f for f in ramps.figures if f.amplitude * _CLOSE >= reach)
+    return next(reaching, None)
+
+
+def _ranges(loaded: Sequence[Figures | None], reach: float) -> list[tuple[float, float]]:
+    """Ranges of stiffness that exclude zero torque, and with it the play."""
+    return sorted(
+        {
+            (stiffness.low, stiffness.high)
+            for figures in loaded
+            if figures
+            for stiffness in figures.stiffness
+            if stiffness.low > 0.0 and stiffness.high <= reach
+        }
+    )
+
+
+def _stiffness(loaded: Sequence[Figures | None], low: float, high: float) -> Quantity:
+    def of(figures: Figures) -> Estimate | None:
+        same = (s.both for s in figures.stiffness if (s.low, s.high) == (low, high))
+        return next(same, None)
+
+    return _of(loaded, of, f'stiffness {torque(low)} to {torque(high)} N·m', 'N·m/rad')
+
+
+def _of(
+    found: Sequence[Figures | None],
+    figure: Callable[[Figures], Estimate | None],
+    name: str,
+    unit: str,
+) -> Quantity:
+    values = tuple(figure(figures) if figures else None for figures in found)
+    return Quantity(name, unit, 1.0, values, relative=True)
+
+
+def _angle(
+    name: str,
+    found: Sequence[Figures | None],
+    figure: Callable[[Figures], Estimate | None],
+) -> Quantity:
+    values = tuple(figure(figures) if figures else None for figures in found)
+    return Quantity(name, 'arcmin', ARC_MINUTES, values)
+
+
+def _transmission(reports: Sequence[LostMotionReport], name: str, figure: str) -> Quantity:
+    values = tuple(
+        getattr(report.transmission, figure) if report.transmission else None for report in reports
+    )
+    return Quantity(name, 'arcmin', ARC_MINUTES, values)

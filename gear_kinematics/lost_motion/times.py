@@ -1,0 +1,116 @@
+"""When recordings were made: by their contents, their names, or the times of their files."""
+
+import csv
+import math
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from itertools import islice
+from pathlib import Path
+
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.lost_motion.csv_files import is_csv
+
+_TIME_COLUMNS = {'time', 'stamp', 'timestamp', 't'}
+_UNIT = re.compile(r'[\s_]*[\[(]?(n|u|µ|m)?s[\])]?$')
+_EARLIEST = 631_152_000.0
+"""s, 1990: a smaller time does not count from 1970."""
+_LATEST = 4_102_444_800.0
+"""s, 2100."""
+_NAMED = re.compile(
+    r'(?<!\d)(?:(?P<year>\d{4})[-_.]?)?(?P<month>\d\d)[-_.]?(?P<day>\d\d)'
+    r'[-_.T ]+(?P<hour>\d\d)[-_.:h]?(?P<minute>\d\d)(?:[-_.:]?(?P<second>\d\d))?(?!\d)'
+)
+"""Such as 2024-07-12__14-07-48, 20240712T140748 or 0712_1407."""
+_NO_YEAR = 2000
+"""Taken where a name has no year; a leap year."""
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """Times at which a recording may have been made, s since 1970."""
+
+    recorded: float | None
+    """By the recording: the start of a bag, or the first time of a CSV."""
+    named: float | None
+    """In the name; without a year it is in `_NO_YEAR`."""
+    modified: float
+    """Of the file."""
+
+
+def times_of(path: Path) -> Times:
+    """Find the times of a recording.
+
+    Raises:
+        OSError: if there is none.
+    """
+    return Times(_recorded(path), named_time(path.name), path.stat().st_mtime)
+
+
+def common_times(times: Sequence[Times]) -> tuple[list[float], str]:
+    """Choose the best source that dates all recordings.
+
+    Returns:
+        Times in s, of which only differences count, and their source.
+    """
+    for attribute, source in (
+        ('recorded', 'the times in the recordings'),
+        ('named', 'the times in their names'),
+    ):
+        found = [getattr(time, attribute) for time in times]
+        if None not in found:
+            return found, source
+    return [time.modified for time in times], (
+        'the times of their files, which copying may have changed'
+    )
+
+
+def named_time(name: str) -> float | None:
+    """Return the time in a name, s since 1970; None if there is none."""
+    for match in _NAMED.finditer(name):
+        parts = {unit: int(value) for unit, value in match.groupdict('0').items()}
+        with suppress(ValueError):
+            time = datetime(
+                parts['year'] or _NO_YEAR,
+                parts['month'],
+                parts['day'],
+                parts['hour'],
+                parts['minute'],
+                parts['second'],
+                tzinfo=UTC,
+            )
+            return time.timestamp()
+    return None
+
+
+def _recorded(path: Path) -> float | None:
+    with suppress(BagError, OSError, UnicodeDecodeError, ValueError):
+        # What cannot be read here is reported where it is measured.
+        return _first_time(path) if is_csv(path) else _first_stamp(path)
+    return None
+
+
+def _first_stamp(path: Path) -> float | None:
+    with Bag(path) as bag:
+        first = next(bag.messages(bag.topics), None)
+    return None if first is None else 1e-9 * first[1]
+
+
+def _first_time(path: Path) -> float | None:
+    """Read the first time of a CSV, if it counts from 1970."""
+    with path.open(encoding='utf-8-sig', newline='') as file:
+        head = list(islice(file, 2))
+    delimiter = max(',;\t', key=head[0].count)
+    names, values = csv.reader(head, delimiter=delimiter)
+    for name, value in zip(names, values, strict=False):
+        if _UNIT.sub('', name.strip().lower()) in _TIME_COLUMNS:
+            return _since_1970(float(value))
+    return None
+
+
+def _since_1970(time: float) -> float | None:
+    """Return a time in s, ms, µs or ns as s."""
+    scaled = (time * 10.0**-power for power in (0, 3, 6, 9))
+    return next((t for t in scaled if math.isfinite(t) and _EARLIEST <= t < _LATEST), None)
