@@ -79,12 +79,6 @@ _COLUMNS = {
     'output': 'angle of the output encoder',
     'time': 's, unless its name ends in a unit',
 }
-_CSV = {'.csv', '.tsv', '.txt'}
-
-
-def is_csv(path: Path) -> bool:
-    """Whether a recording is a CSV file, by its suffix."""
-    return path.suffix.lower() in _CSV
 
 
 def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
@@ -118,6 +112,12 @@ def add_encoder_topics(parser: argparse.ArgumentParser) -> None:
         metavar='S',
         help='between interpolated rotor states (default: transmission_error_max_gap)',
     )
+
+
+def add_fleet(ways: argparse._ActionsContainer) -> None:
+    """Add the options that distribute many recordings; see `output.in_turn_or_together`."""
+    ways.add_argument('--jobs', type=count, default=1, metavar='N', help='processes')
+    ways.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
 
 
 def add_topics(parser: argparse.ArgumentParser) -> None:

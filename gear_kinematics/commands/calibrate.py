@@ -15,6 +15,7 @@ from gear_kinematics.calibration.to_file import check_target, to_calibration
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, message_progress, write_file
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+from gear_kinematics.lost_motion.csv_files import is_csv
 from gear_kinematics.state.calibration_file import Calibration
 
 HELP = 'calibrate the real output angle, from recordings with an encoder at rotor and output'
@@ -76,7 +77,7 @@ def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Report
 
 
 def _read(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) -> Recording:
-    if arguments.is_csv(path):
+    if is_csv(path):
         ratio = gear_from_mapping(config).gear_ratio
         return read_csv(path, arguments.columns(options), float(ratio))
     with message_progress(path.name) as report_progress:

@@ -2,26 +2,22 @@
 
 import argparse
 import math
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
-from gear_kinematics.bag.errors import unexpected
+from gear_kinematics.bag import fleet
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Reporter, complain, message_progress
-from gear_kinematics.kinematics import Gear, gear_from_mapping
-from gear_kinematics.lost_motion import (
-    LostMotionReport,
-    Recording,
-    measure,
-    read_bag,
-    read_csv,
-)
+from gear_kinematics.commands.output import Reporter, complain, message_progress, progress
+from gear_kinematics.lost_motion import LostMotionReport
+from gear_kinematics.lost_motion.common import at_common_torque
+from gear_kinematics.lost_motion.compared import Compared, compared
+from gear_kinematics.lost_motion.comparison import grouped
 from gear_kinematics.lost_motion.document import document
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
-from gear_kinematics.lost_motion.motion import MotionError
-from gear_kinematics.lost_motion.ramps import RampError
-from gear_kinematics.lost_motion.ratio import fit_ratio
+from gear_kinematics.lost_motion.over_time import over_time
+from gear_kinematics.lost_motion.task import WORK, Outcome, Task, measure_recording
+from gear_kinematics.lost_motion.times import common_times
 
 HELP = 'lost motion, stiffness, play and transmission error from recordings'
 
@@ -36,7 +32,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--rated-torque',
         type=arguments.positive,
         metavar='N·m',
-        help='at the output (default: the amplitude of the largest ramps)',
+        help='at the output (default: the amplitude of the largest ramps, of several recordings '
+        'the least)',
     )
     parser.add_argument(
         '--stiffness-torques',
@@ -73,69 +70,114 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='by which the stamps of the output encoder are late, s, or rows of a CSV (default: '
         'estimated; 0: none)',
     )
+    several = parser.add_argument_group('several recordings')
+    ways = several.add_mutually_exclusive_group()
+    ways.add_argument(
+        '--group',
+        nargs='+',
+        metavar='PATTERN',
+        help='compare groups of recordings: a glob for each group, or a regular expression with '
+        'one group in parentheses',
+    )
+    ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
+    arguments.add_fleet(several.add_mutually_exclusive_group())
     arguments.add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Measure every recording, even if others are unusable."""
-    reporter = Reporter(options, len(options.recordings))
-    reports = []
-    for path in options.recordings:
-        try:
-            reports.append(_measure(path, options))
-        except (RampError, MotionError) as error:
-            complain(f'{path}: {error}')
-        except (ValueError, OSError) as error:
-            complain(error)
-        except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
-            complain(f'{path}: {unexpected(error, debug=options.debug)}')
-    damage = [report.recording.error for report in reports if report.recording.error]
-    for text in damage:
-        complain(text)
-    if reports:
-        reporter.write(document(reports))
-    complete = len(reports) == len(options.recordings) and not damage
+    """Measure every recording, even if others are unusable, and compare them."""
+    reporter = Reporter(options, len(options.recordings), compared=True)
+    outcomes = list(_outcomes(options))
+    usable = [outcome for outcome in outcomes if outcome.report]
+    damage = [outcome.report.recording.error for outcome in usable if outcome.report]
+    for text in (*(outcome.error for outcome in outcomes), *damage):
+        if text:
+            complain(text)
+    if usable:
+        reports, comparison = _compared(usable, options)
+        reporter.write(document(reports, comparison))
+    complete = len(usable) == len(outcomes) and not any(damage)
     return ExitCode.DONE if complete else ExitCode.UNUSABLE
 
 
-def _measure(path: Path, options: argparse.Namespace) -> LostMotionReport:
+def _outcomes(options: argparse.Namespace) -> Iterator[Outcome]:
+    """Measure the recordings, in processes or on a cluster if so told, in their order."""
+    paths = options.recordings
+    known = Counter(path.name for path in paths)
+    found: dict[int, Outcome] = {}
+    tasks: list[Task] = []
+    for number, path in enumerate(paths):
+        name = path.name if known[path.name] == 1 else str(path)
+        try:
+            tasks.append(_task(number, path, name, options))
+        except (ValueError, OSError) as error:
+            found[number] = Outcome(None, str(error))
+    found |= {task.number: outcome for task, outcome in _measured(tasks, options)}
+    return (found[number] for number in range(len(paths)))
+
+
+def _measured(
+    tasks: Sequence[Task], options: argparse.Namespace
+) -> Iterator[tuple[Task, Outcome]]:
+    if options.scheduler or options.jobs > 1:
+        together = (
+            fleet.on_cluster(WORK, tasks, options.scheduler)
+            if options.scheduler
+            else fleet.on_this_machine(WORK, tasks, options.jobs)
+        )
+        with progress('recordings') as bars:
+            yield from bars.track(together, total=len(tasks), description='recordings')
+        return
+    for task in tasks:
+        with message_progress(task.name) as report_progress:
+            yield task, measure_recording(task, report_progress)
+
+
+def _compared(
+    usable: Sequence[Outcome], options: argparse.Namespace
+) -> tuple[list[LostMotionReport], Compared | None]:
+    """Return the reports at a common torque, in order of time for a trend, and what they tell."""
+    times, source = common_times([outcome.times for outcome in usable if outcome.times])
+    order = list(range(len(usable)))
+    if options.trend:
+        order.sort(key=times.__getitem__)
+    measured = [report for number in order if (report := usable[number].report)]
+    reports = at_common_torque(measured, options.rated_torque, options.stiffness_torques)
+    if options.trend:
+        return reports, over_time(reports, [times[number] for number in order], source)
+    names = [report.recording.name for report in reports]
+    groups = None
+    if options.group:
+        groups, others = grouped(names, options.group)
+        if len(groups) == 1:
+            raise ValueError(f'--group: all recordings are of the group {groups[0].name}')
+        for name in others:
+            complain(f'{name}: is of no group, and not compared')
+    comparison = compared(reports, groups) if len(reports) > 1 else None
+    if len(reports) > 1 and options.plot and not comparison:
+        raise ValueError('--plot: the recordings have no figure in common')
+    return reports, comparison
+
+
+def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, path)
     if options.max_gap is not None:
         config['transmission_error_max_gap'] = options.max_gap
     if options.travel is not None:
         config['transmission_error_travel'] = math.radians(options.travel)
-    gear, fitted = gear_from_mapping(config), None
-    recording = _read(path, options, config, gear)
-    if options.fit_ratio:
-        if not recording.motion:
-            raise MotionError('--fit-ratio needs the angles of rotor and output')
-        fitted = fit_ratio(recording.motion, gear.gear_ratio)
-        if fitted.ratio != gear.gear_ratio:
-            gear = fitted.ratio
-            recording = _read(path, options, config | {'gear_ratio': str(gear)}, gear)
-    corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
-    return measure(recording, gear, options.rated_torque, corners, fitted, options.delay)
-
-
-def _read(
-    path: Path, options: argparse.Namespace, config: Mapping[str, Any], gear: Gear
-) -> Recording:
-    if arguments.is_csv(path):
-        return read_csv(
-            path,
-            gear,
-            arguments.columns(options),
-            config['transmission_error_travel'],
-            options.counts,
-            options.output_counts,
-        )
-    with message_progress(path.name) as report_progress:
-        return read_bag(
-            path,
-            config,
-            options.rotor_topic,
-            options.encoder_topic,
-            options.counts,
-            options.output_counts,
-            report_progress,
-        )
+    return Task(
+        number,
+        path,
+        name,
+        config,
+        arguments.columns(options),
+        options.rotor_topic,
+        options.encoder_topic,
+        options.counts,
+        options.output_counts,
+        options.rated_torque,
+        options.stiffness_torques and tuple(sorted(options.stiffness_torques)),
+        options.fit_ratio,
+        options.delay,
+        options.debug,
+    )

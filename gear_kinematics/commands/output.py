@@ -70,7 +70,12 @@ class Reporter:
     """Writes a document in the forms given by options; see `arguments.add_report_forms`."""
 
     def __init__(
-        self, options: argparse.Namespace, sections: int = 1, drawing: str | None = None
+        self,
+        options: argparse.Namespace,
+        sections: int = 1,
+        drawing: str | None = None,
+        *,
+        compared: bool = False,
     ) -> None:
         """Check that everything can be written, before any other work.
 
@@ -78,6 +83,7 @@ class Reporter:
             options: the parsed arguments.
             sections: number of sections of the document.
             drawing: target of `--drawing`, if any.
+            compared: whether the last section compares the others, and has the figure of the plot.
 
         Raises:
             ValueError: if options exclude each other.
@@ -93,7 +99,7 @@ class Reporter:
             raise ValueError(f'only one report can go to stdout, not {" and ".join(to_stdout)}')
         self._silent = bool(to_stdout)
         if self._plot:
-            if sections > 1:
+            if sections > 1 and not compared:
                 raise ValueError('--plot takes one recording')
             format_of(Path(self._plot))
         if 'html' in self._targets:
@@ -105,7 +111,7 @@ class Reporter:
             with closed_pipe_ignored():
                 render(document, Console())
         if self._plot:
-            figure = document.sections[0].figure
+            figure = document.figure
             if not figure:
                 raise ValueError(f'{self._plot}: there is nothing to plot')
             write_file(self._plot, to_image(figure, Path(self._plot)))

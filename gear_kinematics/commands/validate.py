@@ -54,8 +54,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
-    way.add_argument('--jobs', type=arguments.count, default=1, metavar='N', help='processes')
-    way.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
+    arguments.add_fleet(way)
     arguments.add_report_forms(parser, junit=True)
 
 

@@ -9,8 +9,12 @@ from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionRepor
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, torque
 from gear_kinematics.state.uncertainty import Estimate
 
+LOST_MOTION = 'lost motion'
+"""Name of that of ramps."""
 _ALIKE = 1.5
 """Ratio up to which the amplitudes of ramps may differ for their figures to be compared."""
+_NAMED = 3
+"""Most recordings that a sentence names."""
 _CLOSE = 1.02
 """Ratio up to which an amplitude counts as reached."""
 
@@ -46,8 +50,8 @@ def at_common_torque(
         return list(reports)
     rated = rated_torque or min(ramps.settings.rated_torque for ramps in found)
     reach = _reach(found, rated)
-    limits = corners or tuple(share * rated for share in STIFFNESS_SHARES)
-    limits = (*(limit for limit in limits if limit < reach), reach)
+    limits = corners or [share * rated for share in STIFFNESS_SHARES]
+    limits = (*sorted(limit for limit in limits if limit < reach), reach)
 
     def again(ramps: HysteresisReport) -> HysteresisReport:
         settings = replace(ramps.settings, rated_torque=rated, corners=limits)
@@ -69,22 +73,47 @@ def _reach(found: Sequence[HysteresisReport], rated: float) -> float:
     return min(rated, *(ramps.largest.amplitude for ramps in found))
 
 
-def quantities(reports: Sequence[LostMotionReport]) -> list[Quantity]:
-    """Return what can be compared among recordings at a common torque, at least two each."""
+@dataclass(frozen=True, eq=False, slots=True)
+class Basis:
+    """The ramps on which several recordings are compared; None where a recording has none."""
+
+    least: float
+    """N·m, amplitude of those for hysteresis, backlash and friction."""
+    reach: float
+    """N·m, up to which lost motion and stiffness are compared."""
+    small: tuple[int | None, ...]
+    """Numbers of the ramps of each recording with about the least amplitude."""
+    loaded: tuple[int | None, ...]
+    """Numbers of the smallest ramps that reach `reach`."""
+
+
+def basis(reports: Sequence[LostMotionReport]) -> Basis | None:
+    """Choose the ramps of recordings at a common torque; None if none has ramps."""
     found = [report.hysteresis for report in reports]
     known = [ramps for ramps in found if ramps]
+    if not known:
+        return None
+    least = max(ramps.smallest.amplitude for ramps in known)
+    reach = _reach(known, known[0].settings.rated_torque)
+    return Basis(
+        least,
+        reach,
+        tuple(_like(ramps, least) if ramps else None for ramps in found),
+        tuple(_loaded(ramps, reach) if ramps else None for ramps in found),
+    )
+
+
+def quantities(reports: Sequence[LostMotionReport], common: Basis | None) -> list[Quantity]:
+    """Return what can be compared among recordings at a common torque, at least two each."""
     listed: list[Quantity] = []
-    if known:
-        least = max(ramps.smallest.amplitude for ramps in known)
-        reach = _reach(known, known[0].settings.rated_torque)
-        small = [_like(ramps, least) if ramps else None for ramps in found]
-        loaded = [_loaded(ramps, reach) if ramps else None for ramps in found]
+    if common:
+        small, loaded = _chosen(reports, common.small), _chosen(reports, common.loaded)
         listed += [
             _angle('hysteresis', small, lambda figures: figures.hysteresis),
             _angle('backlash', small, lambda figures: figures.play),
             _of(small, lambda figures: figures.friction, 'friction', 'N·m'),
-            _angle('lost motion', loaded, lambda figures: figures.lost_motion),
-            *(_stiffness(loaded, low, high) for low, high in _ranges(loaded, reach)),
+            _angle(LOST_MOTION, loaded, lambda figures: figures.lost_motion),
+            *(_stiffness(loaded, low, high) for low, high in _ranges(loaded, common.reach)),
         ]
     listed += [
         _transmission(reports, 'lost motion on reversals', 'lost_motion'),
@@ -93,45 +122,54 @@ def quantities(reports: Sequence[LostMotionReport]) -> list[Quantity]:
     return [q for q in listed if sum(value is not None for value in q.values) > 1]
 
 
-def doubts(reports: Sequence[LostMotionReport]) -> list[str]:
+def doubts(reports: Sequence[LostMotionReport], common: Basis) -> list[str]:
     """Say in sentences which recordings can be compared with others in part only."""
-    known = [(report, report.hysteresis) for report in reports if report.hysteresis]
-    if not known:
-        return []
-    least = max(ramps.smallest.amplitude for _, ramps in known)
-    reach = _reach([ramps for _, ramps in known], known[0][1].settings.rated_torque)
     said = [
-        f'{report.recording.name} has no ramps to about {torque(least)} N·m, on which others are '
-        'compared: hysteresis, backlash and friction depend on the amplitude, and are left out.'
-        for report, ramps in known
-        if not _like(ramps, least)
+        f'{report.recording.name} has no ramps to about {torque(common.least)} N·m, on which '
+        'others are compared: hysteresis, backlash and friction depend on the amplitude, and are '
+        'left out.'
+        for report, place in zip(reports, common.small, strict=True)
+        if report.hysteresis and place is None
     ]
+    loaded = _chosen(reports, common.loaded)
     wider = [
         report.recording.name
-        for report, ramps in known
-        if (figures := _loaded(ramps, reach)) and figures.amplitude > _ALIKE * reach
+        for report, figures in zip(reports, loaded, strict=True)
+        if figures and figures.amplitude > _ALIKE * common.reach
     ]
     if wider:
         said.append(
-            f'Lost motion and stiffness are compared up to {torque(reach)} N·m, to which all '
-            f'recordings load the gear. {", ".join(wider)} went much further: it widens a curve.'
+            f'Lost motion and stiffness are compared up to {torque(common.reach)} N·m, to which '
+            f'all recordings load the gear. {_listed(wider)} went much further: that widens a '
+            'curve.'
         )
     return said
 
 
-def _like(ramps: HysteresisReport, amplitude: float) -> Figures | None:
-    """The figures of the ramps nearest to an amplitude."""
-
-    def ratio(figures: Figures) -> float:
-        return max(figures.amplitude / amplitude, amplitude / figures.amplitude)
-
-    nearest = min(ramps.figures, key=ratio)
-    return nearest if ratio(nearest) <= _ALIKE else None
+def _listed(names: Sequence[str]) -> str:
+    more = f' and {len(names) - _NAMED} more' if len(names) > _NAMED else ''
+    return ', '.join(names[:_NAMED]) + more
 
 
-def _loaded(ramps: HysteresisReport, reach: float) -> Figures | None:
-    """The figures of the smallest ramps that reach a torque."""
-    reaching = (f for f in ramps.figures if f.amplitude * _CLOSE >= reach)
+def _chosen(
+    reports: Sequence[LostMotionReport], places: Sequence[int | None]
+) -> list[Figures | None]:
+    return [
+        report.hysteresis.figures[place] if report.hysteresis and place is not None else None
+        for report, place in zip(reports, places, strict=True)
+    ]
+
+
+def _like(ramps: HysteresisReport, amplitude: float) -> int | None:
+    """Number of the ramps nearest to an amplitude."""
+    ratios = [max(f.amplitude / amplitude, amplitude / f.amplitude) for f in ramps.figures]
+    nearest = min(ratios)
+    return ratios.index(nearest) if nearest <= _ALIKE else None
+
+
+def _loaded(ramps: HysteresisReport, reach: float) -> int | None:
+    """Number of the smallest ramps that reach a torque."""
+    reaching = (k for k, f in enumerate(ramps.figures) if f.amplitude * _CLOSE >= reach)
     return next(reaching, None)
 
 

@@ -4,7 +4,7 @@ import fnmatch
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +40,11 @@ class Change:
     probability: float | None
     """Of a difference as large if nothing has changed; None if unknown."""
     significant: bool = False
+
+    @property
+    def clear(self) -> bool:
+        """Whether a change of the figure by its whole value would show."""
+        return (self.difference.uncertainty or 0.0) < abs(self.before.value)
 
 
 def single(names: Sequence[str]) -> list[Group]:
@@ -136,9 +141,10 @@ def _change(
     relative = None
     uncertainty = before.uncertainty or 0.0
     if quantity.relative and abs(before.value) > 2.0 * uncertainty:
-        # Of after / before: the relative uncertainties of both (GUM 5.1.6).
+        # The sensitivities of after / before (GUM 5.1.3).
         ratio = after.value / before.value
-        relative = after.times(1.0 / before.value).minus(before.times(ratio / before.value))
+        scatter = after.times(1.0 / before.value).minus(before.times(ratio / before.value))
+        relative = replace(scatter, value=ratio - 1.0)
     probability = difference.probability_of_zero()
     return Change(quantity, first, second, before, after, difference, relative, probability)
 
@@ -147,17 +153,7 @@ def _judged(changes: Sequence[Change]) -> list[Change]:
     """Judge changes together, by Holm's method: S. Holm, Scand. J. Statistics 6 (1979) 65."""
     adjusted = holm([math.nan if c.probability is None else c.probability for c in changes])
     return [
-        Change(
-            change.quantity,
-            change.first,
-            change.second,
-            change.before,
-            change.after,
-            change.difference,
-            change.relative,
-            change.probability,
-            significant=together < SIGNIFICANCE,
-        )
+        replace(change, significant=together < SIGNIFICANCE)
         for change, together in zip(changes, adjusted, strict=True)
     ]
 

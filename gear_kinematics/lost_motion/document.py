@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from gear_kinematics.lost_motion.compared import Compared
 from gear_kinematics.lost_motion.curves import panels
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
@@ -40,18 +41,20 @@ _FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from
 _WORDS = ('', 'from')
 
 
-def document(reports: Sequence[LostMotionReport]) -> Document:
-    """Return the document on recordings, with a section for each."""
+def document(reports: Sequence[LostMotionReport], comparison: Compared | None = None) -> Document:
+    """Return the document on recordings, with a section for each, and then their comparison."""
     return Document(
         'gearkin lost-motion',
-        tuple(map(_section, reports)),
+        (*map(_section, reports), *([comparison.section] if comparison else [])),
         {
             'schema': SCHEMA,
             'version': VERSION,
             'coverage': COVERAGE,
             'recordings': [_recording(report) for report in reports],
+            **(plain(comparison.data) if comparison else {}),
         },
         summary=_summary(reports),
+        totals=comparison.sentence if comparison else '',
     )
 
 
@@ -111,7 +114,9 @@ def plain(value: Any) -> Any:
             return str(value)
         case np.ndarray():
             return None
-        case tuple():
+        case Mapping():
+            return {key: plain(item) for key, item in value.items()}
+        case tuple() | list():
             return [plain(item) for item in value]
     if is_dataclass(value):
         return {field.name: plain(getattr(value, field.name)) for field in fields(value)}

@@ -22,7 +22,11 @@ from gear_kinematics.lost_motion.times import Times, times_of
 class Task:
     """A recording, and how to measure it."""
 
+    number: int
+    """Place among the recordings."""
     path: Path
+    name: str
+    """In the report."""
     parameters: Mapping[str, Any]
     """Parameters of the node, as `parameters.load` returns them."""
     columns: Columns = field(default_factory=Columns)
@@ -90,6 +94,7 @@ def _measured(task: Task, progress: ReportProgress | None) -> LostMotionReport:
             gear = fitted.ratio
             changed = {**task.parameters, 'gear_ratio': str(gear)}
             recording = _read(replace(task, parameters=changed), gear, progress)
+    recording = replace(recording, name=task.name)
     return measure(recording, gear, task.rated_torque, task.corners, fitted, task.delay)
 
 

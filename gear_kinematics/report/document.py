@@ -141,6 +141,10 @@ class Pen(StrEnum):
 
     FIRST = 'first'
     SECOND = 'second'
+    THIRD = 'third'
+    FOURTH = 'fourth'
+    FIFTH = 'fifth'
+    SIXTH = 'sixth'
     MODEL = 'text'
     """Dashed."""
     FAINT = 'faint'
@@ -158,6 +162,13 @@ class Line:
     """NaN leaves a gap."""
     points: bool = False
     """Whether to draw only points."""
+    error: Array | None = None
+    """± of y, (n,); NaN where it is unknown."""
+
+    @property
+    def behind(self) -> bool:
+        """Whether the line is there for comparison only."""
+        return self.pen == Pen.FAINT and not self.points
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -177,6 +188,8 @@ class Panel:
     """Scale of the y axis; `log` applies to the x axis too."""
     low: float | None = None
     """Lower end of a logarithmic y axis."""
+    ticks: tuple[tuple[float, str], ...] = ()
+    """Positions on the x axis with their texts, instead of numbers."""
     equal: bool = False
     """Whether both axes have the same scale, as in a drawing."""
 
@@ -187,6 +200,15 @@ class Figure:
 
     panels: tuple[Panel, ...]
     stacked: bool = False
+    columns: int | None = None
+    """Most panels side by side; None: all of them."""
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of rows and columns of the panels."""
+        count = max(len(self.panels), 1)
+        columns = 1 if self.stacked else min(self.columns or count, count)
+        return -(-count // columns), columns
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -259,6 +281,11 @@ class Document:
     """A row for each section; shown if there are several."""
     totals: str = ''
     """Summary of the sections in one line."""
+
+    @property
+    def figure(self) -> Figure | None:
+        """The figure of the only section, or of the last of several, which compares them."""
+        return self.sections[-1].figure
 
 
 def printable(text: str) -> str:

@@ -18,6 +18,7 @@ from gear_kinematics.report.mechanism import Drawings
 from gear_kinematics.report.page import page
 
 _STACKED_HEIGHT = 11.5  # rem, of each panel
+_ROW_HEIGHT = 30.0  # rem, of each row of panels
 _HEIGHT = 34.0  # rem
 
 
@@ -95,7 +96,8 @@ def _figure(section: Section, name: str) -> Iterator[str]:
     # It must not contain the end tag of the script element.
     for char in '<>&':
         data = data.replace(char, f'\\u{ord(char):04x}')
-    height = max(_HEIGHT, _STACKED_HEIGHT * len(figure.panels) if figure.stacked else 0.0)
+    each = _STACKED_HEIGHT if figure.stacked else _ROW_HEIGHT
+    height = max(_HEIGHT, each * figure.shape[0])
     yield f'<div class="figure" id="{name}" style="height: {height:g}rem">'
     yield '<noscript>Plots need JavaScript.</noscript></div>\n'
     yield f'<script type="application/json" data-figure="{name}">{data}</script>\n'

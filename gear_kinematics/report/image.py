@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.report.document import Figure, Panel, Pen
-from gear_kinematics.report.interactive import FEW, SymmetricLog
+from gear_kinematics.report.interactive import BEHIND, FEW, SymmetricLog, tick_angle, tick_range
 
 INK, FAINT = '#24292f', '#8c959f'
-SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df')
+SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df', '#cf222e', '#1b7c83')
 """Colours of lines in a plot, reused in turn for more lines."""
-_PENS = {Pen.FIRST: SERIES[0], Pen.SECOND: SERIES[1], Pen.MODEL: INK, Pen.FAINT: FAINT}
+_COLOURED = (Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH)
+_PENS = {**dict(zip(_COLOURED, SERIES, strict=True)), Pen.MODEL: INK, Pen.FAINT: FAINT}
 _STYLE = {
     'font.size': 9.0,
     'axes.edgecolor': INK,
@@ -41,10 +42,9 @@ def to_image(figure: Figure, path: Path) -> bytes:
         ValueError: if the suffix is unknown.
         ModuleNotFoundError: without matplotlib.
     """
-    count = len(figure.panels)
     width, height = _STACKED if figure.stacked else _PANEL
-    size = (width, count * height) if figure.stacked else (count * width, height)
-    return render(path, size, partial(_draw_panels, figure))
+    rows, columns = figure.shape
+    return render(path, (columns * width, rows * height), partial(_draw_panels, figure))
 
 
 def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -> bytes:
@@ -95,12 +95,11 @@ def styled(size: tuple[float, float], use: Callable[[Any], bytes]) -> bytes:
 
 
 def _draw_panels(figure: Figure, canvas: Any) -> None:
+    places = canvas.subplots(*figure.shape, sharex=figure.stacked, squeeze=False).ravel()
     count = len(figure.panels)
-    if figure.stacked:
-        rows = canvas.subplots(count, 1, sharex=True, squeeze=False)[:, 0]
-    else:
-        rows = canvas.subplots(1, count, squeeze=False)[0]
-    for k, (axes, panel) in enumerate(zip(rows, figure.panels, strict=True), 1):
+    for axes in places[count:]:
+        axes.set_visible(False)
+    for k, (axes, panel) in enumerate(zip(places, figure.panels, strict=False), 1):
         if k == count or not figure.stacked:
             axes.set_xlabel(panel.x_label)
         _draw(axes, panel)
@@ -130,10 +129,25 @@ def _draw(axes: Any, panel: Panel) -> None:
             marker='.' if line.points else 'none',
             markersize=2.0 if len(line.x) > FEW else 6.0,
             linewidth=1.0,
+            alpha=BEHIND if line.behind else 1.0,
             color=_PENS[line.pen],
             label='' if line.name in named else line.name,
         )
+        if line.error is not None:
+            axes.errorbar(
+                line.x,
+                line.y,
+                line.error,
+                linestyle='none',
+                linewidth=1.0,
+                capsize=3.0,
+                color=_PENS[line.pen],
+            )
         named.add(line.name)
+    if panel.ticks:
+        axes.set_xticks(*zip(*panel.ticks, strict=True), rotation=tick_angle(panel))
+        axes.set_xlim(tick_range(panel))
+        axes.tick_params('x', labelsize=8)
     for place, text in panel.marks:
         axes.axvline(place, color=FAINT, linestyle='--', linewidth=0.8)
         _annotate(axes, text, (place, 0.99), ('data', 'axes fraction'), rotation=90, ha='right')

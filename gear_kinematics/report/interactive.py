@@ -22,8 +22,14 @@ _GAP = 0.12
 """Gap between panels side by side / width of the figure."""
 _STACK_GAP = 0.05
 """Gap between stacked panels / height of the figure."""
+_ROW_GAP, _TICK_GAP = 0.2, 0.3
+"""Gap between rows of panels / height of the figure, without and with upright texts of ticks."""
+_TICK_ROOM = 50
+"""Most characters of all ticks of a panel that find room in one line."""
 _TICKS = 4
 """Most ticks on each side of zero."""
+BEHIND = 0.5
+"""Opacity of lines that stand behind others."""
 FEW = 100
 """Most points that are drawn large."""
 _SMALLEST = 1e-300
@@ -43,7 +49,8 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
     """
     panels = figure.panels
     several = any(len({line.name for line in panel.lines}) > 1 for panel in panels)
-    legend = {'showlegend': several, 'legend': {'orientation': 'h', 'y': -0.18}}
+    below = _TICK_GAP if any(map(tick_angle, panels)) else 0.18
+    legend = {'showlegend': several, 'legend': {'orientation': 'h', 'y': -below}}
     layout: dict[str, Any] = {'shapes': [], 'annotations': [], **legend}
     plots: dict[str, Any] = {'data': [], 'layout': layout}
     if figure.stacked:
@@ -99,6 +106,10 @@ def _axes(
         y['range'] = [math.log10(panel.low), math.log10(2.0 * top)]
     if panel.equal:
         y['scaleanchor'] = 'x' if k == 1 else f'x{k}'
+    if panel.ticks:
+        values, texts = zip(*panel.ticks, strict=True)
+        x |= {'tickvals': values, 'ticktext': [escape(text) for text in texts]}
+        x |= {'tickangle': -tick_angle(panel), 'range': tick_range(panel), 'zeroline': False}
     if figure.stacked:
         height = (1.0 + _STACK_GAP) / count
         top = 1.0 - (k - 1) * height
@@ -106,12 +117,27 @@ def _axes(
             'xaxis': x | {'anchor': f'y{count}'},
             f'yaxis{k}': y | {'domain': [max(0.0, top - height + _STACK_GAP), top]},
         }
-    width = (1.0 + _GAP) / count
-    left = (k - 1) * width
+    rows, columns = figure.shape
+    row, column = divmod(k - 1, columns)
+    gap = _TICK_GAP if any(map(tick_angle, figure.panels)) else _ROW_GAP
+    width, height = (1.0 + _GAP) / columns, (1.0 + gap) / rows
+    left, top = column * width, 1.0 - row * height
+    across = [left, min(left + width - _GAP, 1.0)]
+    y['domain'] = [max(0.0, top - height + gap), top]
     return {
-        f'xaxis{k}': x | {'domain': [left, min(left + width - _GAP, 1.0)], 'anchor': f'y{k}'},
+        f'xaxis{k}': x | {'domain': across, 'anchor': f'y{k}'},
         f'yaxis{k}': y | {'anchor': f'x{k}'},
     }
+
+
+def tick_range(panel: Panel) -> tuple[float, float]:
+    """Ends of an x axis with ticks, so that there is room for their texts."""
+    return panel.ticks[0][0] - 0.5, panel.ticks[-1][0] + 0.5
+
+
+def tick_angle(panel: Panel) -> float:
+    """Degrees by which the texts of ticks are turned, to find room side by side."""
+    return 90.0 if sum(len(text) for _, text in panel.ticks) > _TICK_ROOM else 0.0
 
 
 def _stacked(line: Line, panel: Panel, scale: 'SymmetricLog | None') -> dict[str, Any]:
@@ -131,6 +157,10 @@ def _aside(line: Line, x: str) -> dict[str, Any]:
 
 def _styled(trace: dict[str, Any], line: Line) -> dict[str, Any]:
     trace |= {'name': line.name, 'meta': line.pen}
+    if line.error is not None:
+        trace['error_y'] = {'type': 'data', 'array': _rounded(line.error, 4), 'thickness': 1}
+    if line.behind:
+        trace['opacity'] = BEHIND
     if line.points:
         trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > FEW else 8}}
     if line.pen == Pen.MODEL:

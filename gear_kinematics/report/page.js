@@ -32,6 +32,7 @@
       ...trace, x: trace.x ?? time, type: 'scatter', mode: trace.mode ?? 'lines',
       line: {color: colour('--' + trace.meta), width: 1.5, ...trace.line},
       marker: {color: colour('--' + trace.meta), ...trace.marker},
+      error_y: trace.error_y && {color: colour('--' + trace.meta), ...trace.error_y},
     }));
     // Only these buttons: some others would send the data to a server.
     const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];
