@@ -1,7 +1,6 @@
 """The section of a report that says since when a gear has changed."""
 
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
 from typing import Any
 
 from gear_kinematics.lost_motion.common import basis, doubts, quantities
@@ -63,7 +62,7 @@ def over_time(
         remarks=tuple(map(printable, remarks)),
         figure=overview(reports, common, listed, single(names), found),
     )
-    data = {'trend': _data(found, names, times, source)}
+    data = {'trend': _data(found, names, days, source)}
     return Compared(section, printable(sentence), data)
 
 
@@ -122,13 +121,10 @@ def _since(change: Step | Slope | None, names: Sequence[str]) -> Cell:
 
 
 def _data(
-    found: Sequence[Trend], names: Sequence[str], times: Sequence[float], source: str
+    found: Sequence[Trend], names: Sequence[str], days: Sequence[float], source: str
 ) -> Mapping[str, Any]:
     return {
-        'recordings': [
-            {'name': name, 'time': datetime.fromtimestamp(time, UTC).isoformat()}
-            for name, time in zip(names, times, strict=True)
-        ],
+        'recordings': [{'name': name, 'days': day} for name, day in zip(names, days, strict=True)],
         'times_from': source,
         'significance': SIGNIFICANCE,
         'figures': [

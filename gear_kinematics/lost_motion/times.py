@@ -86,7 +86,7 @@ def named_time(name: str) -> float | None:
 
 
 def _recorded(path: Path) -> float | None:
-    with suppress(BagError, OSError, UnicodeDecodeError, ValueError):
+    with suppress(BagError, OSError, ValueError, csv.Error):
         # What cannot be read here is reported where it is measured.
         return _first_time(path) if is_csv(path) else _first_stamp(path)
     return None
@@ -102,6 +102,8 @@ def _first_time(path: Path) -> float | None:
     """Read the first time of a CSV, if it counts from 1970."""
     with path.open(encoding='utf-8-sig', newline='') as file:
         head = list(islice(file, 2))
+    if len(head) < 2:  # noqa: PLR2004, names and a row
+        return None
     delimiter = max(',;\t', key=head[0].count)
     names, values = csv.reader(head, delimiter=delimiter)
     for name, value in zip(names, values, strict=False):

@@ -6,6 +6,7 @@ import re
 import struct
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -165,7 +166,10 @@ def test_several_recordings_are_compared(recording, motion, capsys, monkeypatch)
     [
         (['nowhere.csv'], 'nowhere.csv: No such file'),
         (['nowhere'], 'nowhere: no such file or folder'),
-        (['{recording}', '{motion}', '--plot', 'x.png'], '--plot takes one recording'),
+        (
+            ['{recording}', '{motion}', '--plot', 'x.png'],
+            'the recordings have no figure in common',
+        ),
         (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot must be one of'),
         (['{recording}', '--json', '--html'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are rotor, output"),
@@ -321,6 +325,157 @@ def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
     assert 'All ramps have about the same amplitude' in told
     assert 'The friction exceeds ±0.12 N·m' in told
     assert '± (95 %)' not in told
+
+
+@pytest.fixture(scope='module')
+def worn(tmp_path_factory):
+    """Two recordings of a gear, and two after it has got play; the second ones go further."""
+    folder = tmp_path_factory.mktemp('worn')
+    random = np.random.default_rng(5)
+    paths = []
+    for name, play, largest in (
+        ('0301_0900_new', 0.002, 40.0),
+        ('0301_1000_new', 0.002, 40.0),
+        ('0302_0900_worn', 0.01, 50.0),
+        ('0302_1000_worn', 0.01, 50.0),
+    ):
+        torque = ramps(*[(4.0, 150)] * 4, *[(largest, 300)] * 3)
+        angle = creep(Gear(play=play, stiffness=300.0, friction=0.5), torque)
+        angle += 1e-5 * random.standard_normal(len(angle))
+        paths.append(str(write_csv(folder / f'{name}.csv', angle=angle, torque=torque)))
+    return paths
+
+
+def summary(output: str) -> str:
+    (line,) = (line for line in output.splitlines() if line.startswith('summary: '))
+    return line
+
+
+def test_one_sentence_says_what_has_changed_and_what_has_not(worn, capsys):
+    assert main(['lost-motion', worn[0], worn[2]]) == 0
+    said = summary(capsys.readouterr().out)
+    assert said.startswith('summary: 0302_0900_worn.csv against 0301_0900_new.csv, at 40 N·m: ')
+    changed, same = said.split('not significant: ')
+    arcmin = math.degrees(0.008) * 60.0
+    for figure in ('hysteresis', 'backlash'):
+        told = re.search(rf'{figure} \S+ → \S+ arcmin \(\+(\S+) ± \S+\), significant', changed)
+        assert float(told[1]) == pytest.approx(arcmin, abs=0.3)
+    assert 'friction' in same
+    assert 'stiffness 20 to 40 N·m' in same
+    assert same.endswith('judged by the scatter within single recordings')
+
+
+def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsys):
+    assert main(['lost-motion', worn[2], worn[0], '--json']) == 0
+    document = json.loads(capsys.readouterr().out)
+    for found in document['recordings']:
+        assert found['hysteresis']['rated_by'] == 'least of the recordings'
+        settings = found['hysteresis']['settings']
+        assert settings['rated_torque'] == pytest.approx(40.0, rel=0.01)
+        ranges = [(s['low'], s['high']) for s in found['hysteresis']['figures'][-1]['stiffness']]
+        assert (settings['corners'][-2], settings['corners'][-1]) in ranges
+    changes = {change['figure']: change for change in document['comparison']['changes']}
+    backlash = changes['backlash']
+    assert backlash['difference']['value'] == pytest.approx(-0.008, abs=1e-4)
+    assert backlash['significant']
+    assert not changes['friction']['significant']
+    assert main(['lost-motion', worn[2], worn[0], '--rated-torque', '20', '--json']) == 0
+    document = json.loads(capsys.readouterr().out)
+    for found in document['recordings']:
+        assert found['hysteresis']['rated_by'] == 'given'
+        assert found['hysteresis']['settings']['corners'] == [3.0, 10.0, 20.0]
+
+
+def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys):
+    for patterns in (['_(new|worn)'], ['*_new.csv', '*_worn.csv']):
+        assert main(['lost-motion', *worn, '--group', *patterns, '--json']) == 0
+        comparison = json.loads(capsys.readouterr().out)['comparison']
+        assert [group['recordings'] for group in comparison['groups']] == [[0, 1], [2, 3]]
+        changes = {change['figure']: change for change in comparison['changes']}
+        assert changes['backlash']['difference']['value'] == pytest.approx(0.008, abs=1e-4)
+        assert changes['backlash']['difference']['repeats'] == 2
+    assert main(['lost-motion', *worn, '--group', '_(new|worn)']) == 0
+    assert 'within single recordings' not in summary(capsys.readouterr().out)
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'complaint'),
+    [
+        (['--group', '('], '--group (: '),
+        (['--group', '(a)(b)'], '--group (a)(b): a regular expression needs one group'),
+        (['--group', 'x*'], '--group x*: no recording matches'),
+        (['--group', '*'], '--group: all recordings are of the group *'),
+        (['--trend'], '--trend needs 4 recordings'),
+        (['--scheduler', 'nonsense'], 'nonsense: no Dask scheduler there: missing port number'),
+    ],
+)
+def test_what_cannot_be_compared_gets_one_line(worn, arguments, complaint, capsys):
+    assert main(['lost-motion', *worn[:2], *arguments]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    (line,) = captured.err.splitlines()
+    assert line.startswith(f'gearkin: {complaint}')
+
+
+def test_trend_is_in_order_of_time(worn, capsys):
+    shuffled = [worn[k] for k in (2, 0, 3, 1)]
+    assert main(['lost-motion', *shuffled, '--trend', '--json']) == 0
+    document = json.loads(capsys.readouterr().out)
+    names = [path.rpartition('/')[2] for path in worn]
+    assert [found['recording'] for found in document['recordings']] == names
+    trend = document['trend']
+    assert [recording['name'] for recording in trend['recordings']] == names
+    assert [round(24 * recording['days'], 6) for recording in trend['recordings']] == [
+        0.0, 1.0, 24.0, 25.0
+    ]  # fmt: skip
+    figures = {figure['figure']: figure for figure in trend['figures']}
+    (step,) = figures['backlash']['steps']
+    assert (step['since'], step['earliest'], step['latest']) == (names[2],) * 3
+    assert step['change']['value'] == pytest.approx(0.008, abs=1e-4)
+    assert main(['lost-motion', *shuffled, '--trend']) == 0
+    assert summary(capsys.readouterr().out).startswith(f'summary: since {names[2]}: hysteresis +')
+
+
+@pytest.mark.slow
+def test_several_recordings_are_drawn_together(worn, tmp_path, capsys):
+    plot, page = tmp_path / 'x.png', tmp_path / 'x.html'
+    for way in ([], ['--trend'], ['--group', '_(new|worn)']):
+        assert main(['lost-motion', *worn, *way, '--plot', str(plot), '--html', str(page)]) == 0
+        width, height = struct.unpack('>II', plot.read_bytes()[16:24])
+        assert (width, height) == (3 * 900, 2 * 780)  # two rows of three panels
+        tree = html.document_fromstring(
+            page.read_bytes(), parser=html.HTMLParser(encoding='utf-8')
+        )
+        *_, drawn = (json.loads(s.text) for s in tree.xpath('//script[@type="application/json"]'))
+        loops = [trace for trace in drawn['data'] if trace['yaxis'] == 'y1']
+        assert len(loops) == 4
+        bars = [trace for trace in drawn['data'] if 'error_y' in trace]
+        assert len(bars) == 4
+        for trace in bars:
+            assert len(trace['error_y']['array']) == len(trace['x']) == (2 if way[1:] else 4)
+    assert capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_processes_measure_what_one_does(worn, tmp_path, capsys):
+    bad = tmp_path / 'bad.csv'
+    bad.write_text('angle,torque\n1,2\n', 'utf-8')
+    paths = [*worn, str(bad), str(tmp_path / 'missing.csv')]
+    assert main(['lost-motion', *paths, '--json']) == 2
+    one = capsys.readouterr()
+    assert main(['lost-motion', *paths, '--json', '--jobs', '2']) == 2
+    assert capsys.readouterr() == one
+    assert len(one.err.splitlines()) == 2
+
+
+def test_recordings_of_one_name_are_told_apart(worn, tmp_path, capsys):
+    paths = []
+    for folder, source in (('before', worn[0]), ('after', worn[2])):
+        (tmp_path / folder).mkdir()
+        paths.append(tmp_path / folder / 'ramps.csv')
+        paths[-1].write_bytes(Path(source).read_bytes())
+    assert main(['lost-motion', *map(str, paths)]) == 0
+    assert f'{paths[1]} against {paths[0]}, at' in summary(capsys.readouterr().out)
 
 
 def another_gear(folder):

@@ -6,7 +6,13 @@ import mpmath
 import numpy as np
 import pytest
 
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution, student_t
+from gear_kinematics.state.uncertainty import (
+    Component,
+    Estimate,
+    resolution,
+    student_t,
+    student_tail,
+)
 
 # GUM, table G.2, fraction p = 95 %
 TABLE_G2 = {1: 12.71, 2: 4.30, 3: 3.18, 4: 2.78, 5: 2.57, 6: 2.45, 7: 2.36, 8: 2.31, 9: 2.26,
@@ -103,3 +109,33 @@ def test_intervals_hold_the_mean_as_often_as_they_say():
         hits += abs(estimate.value - 3.0) <= estimate.uncertainty
     # Within four standard deviations of a binomial count.
     assert abs(hits - 0.95 * trials) < 4 * math.sqrt(trials * 0.95 * 0.05)
+
+
+@pytest.mark.parametrize(
+    ('t', 'degrees', 'probability'),
+    [  # tables of Student's distribution, two-sided
+        (12.706, 1, 0.05),
+        (2.776, 4, 0.05),
+        (-2.776, 4.9, 0.05),
+        (4.604, 4, 0.01),
+        (2.086, 20, 0.05),
+        (1.95996, math.inf, 0.05),
+        (0.0, 3, 1.0),
+    ],
+)
+def test_probability_of_a_greater_t(t, degrees, probability):
+    assert student_tail(t, degrees) == pytest.approx(probability, rel=1e-3)
+
+
+def test_difference_has_the_degrees_of_freedom_of_welch():
+    first = Estimate(5.0, 0.3, 4.0, 5)
+    second = Estimate(3.0, 0.4, 8.0, 9)
+    difference = first.minus(second)
+    assert (difference.value, difference.standard) == pytest.approx((2.0, 0.5))
+    # B. L. Welch, Biometrika 34 (1947) 28: s⁴ / Σ (sᵢ⁴ / νᵢ).
+    assert difference.degrees_of_freedom == pytest.approx(0.5**4 / (0.3**4 / 4 + 0.4**4 / 8))
+    assert difference.probability_of_zero() == student_tail(4.0, 11.0)
+    unknown = first.minus(Estimate(3.0, None, 0.0, 1))
+    assert unknown.value == 2.0
+    assert unknown.uncertainty is None
+    assert unknown.probability_of_zero() is None
