@@ -115,7 +115,7 @@ def add_encoder_topics(parser: argparse.ArgumentParser) -> None:
 
 
 def add_fleet(ways: argparse._ActionsContainer) -> None:
-    """Add the options that distribute many recordings; see `output.in_turn_or_together`."""
+    """Add the options that distribute many recordings; see `bag.fleet`."""
     ways.add_argument('--jobs', type=count, default=1, metavar='N', help='processes')
     ways.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
 

@@ -74,10 +74,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ways = several.add_mutually_exclusive_group()
     ways.add_argument(
         '--group',
-        nargs='+',
+        action='append',
         metavar='PATTERN',
-        help='compare groups of recordings: a glob for each group, or a regular expression with '
-        'one group in parentheses',
+        help='compare groups of recordings: a glob for each of them (repeat the option), or a '
+        'regular expression with one group in parentheses',
     )
     ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
     arguments.add_fleet(several.add_mutually_exclusive_group())
@@ -136,27 +136,27 @@ def _measured(
 def _compared(
     usable: Sequence[Outcome], options: argparse.Namespace
 ) -> tuple[list[LostMotionReport], Compared | None]:
-    """Return the reports at a common torque, in order of time for a trend, and what they tell."""
-    times, source = common_times([outcome.times for outcome in usable if outcome.times])
-    order = list(range(len(usable)))
+    """Return the reports, those that are compared at a common torque, and what they tell."""
+    reports = [outcome.report for outcome in usable if outcome.report]
+    torques = options.rated_torque, options.stiffness_torques
     if options.trend:
-        order.sort(key=times.__getitem__)
-    measured = [report for number in order if (report := usable[number].report)]
-    reports = at_common_torque(measured, options.rated_torque, options.stiffness_torques)
-    if options.trend:
+        times, source = common_times([outcome.times for outcome in usable if outcome.times])
+        order = sorted(range(len(reports)), key=times.__getitem__)
+        reports = at_common_torque([reports[number] for number in order], *torques)
         return reports, over_time(reports, [times[number] for number in order], source)
-    names = [report.recording.name for report in reports]
-    groups = None
     if options.group:
-        groups, others = grouped(names, options.group)
-        if len(groups) == 1:
-            raise ValueError(f'--group: all recordings are of the group {groups[0].name}')
-        for name in others:
-            complain(f'{name}: is of no group, and not compared')
-    comparison = compared(reports, groups) if len(reports) > 1 else None
-    if len(reports) > 1 and options.plot and not comparison:
+        groups, others = grouped([report.recording.name for report in reports], options.group)
+        for report in others:
+            complain(f'{reports[report].recording.name}: is of no group, and not compared')
+        apart = [reports[number] for number in others]
+        reports = [report for number, report in enumerate(reports) if number not in others]
+    else:
+        groups, apart = None, []
+    reports = at_common_torque(reports, *torques)
+    comparison = compared(reports, groups)
+    if options.plot and not comparison and len(usable) > 1:
         raise ValueError('--plot: the recordings have no figure in common')
-    return reports, comparison
+    return [*reports, *apart], comparison
 
 
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:

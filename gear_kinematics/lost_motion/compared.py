@@ -50,11 +50,12 @@ def compared(
         groups: None: each recording is one.
 
     Returns:
-        None if they have no figure in common.
+        None if no two of them have a figure in common.
     """
     common = basis(reports)
     listed = quantities(reports, common)
-    named = groups or single([report.recording.name for report in reports])
+    names = [report.recording.name for report in reports]
+    named = groups or single(names)
     found = changes(listed, named)
     if not found:
         return None
@@ -85,7 +86,9 @@ def compared(
         figure=overview(reports, common, listed, named),
     )
     sentence = sentences[0] if len(sentences) == 1 else _totals(found)
-    return Compared(section, printable(sentence), {'comparison': _data(found, listed, named)})
+    return Compared(
+        section, printable(sentence), {'comparison': _data(found, listed, named, names)}
+    )
 
 
 def _rated(reports: Sequence[LostMotionReport]) -> float:
@@ -219,14 +222,17 @@ def _groups(listed: Sequence[Quantity], groups: Sequence[Group]) -> Table:
 
 
 def _data(
-    found: Sequence[Change], listed: Sequence[Quantity], groups: Sequence[Group]
+    found: Sequence[Change],
+    listed: Sequence[Quantity],
+    groups: Sequence[Group],
+    names: Sequence[str],
 ) -> Mapping[str, Any]:
     return {
         'significance': SIGNIFICANCE,
         'groups': [
             {
                 'name': group.name,
-                'recordings': group.members,
+                'recordings': [names[number] for number in group.members],
                 'figures': [
                     {
                         'figure': quantity.name,

@@ -52,7 +52,7 @@ def single(names: Sequence[str]) -> list[Group]:
     return [Group(name, (number,)) for number, name in enumerate(names)]
 
 
-def grouped(names: Sequence[str], patterns: Sequence[str]) -> tuple[list[Group], list[str]]:
+def grouped(names: Sequence[str], patterns: Sequence[str]) -> tuple[list[Group], list[int]]:
     """Sort recordings into groups, in the order in which these occur.
 
     Args:
@@ -62,22 +62,24 @@ def grouped(names: Sequence[str], patterns: Sequence[str]) -> tuple[list[Group],
             matches counts.
 
     Returns:
-        Groups, and the names that belong to none.
+        Groups, whose members are numbered without the others; and the numbers of the others.
 
     Raises:
-        ValueError: if a pattern is no regular expression with one group, or nothing matches.
+        ValueError: if a pattern is no regular expression with one group, or if there are not at
+            least two groups.
     """
     compiled = [_Pattern(pattern) for pattern in patterns]
     members: dict[str, list[int]] = {}
-    others = []
+    others: list[int] = []
     for number, name in enumerate(names):
         found = next(filter(None, (pattern.group_of(name) for pattern in compiled)), None)
         if found:
-            members.setdefault(found, []).append(number)
+            members.setdefault(found, []).append(number - len(others))
         else:
-            others.append(name)
-    if not members:
-        raise ValueError(f'--group {" ".join(patterns)}: no recording matches')
+            others.append(number)
+    if len(members) < 2:  # noqa: PLR2004, nothing to compare
+        found = f'only the group {next(iter(members))}' if members else 'no recording that matches'
+        raise ValueError(f'--group {", ".join(patterns)}: there is {found}')
     return [Group(name, tuple(numbers)) for name, numbers in members.items()], others
 
 

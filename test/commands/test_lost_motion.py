@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dask_cluster import cluster
 from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
 from lxml import html
 
@@ -388,9 +389,11 @@ def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsy
 
 def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys):
     for patterns in (['_(new|worn)'], ['*_new.csv', '*_worn.csv']):
-        assert main(['lost-motion', *worn, '--group', *patterns, '--json']) == 0
+        options = [f'--group={pattern}' for pattern in patterns]
+        assert main(['lost-motion', *options, *worn, '--json']) == 0
         comparison = json.loads(capsys.readouterr().out)['comparison']
-        assert [group['recordings'] for group in comparison['groups']] == [[0, 1], [2, 3]]
+        names = [path.rpartition('/')[2] for path in worn]
+        assert [group['recordings'] for group in comparison['groups']] == [names[:2], names[2:]]
         changes = {change['figure']: change for change in comparison['changes']}
         assert changes['backlash']['difference']['value'] == pytest.approx(0.008, abs=1e-4)
         assert changes['backlash']['difference']['repeats'] == 2
@@ -398,13 +401,28 @@ def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys
     assert 'within single recordings' not in summary(capsys.readouterr().out)
 
 
+def test_recordings_of_no_group_keep_their_own_torque(worn, capsys):
+    options = ['--group', '*_0900_new*', '--group', '*_1000_new*', '--json']
+    assert main(['lost-motion', *worn[1:3], worn[0], *options]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == 'gearkin: 0302_0900_worn.csv: is of no group, and not compared\n'
+    document = json.loads(captured.out)
+    torques = [
+        round(found['hysteresis']['settings']['rated_torque']) for found in document['recordings']
+    ]
+    assert torques == [40, 40, 50]
+    assert [group['name'] for group in document['comparison']['groups']] == [
+        '*_1000_new*', '*_0900_new*'
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ('arguments', 'complaint'),
     [
         (['--group', '('], '--group (: '),
         (['--group', '(a)(b)'], '--group (a)(b): a regular expression needs one group'),
-        (['--group', 'x*'], '--group x*: no recording matches'),
-        (['--group', '*'], '--group: all recordings are of the group *'),
+        (['--group', 'x*'], '--group x*: there is no recording that matches'),
+        (['--group', '*'], '--group *: there is only the group *'),
         (['--trend'], '--trend needs 4 recordings'),
         (['--scheduler', 'nonsense'], 'nonsense: no Dask scheduler there: missing port number'),
     ],
@@ -466,6 +484,18 @@ def test_processes_measure_what_one_does(worn, tmp_path, capsys):
     assert main(['lost-motion', *paths, '--json', '--jobs', '2']) == 2
     assert capsys.readouterr() == one
     assert len(one.err.splitlines()) == 2
+
+
+@pytest.mark.slow
+def test_cluster_measures_what_one_process_does(worn, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(Path(worn[0]).parent)  # the workers are elsewhere
+    names = [Path(path).name for path in worn]
+    assert main(['lost-motion', *names, '--json']) == 0
+    one = capsys.readouterr()
+    with cluster(tmp_path / 'cluster') as dask:
+        dask.add_worker('--no-nanny')
+        assert main(['lost-motion', *names, '--json', '--scheduler', dask.address]) == 0
+    assert capsys.readouterr() == one
 
 
 def test_recordings_of_one_name_are_told_apart(worn, tmp_path, capsys):
