@@ -38,6 +38,8 @@ OUT_OF_CLASS = {
     'friction grows with load': GearSet(1, load_friction=0.5, wind_up=1e-3, backlash=0.0),
 }
 """Scenarios that it cannot describe."""
+HARD_WHEN_SLOW = ('late stamps', 'coloured noise', 'drift')
+"""Scenarios in which few strokes tell less."""
 MOTIONS = {'fast': strokes, 'slow': slow_strokes}
 
 
