@@ -36,13 +36,12 @@ from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
-from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY, RECORDED_TOPICS, ROTOR_STATE
+from gear_kinematics.wire.topics import CORRECTED_TOPICS, JOINT_STATE, ROTOR_STATE
 
 POLL = 0.1
 """Greatest delay of the response to a signal, s."""
 
 _TOPICS = Topics()
-_MESSAGE_TYPES: Mapping[str, type] = {JOINT_STATE: JointState, POSE_ARRAY: PoseArray}
 _STAMP = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s to wait for unexpected messages
@@ -98,8 +97,8 @@ def live_messages(
             the end.
 
     Yields:
-        Messages on /rotor_state, /output_state and, unless only the gear ratio is known,
-        /body_poses, in the order of their reception.
+        Messages on /rotor_state, /output_state, unless only the gear ratio is known /body_poses,
+        and with a calibration those of the corrected output, in the order of their reception.
 
     Raises:
         BagError: if the topic is missing or empty; if the bag is damaged, after the outputs for
@@ -158,7 +157,7 @@ class Replay:
         Args:
             namespace: of the topics.
             alive: returns whether the node can still answer.
-            outputs: topics on which it answers, of RECORDED_TOPICS.
+            outputs: topics on which it answers, in the root namespace.
         """
         self.received: list[Message] = []
         self.counts: Counter[str] = Counter()
@@ -174,7 +173,7 @@ class Replay:
         self._publisher = self._node.create_publisher(JointState, ROTOR_STATE, qos)
         self._topics = {_TOPICS.rotor, *outputs}
         for topic in self._topics:
-            message_type = _MESSAGE_TYPES[RECORDED_TOPICS[topic]]
+            message_type = PoseArray if topic == _TOPICS.poses else JointState
             self._node.create_subscription(
                 message_type, topic[1:], self._recorder(topic), qos, raw=True
             )
@@ -333,7 +332,9 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
 
 def _outputs(parameters: Mapping[str, Any]) -> Collection[str]:
     """The recorded topics on which the node answers."""
-    return _TOPICS[1:] if isinstance(gear_from_mapping(parameters), Mechanism) else _TOPICS[1:2]
+    known = isinstance(gear_from_mapping(parameters), Mechanism)
+    corrected = CORRECTED_TOPICS if parameters['calibration'] else ()
+    return *_TOPICS[1 : 3 if known else 2], *(f'/{name}' for name in corrected)
 
 
 def _stamped(data: bytes, received: int) -> bytes:

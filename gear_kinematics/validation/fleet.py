@@ -15,6 +15,7 @@ from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
+from gear_kinematics.wire.topics import CORRECTED_TOPICS
 
 _TOPICS = Topics()
 
@@ -68,9 +69,15 @@ def validate_bag(
             }
             topics = find_topics(bag, given, outputs=not play, poses=poses)
             if play:
-                messages = play(bag, task.parameters, rotor_topic=topics.rotor)
+                # A relative path would be relative to the file that the node gets.
+                file = str(Path(task.calibration_file).resolve()) if task.calibration else ''
+                messages = play(
+                    bag, {**task.parameters, 'calibration': file}, rotor_topic=topics.rotor
+                )
+                corrected = {name: f'/{name}' for name in CORRECTED_TOPICS if file}
                 # Nothing is lost by a recorder here.
-                return validate_messages(replace(task, strict=True), messages, progress)
+                task = replace(task, strict=True)
+                return validate_messages(task, messages, progress, corrected=corrected)
             corrected = find_corrected_topics(bag, topics.output)
             messages = bag.messages((*topics, *corrected.values()))
             return validate_messages(

@@ -19,6 +19,7 @@ import jsonschema
 import pytest
 import replaying
 from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
+from calibrations import calibration
 from gear_recordings import old_recording
 from live import rotor_bytes
 
@@ -738,6 +739,20 @@ def test_a_gear_with_only_a_ratio_validates_live(other_gear, bags):
     found = facts(done.stdout)
     assert found['/output_state: compared'] == str(SAMPLES)
     assert not any('body_poses' in fact for fact in found)
+
+
+@pytest.mark.live
+@pytest.mark.slow
+def test_the_corrected_output_validates_live(tmp_path):
+    path = tmp_path / 'calibration.yaml'
+    path.write_text(calibration().text(), 'utf-8')
+    bag = BAGS / 'servo_point_to_point'
+    done = gearkin('validate', '--live', bag, '--calibration', path)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    compared = found['/output_state: compared']
+    assert found['/corrected_state: compared'] == compared
+    assert found['/corrected_interval: compared'] == compared
 
 
 @pytest.mark.live
