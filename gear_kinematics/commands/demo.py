@@ -1,6 +1,7 @@
 """`gearkin demo`: play the shipped bag into the live node."""
 
 import argparse
+from pathlib import Path
 
 from rich.console import Console
 
@@ -10,14 +11,20 @@ from gear_kinematics.commands.output import warn_of_shared_memory
 HELP = 'play the shipped bag into the live node and validate its outputs'
 
 
-def add_arguments(_parser: argparse.ArgumentParser) -> None:
-    """Add no arguments."""
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        '--calibration',
+        type=Path,
+        metavar='FILE',
+        help='of the gear, to show and validate the corrected output too',
+    )
 
 
-def run(_options: argparse.Namespace) -> ExitCode:
+def run(options: argparse.Namespace) -> ExitCode:
     """Show the outputs live, then the result of the validation."""
     warn_of_shared_memory(participants=2)
     # Needs ROS, unlike most commands.
     from gear_kinematics.ros import demo  # noqa: PLC0415
 
-    return ExitCode.DONE if demo.run(Console()).passed else ExitCode.FAILED
+    return ExitCode.DONE if demo.run(Console(), options.calibration).passed else ExitCode.FAILED

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from rich.console import Console, Group
@@ -11,15 +12,17 @@ from rich.table import Table
 
 from gear_kinematics.bag import Bag, Message
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.kinematics import gear_from_mapping, matrix_method
 from gear_kinematics.ros.live import live_messages
 from gear_kinematics.state import parameters
+from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_pose_arrays
 from gear_kinematics.wire.joint_reader import JointReader
+from gear_kinematics.wire.topics import CORRECTED_STATE, CORRECTED_TOPICS
 
 TOLERANCE = 1e-12
 """Tolerance: of angles in rad, of positions in units of the eccentricity."""
@@ -27,9 +30,21 @@ _BAG = 'servo_point_to_point'
 _TOPICS = Topics()
 
 
-def run(console: Console) -> BagReport:
-    """Play the shipped bag's rotor states into a node process and validate its outputs."""
+def run(console: Console, calibration_file: Path | None = None) -> BagReport:
+    """Play the shipped bag's rotor states into a node process and validate its outputs.
+
+    Args:
+        console: to show them on.
+        calibration_file: of the gear; None takes that of the parameters, if any.
+
+    Raises:
+        ValueError: if the calibration cannot be used.
+    """
     config = parameters.load(parameters.default_config())
+    calibration = None
+    if file := calibration_file or config['calibration']:
+        calibration = Calibration.load(Path(file), gear_from_mapping(config))
+        config['calibration'] = str(Path(file).resolve())
     with Bag(share_directory() / 'bags' / _BAG) as bag:
         count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
         console.print(
@@ -43,6 +58,8 @@ def run(console: Console) -> BagReport:
         tolerances=Tolerances(TOLERANCE, TOLERANCE * eccentricity),
         strict=True,
         solver=matrix_method.solve,  # not the node's own formulas
+        calibration=calibration,
+        corrected={name: f'/{name}' for name in CORRECTED_TOPICS if calibration},
     )
     validator.feed(published)
     report = validator.report(_BAG)
@@ -76,7 +93,12 @@ def _current(received: list[Message], bodies: int) -> Table:
     """Return a table of the latest message of each topic."""
     table = Table('topic', 'now', box=None)
     latest = {topic: data for topic, _, data in received[-12:]}
-    for topic, name in ((_TOPICS.rotor, 'rotor angle'), (_TOPICS.output, 'output angle')):
+    angles = {
+        _TOPICS.rotor: 'rotor angle',
+        _TOPICS.output: 'output angle',
+        f'/{CORRECTED_STATE}': 'corrected angle',
+    }
+    for topic, name in angles.items():
         if topic in latest:
             _, _, angle, *_ = JointReader('').read(latest[topic])
             table.add_row(topic, f'{name} {angle:10.4f} rad {math.degrees(angle):10.2f}°')

@@ -9,6 +9,7 @@ from xml.etree import ElementTree as ET
 
 import pytest
 from blocked_bags import GEARKIN
+from calibrations import calibration
 
 from gear_kinematics.commands.cli import COMMANDS, main
 
@@ -37,6 +38,24 @@ def test_demo_plays_the_shipped_bag_through_the_live_node_and_agrees():
         *[('/body_poses', '3000', '0')] * 2,
     ]
     assert 'Traceback' not in done.stderr
+
+
+@pytest.mark.live
+@pytest.mark.slow
+def test_demo_validates_the_corrected_output_by_a_calibration(tmp_path):
+    path = tmp_path / 'calibration.yaml'
+    path.write_text(calibration().text(), 'utf-8')
+    done = run(GEARKIN, 'demo', '--calibration', str(path))
+    assert done.returncode == 0, done.stderr
+    assert 'All agree' in done.stdout
+    for topic, fields in (('/corrected_state', 3), ('/corrected_interval', 1)):
+        rows = [line for line in done.stdout.splitlines() if f'{topic} ' in line]
+        assert [row.split('│')[2].strip() for row in rows] == fields * ['3000']
+
+
+def test_demo_names_a_calibration_that_is_missing(capsys):
+    assert main(['demo', '--calibration', 'missing.yaml']) == 2
+    assert capsys.readouterr().err == 'gearkin: missing.yaml: No such file or directory\n'
 
 
 def test_describe_tells_the_numbers_of_the_specification(capsys):
