@@ -10,17 +10,13 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Gear
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.correction import Corrector
 from gear_kinematics.state.rotor_input import RotorSamples
-from gear_kinematics.validation.diagnosis import UnseenTurns
-from gear_kinematics.validation.matching import Columns, OutputTopic
-from gear_kinematics.validation.output_topics import FieldErrors, Solver, Tolerances, ideal_angle
+from gear_kinematics.validation.matching import Columns
+from gear_kinematics.validation.output_topics import STATE_UNITS, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
-from gear_kinematics.validation.report import FieldReport
-from gear_kinematics.wire.batches import FIELDS, decode_joint_states
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
 
 Array = NDArray[Any]
@@ -47,51 +43,22 @@ class RecomputedCorrection:
         return correction._asdict()
 
 
-class CorrectedTopic(OutputTopic):
+class CorrectedTopic(JointStateTopic):
     """A topic of the corrected output; samples have the columns of `RecomputedCorrection`."""
 
-    units: ClassVar[Mapping[str, str]]
-    """Units of the fields by their names."""
-
-    def __init__(
-        self,
-        joint: str,
-        gear: Gear,
-        tolerances: Tolerances,
-        solver: Solver,
-        unseen: UnseenTurns | None,
-    ) -> None:
-        super().__init__(unseen)
-        self._gear = gear
-        self._solver = solver
-        self.joint = joint
-        self.offset = 0.0
-        """Known offset of the recorded angle, rad."""
-        self._errors = [
-            FieldErrors(name, unit, tolerances.angle) for name, unit in self.units.items()
-        ]
-
-    def _fields(self) -> tuple[FieldReport, ...]:
-        return tuple(errors.report() for errors in self._errors)
-
-    def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        self._states = decode_joint_states(messages, self.joint)
-        return self._states.stamp, self._states.malformed
-
     def _compare(self, rows: Array, samples: Columns) -> None:
-        states, stamp = self._states, samples['stamp']
-        self._faults.add(f'no joint {self.joint!r}', stamp[~states.joint_found[rows]])
+        stamp = samples['stamp']
+        self._note_strangers(rows, stamp)
         turns = samples['turns'] + (self._unseen.of(samples['stretch']) if self._unseen else 0.0)
         rotor_angle = TURN * turns + samples['angle']
-        expected = self._expected(samples | {'turns': turns})
-        for column, (errors, (least, most)) in enumerate(zip(self._errors, expected, strict=True)):
-            wanted, there = ~np.isnan(least), states.present[rows, column]
-            both = wanted & there
-            recorded = states.values[rows, column]
-            error = np.maximum(np.maximum(least - recorded, recorded - most), 0.0)
-            errors.update(
-                error[both], stamp[both], rotor_angle[both], absent=stamp[wanted != there]
+        recorded = self._states.values[rows].T
+        compared = [
+            (~np.isnan(least), np.maximum(np.maximum(least - value, value - most), 0.0))
+            for value, (least, most) in zip(
+                recorded, self._expected(samples | {'turns': turns}), strict=False
             )
+        ]
+        self._add_errors(rows, stamp, rotor_angle, compared)
 
     def _expected(self, samples: Columns) -> Sequence[tuple[Array, Array]]:
         """The least and the greatest value of each field; NaN where it is absent."""
@@ -101,10 +68,10 @@ class CorrectedTopic(OutputTopic):
 class CorrectedState(CorrectedTopic):
     """corrected_state."""
 
-    units: ClassVar[Mapping[str, str]] = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
+    units: ClassVar[Mapping[str, str]] = STATE_UNITS
 
     def _expected(self, samples: Columns) -> Sequence[tuple[Array, Array]]:
-        ideal = ideal_angle(self._gear, self._solver, samples['turns'], samples['angle'])
+        ideal = self._ideal_angle(samples['turns'], samples['angle'])
         position = ideal + self.offset + samples['deviation']
         history = samples['unknown_history']
         ratio = self._gear.gear_ratio

@@ -1,9 +1,9 @@
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,8 +94,11 @@ def _first(known: int | None, stamps: Array) -> int | None:
     return int(stamps[0]) if known is None and len(stamps) else known
 
 
-class OutputState(OutputTopic):
-    """output_state."""
+class JointStateTopic(OutputTopic):
+    """An output topic of JointStates with one joint; its fields are compared one by one."""
+
+    units: ClassVar[Mapping[str, str]]
+    """Units of the fields by their names."""
 
     def __init__(
         self,
@@ -108,15 +111,12 @@ class OutputState(OutputTopic):
         super().__init__(unseen)
         self._gear = gear
         self._solver = solver
-        self.fit = AngleFit()
+        self.joint = joint
         self.offset = 0.0
         """Known offset of the recorded angle, rad."""
-        self.joint = joint
         self._errors = tuple(
-            FieldErrors(name, unit, tolerances.angle)
-            for name, unit in zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True)
+            FieldErrors(name, unit, tolerances.angle) for name, unit in self.units.items()
         )
-        self.position = self._errors[0]
 
     def _fields(self) -> tuple[FieldReport, ...]:
         return tuple(errors.report() for errors in self._errors)
@@ -125,10 +125,54 @@ class OutputState(OutputTopic):
         self._states = decode_joint_states(messages, self.joint)
         return self._states.stamp, self._states.malformed
 
+    def _note_strangers(self, rows: Array, stamp: Array) -> None:
+        """Count the messages without the joint."""
+        self._faults.add(f'no joint {self.joint!r}', stamp[~self._states.joint_found[rows]])
+
+    def _add_errors(
+        self,
+        rows: Array,
+        stamp: Array,
+        rotor_angle: Array,
+        compared: Iterable[tuple[Array, Array]],
+    ) -> None:
+        """Add the errors of the fields: for each whether it is wanted, and its error, (n,)."""
+        for column, (errors, (wanted, error)) in enumerate(
+            zip(self._errors, compared, strict=True)
+        ):
+            there = self._states.present[rows, column]
+            both = wanted & there
+            errors.update(
+                error[both], stamp[both], rotor_angle[both], absent=stamp[wanted != there]
+            )
+
+    def _ideal_angle(self, turns: Array, angle: Array) -> Array:
+        """The ideal output angle at rotor angles of 2π turns + angle, (n,), rad."""
+        if isinstance(self._gear, Mechanism):
+            return self._solver(self._gear, angle, rotor_turns=turns).output_angle
+        output_turns, rest = self._gear.output_angle(turns, angle, np)
+        return np.asarray(TURN * output_turns + rest)
+
+
+STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
+"""Units of the fields of a JointState by their names."""
+
+
+class OutputState(JointStateTopic):
+    """output_state."""
+
+    units: ClassVar[Mapping[str, str]] = STATE_UNITS
+
+    def __init__(self, *arguments: Any) -> None:
+        """Take the arguments of `JointStateTopic`."""
+        super().__init__(*arguments)
+        self.fit = AngleFit()
+        self.position = self._errors[0]
+
     def _compare(self, rows: Array, samples: Columns) -> None:
-        states, stamp, stretch = self._states, samples['stamp'], samples['stretch']
-        self._faults.add(f'no joint {self.joint!r}', stamp[~states.joint_found[rows]])
-        recorded = states.values[rows] - (self.offset, 0.0, 0.0)
+        stamp, stretch = samples['stamp'], samples['stretch']
+        self._note_strangers(rows, stamp)
+        recorded = self._states.values[rows] - (self.offset, 0.0, 0.0)
         unseen_turns: Array | float = 0.0
         if self._unseen:
             expected = self._ideal_angle(samples['turns'], samples['angle'])
@@ -139,18 +183,11 @@ class OutputState(OutputTopic):
         rotor_angle = TURN * turns + samples['angle']
         velocity = self._gear.gear_ratio.output_rate(samples['velocity'])
         effort = float(self._gear.gear_ratio) * samples['effort']
-        signed = recorded - np.stack([angle, velocity, effort], axis=-1)
-        for column, (errors, needed) in enumerate(
-            zip(self._errors, (angle, velocity, effort), strict=True)
-        ):
-            wanted, there = ~np.isnan(needed), states.present[rows, column]
-            both = wanted & there
-            errors.update(
-                np.abs(signed[both, column]),
-                stamp[both],
-                rotor_angle[both],
-                absent=stamp[wanted != there],
-            )
+        needed = np.stack([angle, velocity, effort], axis=-1)
+        signed = recorded - needed
+        self._add_errors(
+            rows, stamp, rotor_angle, zip(~np.isnan(needed.T), np.abs(signed.T), strict=True)
+        )
         usable = np.isfinite(signed[:, 0])
         self.fit.update(rotor_angle[usable], recorded[usable, 0], signed[usable, 0])
         self.compared = {
@@ -159,17 +196,6 @@ class OutputState(OutputTopic):
             'output_angle': recorded[usable, 0],
             'error': signed[usable, 0],
         }
-
-    def _ideal_angle(self, turns: Array, angle: Array) -> Array:
-        return ideal_angle(self._gear, self._solver, turns, angle)
-
-
-def ideal_angle(gear: Gear, solver: Solver, turns: Array, angle: Array) -> Array:
-    """The ideal output angle at rotor angles of 2π turns + angle, (n,), rad."""
-    if isinstance(gear, Mechanism):
-        return solver(gear, angle, rotor_turns=turns).output_angle
-    output_turns, rest = gear.output_angle(turns, angle, np)
-    return np.asarray(TURN * output_turns + rest)
 
 
 class BodyPoses(OutputTopic):
