@@ -95,18 +95,22 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
 
 
+def corrected_beside(output: str = Topics().output) -> dict[str, str]:
+    """Return the names of CORRECTED_TOPICS in the namespace of the topic of output_state."""
+    namespace, _, _ = output.rpartition('/')
+    return {name: f'{namespace}/{name}' for name in CORRECTED_TOPICS}
+
+
 def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
-    """Return those of CORRECTED_TOPICS that are beside the topic of the output, each by its name.
+    """Return those of `corrected_beside` that a bag has.
 
     Args:
         bag: an open bag.
         output: the topic of output_state.
     """
-    namespace, _, _ = output.rpartition('/')
-    beside = {name: f'{namespace}/{name}' for name in CORRECTED_TOPICS}
     return {
         name: topic
-        for name, topic in beside.items()
+        for name, topic in corrected_beside(output).items()
         if bag.topics.get(topic) == CORRECTED_TOPICS[name]
     }
 

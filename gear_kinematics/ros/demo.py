@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from gear_kinematics.bag import Bag, Message
-from gear_kinematics.bag.roles import Topics
+from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.kinematics import gear_from_mapping, matrix_method
 from gear_kinematics.ros.live import live_messages
 from gear_kinematics.state import parameters
@@ -22,7 +22,7 @@ from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_pose_arrays
 from gear_kinematics.wire.joint_reader import JointReader
-from gear_kinematics.wire.topics import CORRECTED_STATE, CORRECTED_TOPICS
+from gear_kinematics.wire.topics import CORRECTED_STATE
 
 TOLERANCE = 1e-12
 """Tolerance: of angles in rad, of positions in units of the eccentricity."""
@@ -44,7 +44,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     calibration = None
     if file := calibration_file or config['calibration']:
         calibration = Calibration.load(Path(file), gear_from_mapping(config))
-        config['calibration'] = str(Path(file).resolve())
+        config['calibration'] = str(file)
     with Bag(share_directory() / 'bags' / _BAG) as bag:
         count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
         console.print(
@@ -59,7 +59,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
         strict=True,
         solver=matrix_method.solve,  # not the node's own formulas
         calibration=calibration,
-        corrected={name: f'/{name}' for name in CORRECTED_TOPICS if calibration},
+        corrected=corrected_beside() if calibration else {},
     )
     validator.feed(published)
     report = validator.report(_BAG)

@@ -27,7 +27,7 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
-from gear_kinematics.bag.roles import Topics
+from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.ros.drivers import DEPTH
@@ -36,7 +36,7 @@ from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
-from gear_kinematics.wire.topics import CORRECTED_TOPICS, JOINT_STATE, ROTOR_STATE
+from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE
 
 POLL = 0.1
 """Greatest delay of the response to a signal, s."""
@@ -306,7 +306,10 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
     namespace = f'/gear_kinematics_{os.getpid()}'
     with TemporaryDirectory() as folder:
         config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
-        config.write_text(yaml.safe_dump({'/**': {'ros__parameters': dict(parameters)}}), 'utf-8')
+        given = dict(parameters)
+        if given['calibration']:  # a relative path would be relative to the file of the parameters
+            given['calibration'] = str(Path(given['calibration']).absolute())
+        config.write_text(yaml.safe_dump({'/**': {'ros__parameters': given}}), 'utf-8')
         # The topic of diagnostics has an absolute name.
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
                      '-r', '/diagnostics:=diagnostics']  # fmt: skip
@@ -333,8 +336,8 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
 def _outputs(parameters: Mapping[str, Any]) -> Collection[str]:
     """The recorded topics on which the node answers."""
     known = isinstance(gear_from_mapping(parameters), Mechanism)
-    corrected = CORRECTED_TOPICS if parameters['calibration'] else ()
-    return *_TOPICS[1 : 3 if known else 2], *(f'/{name}' for name in corrected)
+    corrected = corrected_beside().values() if parameters['calibration'] else ()
+    return *_TOPICS[1 : 3 if known else 2], *corrected
 
 
 def _stamped(data: bytes, received: int) -> bytes:

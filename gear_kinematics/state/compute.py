@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_batches
-from gear_kinematics.bag.roles import Topics
+from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.correction import Corrector
@@ -17,7 +17,6 @@ from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import (
     BODY_POSES,
-    CORRECTED_TOPICS,
     JOINT_STATE,
     OUTPUT_STATE,
     TOPICS,
@@ -95,8 +94,7 @@ def compute(
     corrector = None
     if calibration:
         corrector = Corrector(calibration)
-        namespace, _, _ = output_topic.rpartition('/')
-        topic_of |= {topic: f'{namespace}/{topic}' for topic in CORRECTED_TOPICS}
+        topic_of |= corrected_beside(output_topic)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}

@@ -8,14 +8,18 @@ from typing import Any
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet
 from gear_kinematics.bag.errors import unexpected
-from gear_kinematics.bag.roles import Topics, find_corrected_topics, find_topics
+from gear_kinematics.bag.roles import (
+    Topics,
+    corrected_beside,
+    find_corrected_topics,
+    find_topics,
+)
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
-from gear_kinematics.wire.topics import CORRECTED_TOPICS
 
 _TOPICS = Topics()
 
@@ -69,12 +73,9 @@ def validate_bag(
             }
             topics = find_topics(bag, given, outputs=not play, poses=poses)
             if play:
-                # A relative path would be relative to the file that the node gets.
-                file = str(Path(task.calibration_file).resolve()) if task.calibration else ''
-                messages = play(
-                    bag, {**task.parameters, 'calibration': file}, rotor_topic=topics.rotor
-                )
-                corrected = {name: f'/{name}' for name in CORRECTED_TOPICS if file}
+                calibration = {'calibration': task.calibration_file}
+                messages = play(bag, {**task.parameters, **calibration}, rotor_topic=topics.rotor)
+                corrected = corrected_beside() if task.calibration else {}
                 # Nothing is lost by a recorder here.
                 task = replace(task, strict=True)
                 return validate_messages(task, messages, progress, corrected=corrected)
