@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N·m',
         help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
     )
-    arguments.add_columns(parser, 'angle', 'torque', 'rotor', 'output')
+    arguments.add_columns(parser, 'angle', 'torque', 'rotor', 'output', 'time')
     arguments.add_encoder_topics(parser)
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(

@@ -11,12 +11,14 @@ from gear_kinematics.bag import Bag, BagError, DamagedBagError, ReportProgress, 
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.lost_motion.clock import ClockError, times_of_rows
 from gear_kinematics.lost_motion.encoder_step import Step, step_of
 from gear_kinematics.lost_motion.motion import Motion
 from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSamples
 from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 Array = NDArray[np.float64]
@@ -109,10 +111,18 @@ def _loading(
     known = np.isfinite(samples.effort)
     if not known.any():
         return None
-    torque = ratio * samples.effort[known]
+    torque, stamp = ratio * samples.effort[known], samples.stamp[known]
     if motion is None:
         twist = (turns - turns[0])[known] * TURN + angle[known]
-        return Loading(torque, twist, rotor_step, measured=False)
+        return Loading(torque, twist, rotor_step, measured=False, time=_time(stamp))
     start = samples.stamp[0]
-    torque = np.interp(motion.stamp - start, samples.stamp[known] - start, torque)
-    return Loading.of_gear(torque, motion)
+    torque = np.interp(motion.stamp - start, stamp - start, torque)
+    return Loading.of_gear(torque, motion, _time(motion.stamp))
+
+
+def _time(stamp: NDArray[np.int64]) -> Array | None:
+    """Times of rows, s; None if a clock was set back."""
+    try:
+        return times_of_rows((stamp - stamp[0]) / SECOND)
+    except ClockError:
+        return None

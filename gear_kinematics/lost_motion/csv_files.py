@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, split_turns
+from gear_kinematics.lost_motion.clock import ClockError, times_of_rows, unit_since_1970
 from gear_kinematics.lost_motion.encoder_step import UNITS, step_of
 from gear_kinematics.lost_motion.motion import Motion
 from gear_kinematics.lost_motion.recording import Loading, Recording
@@ -91,29 +92,37 @@ def read_csv(
     Raises:
         CsvError: if it cannot be read, or has no such columns.
     """
-    table = read_columns(path, columns, _SETS)
+    table = read_columns(path, columns, _SETS, optional=('time',))
     found, values = table.found, table.values
-    usable = np.all(np.abs(values) <= LARGEST_ANGLE, axis=1)  # NaN compares false
+    needed = [column for column, role in enumerate(found) if role != 'time']
+    usable = np.all(np.abs(values[:, needed]) <= LARGEST_ANGLE, axis=1)  # NaN compares false
     data = dict(zip(found, values[usable].T, strict=True))
     left_out = int(np.count_nonzero(~usable))
-    remarks = (f'{left_out} rows were left out: not finite, or too large',) if left_out else ()
+    remarks = [f'{left_out} rows were left out: not finite, or too large'] if left_out else []
     ratio = gear.gear_ratio
-    loading = motion = None
+    loading = motion = time = None
+    if 'time' in data and 'torque' in data and usable.any():
+        try:
+            time = times_of_rows(data['time'])
+        except ClockError as error:
+            if columns.time:
+                raise CsvError(f'{path}: the times in {columns.time}: {error}') from error
+            remarks.append(f'The times in {found["time"]} are not used: {error}.')
     if columns.on_rotor and 'torque' in data:
         data['torque'] *= float(ratio)
     if 'rotor' in data:
         motion = _motion(ratio, data, travel, counts, output_counts)
     if 'angle' in data:
-        loading = _loading(ratio, data, counts, on_rotor=columns.on_rotor)
+        loading = _loading(ratio, data, counts, time, on_rotor=columns.on_rotor)
     elif motion and 'torque' in data:
-        loading = Loading.of_gear(data['torque'], motion)
+        loading = Loading.of_gear(data['torque'], motion, time)
     return Recording(
         path.name,
         tuple(_described(table, on_rotor=columns.on_rotor)),
         len(usable),
         loading,
         motion,
-        remarks,
+        tuple(remarks),
     )
 
 
@@ -130,13 +139,19 @@ class Table(NamedTuple):
     """Where the unit comes from."""
 
 
-def read_columns(path: Path, columns: Columns, sets: Sequence[tuple[str, ...]]) -> Table:
+def read_columns(
+    path: Path,
+    columns: Columns,
+    sets: Sequence[tuple[str, ...]],
+    optional: Sequence[str] = (),
+) -> Table:
     """Read the columns of a CSV file that are needed, row by row.
 
     Args:
         path: of the file.
         columns: names that are known.
         sets: of columns that can be used together.
+        optional: columns that are read where they exist; NaN where they contain no number.
 
     Raises:
         CsvError: if it cannot be read, or has none of the sets.
@@ -146,8 +161,9 @@ def read_columns(path: Path, columns: Columns, sets: Sequence[tuple[str, ...]]) 
             first = file.readline()
             rows = csv.reader(chain([first], file), delimiter=max(',;\t', key=first.count))
             header = [name.strip() for name in next(rows)]
-            found = _find(path, header, columns, sets) if header else {}
-            values = _numbers(path, header, rows, list(found.values()))
+            found = _find(path, header, columns, sets, optional) if header else {}
+            lenient = [role in optional for role in found]
+            values = _numbers(path, header, rows, list(found.values()), lenient)
     except (OSError, UnicodeDecodeError) as error:
         cause = getattr(error, 'strerror', None) or 'not text in UTF-8'
         raise CsvError(f'{path}: {cause}') from error
@@ -159,13 +175,20 @@ def read_columns(path: Path, columns: Columns, sets: Sequence[tuple[str, ...]]) 
     for column, (role, name) in enumerate(found.items()):
         if role in _ANGLES:
             values[:, column] *= UNITS[unit]
-        elif role == 'time' and (suffix := _TIME_UNIT.search(name.lower())):
-            values[:, column] *= _TIME_UNITS[suffix[1]]
+        elif role == 'time':
+            suffix = _TIME_UNIT.search(name.lower())
+            values[:, column] *= (
+                _TIME_UNITS[suffix[1]] if suffix else unit_since_1970(values[0, column]) or 1.0
+            )
     return Table(found, values, unit, why)
 
 
 def _find(
-    path: Path, header: Sequence[str], columns: Columns, sets: Sequence[tuple[str, ...]]
+    path: Path,
+    header: Sequence[str],
+    columns: Columns,
+    sets: Sequence[tuple[str, ...]],
+    optional: Sequence[str],
 ) -> dict[str, str]:
     """The columns to read, by their role."""
     twice = [name for name, count in Counter(header).items() if count > 1]
@@ -190,7 +213,8 @@ def _find(
             f'{path}: {lacking} {" nor ".join(pairs)} among the columns '
             f'{", ".join(header)}; name them with {options}'
         )
-    return {role: found[role] for roles in together for role in roles}
+    more = tuple(role for role in optional if role in found)
+    return {role: found[role] for roles in (*together, more) for role in roles}
 
 
 def _with_article(role: str) -> str:
@@ -206,18 +230,32 @@ def _plain(name: str) -> str:
 
 
 def _numbers(
-    path: Path, header: Sequence[str], rows: Iterable[Sequence[str]], names: Sequence[str]
+    path: Path,
+    header: Sequence[str],
+    rows: Iterable[Sequence[str]],
+    names: Sequence[str],
+    lenient: Sequence[bool],
 ) -> Array:
-    places = [header.index(name) for name in names]
+    readers = [
+        (header.index(name), _number_or_nan if optional else float)
+        for name, optional in zip(names, lenient, strict=True)
+    ]
     values = array('d')  # a row takes no more memory than its numbers
-    nothing = len(places) * [math.nan]
+    nothing = len(readers) * [math.nan]
     for line, row in enumerate(rows, start=2):
         try:
-            values.extend([float(row[place]) for place in places] if row else nothing)
+            values.extend([read(row[place]) for place, read in readers] if row else nothing)
         except (ValueError, IndexError) as error:
             cause = 'too few columns' if isinstance(error, IndexError) else str(error)
             raise CsvError(f'{path}, line {line}: {cause}') from error
-    return np.frombuffer(values).reshape(-1, max(1, len(places)))
+    return np.frombuffer(values).reshape(-1, max(1, len(readers)))
+
+
+def _number_or_nan(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 def _unit(
@@ -246,15 +284,22 @@ def _described(table: Table, *, on_rotor: bool) -> Iterable[str]:
         yield f'torque {found["torque"]} {side}, N·m'
     if 'rotor' in found:
         yield f'rotor {found["rotor"]}, output {found["output"]}, {unit} ({why})'
+    if 'time' in found:
+        yield f'time {found["time"]}'
 
 
 def _loading(
-    ratio: GearRatio, data: Mapping[str, Array], counts: int | None, *, on_rotor: bool
+    ratio: GearRatio,
+    data: Mapping[str, Array],
+    counts: int | None,
+    time: Array | None,
+    *,
+    on_rotor: bool,
 ) -> Loading:
     angle, step = data['angle'], step_of(counts, data['angle'])
     if on_rotor:
         angle, step = angle / float(ratio), step.scaled(1.0 / float(ratio))
-    return Loading(data['torque'], angle, step, measured=False)
+    return Loading(data['torque'], angle, step, measured=False, time=time)
 
 
 def _motion(

@@ -24,17 +24,20 @@ class Loading:
     """rad at the output, between readings of the angle."""
     measured: bool
     """Whether an encoder measured the output; if not, it is taken to be locked."""
+    time: Array | None = None
+    """s since the first sample, increasing; None if it is not known."""
 
     @classmethod
-    def of_gear(cls, torque: Array, motion: Motion) -> Self:
+    def of_gear(cls, torque: Array, motion: Motion, time: Array | None = None) -> Self:
         """Create the loading of the gear alone, from recordings of both its encoders.
 
         Args:
             torque: (n,), N·m, at the output, at the samples of `motion`.
             motion: whose error is the negative twist.
+            time: (n,), s since the first sample.
         """
         step = motion.rotor_step.joined(motion.output_step)
-        return cls(torque, -motion.error, step, measured=True)
+        return cls(torque, -motion.error, step, measured=True, time=time)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -1,7 +1,6 @@
 """When recordings were made: by their contents, their names, or the times of their files."""
 
 import csv
-import math
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -11,14 +10,11 @@ from itertools import islice
 from pathlib import Path
 
 from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.lost_motion.clock import unit_since_1970
 from gear_kinematics.lost_motion.csv_files import is_csv
 
 _TIME_COLUMNS = {'time', 'stamp', 'timestamp', 't'}
 _UNIT = re.compile(r'[\s_]*[\[(]?(n|u|µ|m)?s[\])]?$')
-_EARLIEST = 631_152_000.0
-"""s, 1990: a smaller time does not count from 1970."""
-_LATEST = 4_102_444_800.0
-"""s, 2100."""
 _NAMED = re.compile(
     r'(?<!\d)(?:(?P<year>\d{4})[-_.]?)?(?P<month>\d\d)[-_.]?(?P<day>\d\d)'
     r'[-_.T ]+(?P<hour>\d\d)[-_.:h]?(?P<minute>\d\d)(?:[-_.:]?(?P<second>\d\d))?(?!\d)'
@@ -108,11 +104,6 @@ def _first_time(path: Path) -> float | None:
     names, values = csv.reader(head, delimiter=delimiter)
     for name, value in zip(names, values, strict=False):
         if _UNIT.sub('', name.strip().lower()) in _TIME_COLUMNS:
-            return _since_1970(float(value))
+            unit = unit_since_1970(time := float(value))
+            return None if unit is None else unit * time
     return None
-
-
-def _since_1970(time: float) -> float | None:
-    """Return a time in s, ms, µs or ns as s."""
-    scaled = (time * 10.0**-power for power in (0, 3, 6, 9))
-    return next((t for t in scaled if math.isfinite(t) and _EARLIEST <= t < _LATEST), None)

@@ -81,8 +81,10 @@ def test_torque_with_both_encoders_twists_the_gear_alone(tmp_path, actuator, ang
         rotor=-19.0 * (angle + bench),
         output=bench,
         torque=TORQUE / (-19.0 if on_rotor else 1.0),
+        time=np.arange(len(angle)) / 400.0,
     )
     recording = read(path, actuator, on_rotor=on_rotor)
+    np.testing.assert_allclose(recording.loading.time, np.arange(len(angle)) / 400.0, atol=1e-12)
     np.testing.assert_allclose(recording.loading.angle, angle, rtol=0, atol=1e-12)
     np.testing.assert_allclose(recording.loading.torque, TORQUE, rtol=1e-12)
     assert recording.loading.measured
@@ -101,6 +103,47 @@ def test_rotor_is_taken_to_the_output_by_the_ratio(tmp_path, actuator, angle):
     recording = read(path, actuator, on_rotor=True)
     np.testing.assert_allclose(recording.loading.angle, angle, rtol=1e-12)
     np.testing.assert_allclose(recording.loading.torque, TORQUE, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ('name', 'values'),
+    [
+        ('TIME', lambda time: time),
+        ('time_ms', lambda time: 1e3 * time + 7.0),
+        ('stamp', lambda time: 1e9 * (1_721_381_453 + time)),  # ns since 1970
+        ('Time [s]', lambda time: np.floor(64.0 * time) / 64.0),
+    ],
+)
+def test_times_of_rows_are_read_if_there_are_any(tmp_path, actuator, angle, name, values):
+    time = 0.0025 * np.arange(len(angle))
+    path = write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE, **{name: values(time)})
+    recording = read(path, actuator)
+    np.testing.assert_allclose(recording.loading.time, time, rtol=0, atol=0.0026)
+    assert recording.columns[-1] == f'time {name}'
+    assert read(write_csv(path, angle=angle, torque=TORQUE), actuator).loading.time is None
+
+
+def test_times_that_cannot_be_used_are_reported_and_not_used(tmp_path, actuator, angle):
+    back = np.arange(len(angle), 0.0, -1.0)
+    path = write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE, T=back)
+    recording = read(path, actuator)
+    assert len(recording.loading.angle) == len(angle)
+    assert recording.loading.time is None
+    assert recording.remarks == ('The times in T are not used: they go back.',)
+    with pytest.raises(CsvError, match=r'r\.csv: the times in T: they go back'):
+        read(path, actuator, time='T')
+    clock = [f'12:{row // 60:02d}:{row % 60:02d}' for row in range(len(angle))]
+    columns = {'angle': angle, 'torque': TORQUE, 'time': np.array(clock)}
+    recording = read(write_csv(path, **columns), actuator)
+    assert recording.remarks == ('The times in time are not used: they are not numbers.',)
+
+
+def test_rows_without_a_time_do_not_lose_their_angle(tmp_path, actuator, angle):
+    time = 0.01 * np.arange(len(angle))
+    time[7] = math.nan
+    recording = read(write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE, t=time), actuator)
+    assert len(recording.loading.angle) == len(angle)
+    assert recording.loading.time is None
 
 
 @pytest.mark.parametrize('delimiter', [';', '\t'])
@@ -172,6 +215,7 @@ def test_efforts_of_the_rotor_are_torque_at_the_output(tmp_path, config, actuato
     assert not recording.loading.measured
     assert recording.loading.angle_step.size == pytest.approx(TURN / 2**14 / 19, rel=1e-6)
     np.testing.assert_allclose(recording.loading.torque, TORQUE, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(recording.loading.time, 0.002 * np.arange(len(angle)), atol=1e-9)
     expected = GEAR.play + 2.0 * GEAR.friction / GEAR.stiffness
     assert hysteresis(recording, actuator) == pytest.approx(expected, abs=5e-5)
 
