@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from gear_kinematics.lost_motion import hysteresis
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
-from gear_kinematics.lost_motion.wording import ARC_MINUTES, torque
+from gear_kinematics.lost_motion.wording import ARC_MINUTES, rate_and_duration, torque
 from gear_kinematics.state.uncertainty import Estimate
 
 LOST_MOTION = 'lost motion'
@@ -143,6 +143,34 @@ def doubts(reports: Sequence[LostMotionReport], common: Basis) -> list[str]:
             f'all recordings load the gear. {_listed(wider)} went much further: that widens a '
             'curve.'
         )
+    return [*said, *rate_doubts(reports, common, range(len(reports)))]
+
+
+def rate_doubts(
+    reports: Sequence[LostMotionReport], common: Basis, members: Sequence[int]
+) -> list[str]:
+    """Say in sentences which recordings of some, by number, had much faster or slower ramps."""
+    said: list[str] = []
+    for places, figures in (
+        (common.small, 'hysteresis, backlash and friction'),
+        (common.loaded, 'lost motion and stiffness'),
+    ):
+        found = [
+            (rate, reports[number].recording.name)
+            for number in members
+            if (ramps := reports[number].hysteresis)
+            and (place := places[number]) is not None
+            and (rate := ramps.rates[place])
+        ]
+        if not found:
+            continue
+        slowest, fastest = (way(found, key=lambda pair: pair[0].rate) for way in (min, max))
+        if fastest[0].differs_from(slowest[0]):
+            said.append(
+                f'The ramps for {figures} were not equally fast: {slowest[1]} with '
+                f'{rate_and_duration(slowest[0])}, {fastest[1]} with '
+                f'{rate_and_duration(fastest[0])}. These figures can differ by the rate alone.'
+            )
     return said
 
 

@@ -6,7 +6,14 @@ from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
 
-from gear_kinematics.lost_motion.common import Quantity, basis, doubts, quantities
+from gear_kinematics.lost_motion.common import (
+    Basis,
+    Quantity,
+    basis,
+    doubts,
+    quantities,
+    rate_doubts,
+)
 from gear_kinematics.lost_motion.comparison import (
     SIGNIFICANCE,
     Change,
@@ -60,7 +67,10 @@ def compared(
     if not found:
         return None
     at = f'{torque(_rated(reports))} N·m' if common else ''
-    sentences = [_sentence(list(pair), at) for _, pair in groupby(found, lambda c: c.second.name)]
+    sentences = [
+        _sentence(list(pair), at, _limits(reports, common, named[0], second))
+        for second, pair in groupby(found, lambda change: change.second)
+    ]
     head = Table.of_values(
         Layout.INLINE,
         ('compared with', printable(named[0].name)),
@@ -95,7 +105,16 @@ def _rated(reports: Sequence[LostMotionReport]) -> float:
     return next(r.hysteresis.settings.rated_torque for r in reports if r.hysteresis)
 
 
-def _sentence(pair: Sequence[Change], at: str) -> str:
+def _limits(
+    reports: Sequence[LostMotionReport], common: Basis | None, *groups: Group
+) -> list[str]:
+    """Say in short by what else than the gear groups differ."""
+    members = [number for group in groups for number in group.members]
+    differ = common and rate_doubts(reports, common, members)
+    return ['at different rates of the torque'] if differ else []
+
+
+def _sentence(pair: Sequence[Change], at: str, limits: Sequence[str]) -> str:
     """Say what has changed from one group to another, and what has not."""
     first, second = pair[0].first.name, pair[0].second.name
     judged = [change for change in pair if change.probability is not None]
@@ -109,6 +128,7 @@ def _sentence(pair: Sequence[Change], at: str) -> str:
         parts.append(f'without repeats, and therefore not judged: {", ".join(unknown)}')
     if any(len(group.members) == 1 for group in (pair[0].first, pair[0].second)):
         parts.append('judged by the scatter within single recordings')
+    parts += limits
     return f'{second} against {first}{f", at {at}" if at else ""}: {"; ".join(parts)}'
 
 

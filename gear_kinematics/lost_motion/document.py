@@ -18,6 +18,7 @@ from gear_kinematics.lost_motion.wording import (
     PERCENT,
     arc_minutes,
     plus_minus,
+    rate_and_duration,
     remarks,
     rounded,
     torque,
@@ -135,15 +136,24 @@ def _head(report: LostMotionReport) -> Table:
         ('columns', printable('; '.join(report.recording.columns))),
         ('gear ratio', str(report.gear_ratio)),
         ('rated torque', rated),
+    known = [rate for rate in found.rates if rate] if found else []
     )
 
 
 def _tables(report: LostMotionReport) -> Iterator[Table]:
     """Yield the tables for the available results."""
     if found := report.hysteresis:
+        ('test', _kind(report)),
+        ('rate of the torque', '; '.join(map(rate_and_duration, known))),
         yield _figure_table(found)
         if len(found.figures) > 1:
             yield _amplitude_table(found)
+def _kind(report: LostMotionReport) -> str:
+    """Name the kind of the test as the standards divide them."""
+    static = ['static (torque ramps)'] if report.hysteresis else []
+    return ', '.join([*static, *(['dynamic (in motion)'] if report.transmission else [])])
+
+
         yield _stiffness_table(found)
     if report.transmission:
         yield _transmission_table(report.transmission, in_rows=_in_rows(report))

@@ -1,6 +1,6 @@
 """Torque ramps: their reversals, and the angle over the torque between these.
 
-Ramps are found by the torque alone, without time stamps or numbers of tests.
+Ramps are found by the torque alone, without numbers of tests; times are optional.
 """
 
 import math
@@ -43,6 +43,8 @@ class HalfLoop:
     """N·m, standard deviation of a reading of the torque."""
     blur: float
     """N·m, standard deviation of the noise after smoothing."""
+    time: Array | None = None
+    """(n,), s, at these torques; None if it is not known."""
 
     @property
     def start(self) -> float:
@@ -112,17 +114,18 @@ class Ramps:
     """Half loops to the positive and to the negative peak, paired in order of time."""
 
 
-def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
+def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[Ramps, ...]:
     """Find the ramps of a recording, in ascending order of amplitude.
 
     Args:
         torque: (n,), N·m.
         angle: (n,), rad.
+        time: (n,), s, increasing.
 
     Raises:
         RampError: if the torque never goes to both sides and back.
     """
-    halves = _half_loops(torque, angle)
+    halves = _half_loops(torque, angle, time)
     # What preceded the first half loop is not known, so it belongs to no loop.
     loops = [_loop(*pair) for pair in zip(halves[1::2], halves[2::2], strict=False)]
     loops = [loop for loop in loops if loop.reaches(0.0)]
@@ -153,17 +156,21 @@ def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLo
     )
 
 
-def _half_loops(torque: Array, angle: Array) -> list[HalfLoop]:
+def _half_loops(torque: Array, angle: Array, time: Array | None) -> list[HalfLoop]:
     if len(torque) < _ROWS:
         return []
     noise = _noise(torque)
     least = max(_CLEAR_OF_NOISE * noise, _CLEAR_OF_ZERO * float(np.max(np.abs(torque))))
     mean = np.convolve(np.pad(torque, _ROWS // 2, 'edge'), np.full(_ROWS, 1.0 / _ROWS), 'valid')
     turns = [_peak(torque, rows, noise) for rows in _half_cycles(mean, least)]
-    return [
-        _half_loop(torque[first : last + 1], angle[first : last + 1], noise)
+    parts = [
+        slice(first, last + 1)
         for first, last in pairwise([0, *turns, len(torque) - 1])
         if last - first >= _ROWS
+    ]
+    return [
+        _half_loop(torque[rows], angle[rows], noise, None if time is None else time[rows])
+        for rows in parts
     ]
 
 
@@ -186,15 +193,21 @@ def _peak(torque: Array, rows: slice, noise: float) -> int:
     return first + int(np.argmax(np.abs(_smooth(torque[rows], noise))))
 
 
-def _half_loop(torque: Array, angle: Array, noise: float) -> HalfLoop:
+def _half_loop(torque: Array, angle: Array, noise: float, time: Array | None) -> HalfLoop:
     smooth = _smooth(torque, noise)
     blur = noise / math.sqrt(_mean_rows(torque, noise))
     sign = 1.0 if smooth[-1] > smooth[0] else -1.0
     means, counts = _isotonic(sign * smooth)
+    times = None if time is None else _means(time, counts)
+    return HalfLoop(sign * means, _means(angle, counts), noise, blur, times)
+
+
+def _means(values: Array, counts: NDArray[np.intp]) -> Array:
+    """Means of successive groups of so many values."""
     ends = np.cumsum(counts)
-    sums = np.concatenate([[0.0], np.cumsum(angle)])
-    angles = (sums[ends] - sums[ends - counts]) / counts
-    return HalfLoop(sign * means, angles, noise, blur)
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    means: Array = (sums[ends] - sums[ends - counts]) / counts
+    return means
 
 
 def _noise(torque: Array) -> float:

@@ -7,6 +7,7 @@ from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.lost_motion import hysteresis, transmission
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
 from gear_kinematics.lost_motion.ramps import RampError, Ramps, find_ramps
+from gear_kinematics.lost_motion.rate import Rate, rates
 from gear_kinematics.lost_motion.ratio import RatioEstimate, check_ratio
 from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.lost_motion.transmission import TransmissionFigures
@@ -24,6 +25,8 @@ class HysteresisReport:
     figures: tuple[Figures, ...]
     ramps: tuple[Ramps, ...]
     """Curves of the figures."""
+    rates: tuple[Rate | None, ...]
+    """How fast the torque of the ramps changed; None where their times are not known."""
 
     @property
     def smallest(self) -> Figures:
@@ -96,7 +99,7 @@ def measure(
 def _hysteresis(
     loading: Loading, rated_torque: float | None, corners: tuple[float, ...] | None
 ) -> HysteresisReport:
-    ramps = find_ramps(loading.torque, loading.angle)
+    ramps = find_ramps(loading.torque, loading.angle, loading.time)
     rated = ramps[-1].amplitude if rated_torque is None else rated_torque
     if corners is None:
         corners = tuple(share * rated for share in STIFFNESS_SHARES)
@@ -107,4 +110,5 @@ def _hysteresis(
         loading.measured,
         hysteresis.figures(ramps, settings),
         ramps,
+        rates(ramps),
     )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
+from gear_kinematics.lost_motion.rate import Rate
 from gear_kinematics.lost_motion.ratio import MOST_PAIRS, MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.report.document import number, printable
@@ -155,6 +156,14 @@ def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
     decimals = max(0, 1 - math.floor(math.log10(spread)))
     # Zero must have no sign.
     return f'{round(value, decimals) + 0.0:.{decimals}f}', f'{spread:.{decimals}f}'
+
+
+def rate_and_duration(rate: Rate) -> str:
+    """Describe how fast the torque of ramps changed."""
+    return (
+        f'{number(rate.rate)} N·m/s, {number(rate.duration)} s a loop to '
+        f'{torque(rate.amplitude)} N·m'
+    )
 
 
 def torque(value: float) -> str:
