@@ -12,10 +12,11 @@ from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.lost_motion import LostMotionReport
 from gear_kinematics.lost_motion.common import at_common_torque
 from gear_kinematics.lost_motion.compared import Compared, compared
-from gear_kinematics.lost_motion.comparison import grouped
+from gear_kinematics.lost_motion.comparison import at_positions, grouped
 from gear_kinematics.lost_motion.document import document
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
 from gear_kinematics.lost_motion.over_time import over_time
+from gear_kinematics.lost_motion.positions import DEFAULT_PATTERN, over_positions
 from gear_kinematics.lost_motion.task import WORK, Outcome, Task, measure_recording
 from gear_kinematics.lost_motion.times import common_times
 
@@ -79,6 +80,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='compare groups of recordings: a glob for each of them (repeat the option), or a '
         'regular expression with one group in parentheses',
     )
+    several.add_argument(
+        '--positions',
+        nargs='?',
+        const=DEFAULT_PATTERN,
+        metavar='PATTERN',
+        help='combine recordings at several positions of the output, by the text in parentheses '
+        'of a regular expression in their names (default: position_1 ...)',
+    )
     ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
     arguments.add_fleet(several.add_mutually_exclusive_group())
     arguments.add_report_forms(parser)
@@ -94,8 +103,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         if text:
             complain(text)
     if usable:
-        reports, comparison = _compared(usable, options)
-        reporter.write(document(reports, comparison))
+        reporter.write(document(*_compared(usable, options)))
     complete = len(usable) == len(outcomes) and not any(damage)
     return ExitCode.DONE if complete else ExitCode.UNUSABLE
 
@@ -135,28 +143,36 @@ def _measured(
 
 def _compared(
     usable: Sequence[Outcome], options: argparse.Namespace
-) -> tuple[list[LostMotionReport], Compared | None]:
+) -> tuple[list[LostMotionReport], list[Compared]]:
     """Return the reports, those that are compared at a common torque, and what they tell."""
     reports = [outcome.report for outcome in usable if outcome.report]
     torques = options.rated_torque, options.stiffness_torques
     if options.trend:
+        if options.positions:
+            raise ValueError('--positions cannot be combined with --trend')
         times, source = common_times([outcome.times for outcome in usable if outcome.times])
         order = sorted(range(len(reports)), key=times.__getitem__)
         reports = at_common_torque([reports[number] for number in order], *torques)
-        return reports, over_time(reports, [times[number] for number in order], source)
+        return reports, [over_time(reports, [times[number] for number in order], source)]
+    groups, apart = None, []
     if options.group:
         groups, others = grouped([report.recording.name for report in reports], options.group)
         for report in others:
             complain(f'{reports[report].recording.name}: is of no group, and not compared')
         apart = [reports[number] for number in others]
         reports = [report for number, report in enumerate(reports) if number not in others]
-    else:
-        groups, apart = None, []
+    found: list[Compared] = []
     reports = at_common_torque(reports, *torques)
-    comparison = compared(reports, groups)
-    if options.plot and not comparison and len(usable) > 1:
+    if options.positions:
+        names = [report.recording.name for report in reports]
+        gears, positions = at_positions(names, options.positions)
+        groups = groups or gears
+        found.append(over_positions(reports, groups, positions))
+    if comparison := compared(reports, groups):
+        found.append(comparison)
+    if options.plot and not found and len(usable) > 1:
         raise ValueError('--plot: the recordings have no figure in common')
-    return [*reports, *apart], comparison
+    return [*reports, *apart], found
 
 
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:

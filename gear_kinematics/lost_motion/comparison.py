@@ -83,21 +83,62 @@ def grouped(names: Sequence[str], patterns: Sequence[str]) -> tuple[list[Group],
     return [Group(name, tuple(numbers)) for name, numbers in members.items()], others
 
 
+def at_positions(names: Sequence[str], pattern: str) -> tuple[list[Group], list[str]]:
+    """Group recordings whose names differ only in the position of the output.
+
+    Args:
+        names: of the recordings.
+        pattern: a regular expression with one group in parentheses, the position.
+
+    Returns:
+        Groups, and the position of each recording.
+
+    Raises:
+        ValueError: if a name contains no position, or if no group has two positions.
+    """
+    expression = with_one_group('--positions', pattern)
+    members: dict[str, list[int]] = {}
+    positions = []
+    for number, name in enumerate(names):
+        match = expression.search(name)
+        if not match:
+            raise ValueError(f'--positions {pattern}: there is no position in the name {name}')
+        positions.append(match[1])
+        rest = name[: match.start()].rstrip('_- ') + name[match.end() :]
+        members.setdefault(rest, []).append(number)
+    groups = [Group(name, tuple(numbers)) for name, numbers in members.items()]
+    if not any(len({positions[member] for member in group.members}) > 1 for group in groups):
+        raise ValueError('--positions: no two recordings differ in the position alone')
+    return groups, positions
+
+
+def with_one_group(option: str, text: str) -> re.Pattern[str]:
+    """Compile a regular expression with one group in parentheses.
+
+    Raises:
+        ValueError: if it is none; the text names the option.
+    """
+    try:
+        expression = re.compile(text)
+    except re.error as error:
+        raise ValueError(f'{option} {text}: {error}') from error
+    if expression.groups != 1:
+        raise ValueError(
+            f'{option} {text}: a regular expression needs one group in parentheses, not '
+            f'{expression.groups}'
+        )
+    return expression
+
+
 class _Pattern:
     """One pattern of `grouped`."""
 
     def __init__(self, text: str) -> None:
         self._glob = '(' not in text
         self._text = text
-        try:
-            self._expression = re.compile(fnmatch.translate(text) if self._glob else text)
-        except re.error as error:
-            raise ValueError(f'--group {text}: {error}') from error
-        if not self._glob and self._expression.groups != 1:
-            raise ValueError(
-                f'--group {text}: a regular expression needs one group in parentheses, not '
-                f'{self._expression.groups}'
-            )
+        self._expression = (
+            re.compile(fnmatch.translate(text)) if self._glob else with_one_group('--group', text)
+        )
 
     def group_of(self, name: str) -> str | None:
         """Return the group of a recording, if the pattern matches its name."""

@@ -42,20 +42,26 @@ _FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from
 _WORDS = ('', 'from')
 
 
-def document(reports: Sequence[LostMotionReport], comparison: Compared | None = None) -> Document:
-    """Return the document on recordings, with a section for each, and then their comparison."""
+def document(
+    reports: Sequence[LostMotionReport], comparisons: Sequence[Compared] = ()
+) -> Document:
+    """Return the document on recordings, with a section for each, and then their comparisons."""
     return Document(
         'gearkin lost-motion',
-        (*map(_section, reports), *([comparison.section] if comparison else [])),
+        (*map(_section, reports), *(comparison.section for comparison in comparisons)),
         {
             'schema': SCHEMA,
             'version': VERSION,
             'coverage': COVERAGE,
             'recordings': [_recording(report) for report in reports],
-            **(plain(comparison.data) if comparison else {}),
+            **{
+                key: plain(value)
+                for comparison in comparisons
+                for key, value in comparison.data.items()
+            },
         },
         summary=_summary(reports),
-        totals=comparison.sentence if comparison else '',
+        totals='; '.join(filter(None, (comparison.sentence for comparison in comparisons))),
     )
 
 
@@ -130,30 +136,30 @@ def plain(value: Any) -> Any:
 def _head(report: LostMotionReport) -> Table:
     found = report.hysteresis
     rated = f'{torque(found.settings.rated_torque)} N·m ({found.rated_by})' if found else ''
+    known = [rate for rate in found.rates if rate] if found else []
     return Table.of_values(
         Layout.INLINE,
         ('samples', str(report.recording.rows)),
         ('columns', printable('; '.join(report.recording.columns))),
         ('gear ratio', str(report.gear_ratio)),
         ('rated torque', rated),
-    known = [rate for rate in found.rates if rate] if found else []
+        ('test', _kind(report)),
+        ('rate of the torque', '; '.join(map(rate_and_duration, known))),
     )
 
 
-def _tables(report: LostMotionReport) -> Iterator[Table]:
-    """Yield the tables for the available results."""
-    if found := report.hysteresis:
-        ('test', _kind(report)),
-        ('rate of the torque', '; '.join(map(rate_and_duration, known))),
-        yield _figure_table(found)
-        if len(found.figures) > 1:
-            yield _amplitude_table(found)
 def _kind(report: LostMotionReport) -> str:
     """Name the kind of the test as the standards divide them."""
     static = ['static (torque ramps)'] if report.hysteresis else []
     return ', '.join([*static, *(['dynamic (in motion)'] if report.transmission else [])])
 
 
+def _tables(report: LostMotionReport) -> Iterator[Table]:
+    """Yield the tables for the available results."""
+    if found := report.hysteresis:
+        yield _figure_table(found)
+        if len(found.figures) > 1:
+            yield _amplitude_table(found)
         yield _stiffness_table(found)
     if report.transmission:
         yield _transmission_table(report.transmission, in_rows=_in_rows(report))

@@ -574,3 +574,23 @@ def test_ratio_cannot_be_estimated_without_both_angles(recording, capsys):
     assert main(['lost-motion', str(recording), '--fit-ratio']) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert line.endswith('--fit-ratio needs the angles of rotor and output')
+
+
+def test_positions_of_two_gears_are_combined_and_compared(tmp_path, capsys):
+    torque = ramps(*[(4.0, 60)] * 3, (40.0, 80))
+    for name, play in {
+        'old_pos1': 0.02,
+        'old_pos2': 0.022,
+        'new_pos1': 5e-3,
+        'new_pos2': 6e-3,
+    }.items():
+        angle = creep(GEAR._replace(play=play), torque)
+        write_csv(tmp_path / f'{name}.csv', angle=angle, torque=torque)
+    paths = [str(path) for path in sorted(tmp_path.glob('*.csv'), reverse=True)]
+    assert main(['lost-motion', *paths, '--positions', '--json']) == 0
+    document = json.loads(capsys.readouterr().out)
+    gears = {item['gear'] for item in document['positions']}
+    assert gears == {'old.csv', 'new.csv'}
+    assert [g['name'] for g in document['comparison']['groups']] == ['old.csv', 'new.csv']
+    assert main(['lost-motion', *paths, '--positions', '--trend']) == 2
+    assert capsys.readouterr().err == 'gearkin: --positions cannot be combined with --trend\n'
