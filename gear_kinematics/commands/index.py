@@ -3,6 +3,7 @@
 import argparse
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,6 +13,9 @@ from gear_kinematics.commands.output import Reporter, write
 from gear_kinematics.kinematics import vernier
 from gear_kinematics.kinematics.preload import Preload, ring_phase
 from gear_kinematics.kinematics.vernier import Choice, PinSetting
+from gear_kinematics.lost_motion.document import plain
+from gear_kinematics.lost_motion.preload_file import MeasuredPreload, read_advice
+from gear_kinematics.lost_motion.wording import PERCENT, plus_minus, torque
 from gear_kinematics.report.document import (
     Cell,
     Document,
@@ -55,6 +59,9 @@ class _Answer(NamedTuple):
     preload: float | None
     """Preload at the wanted turn, N·m; None without a stiffness."""
     rows: tuple[_Row, ...]
+    measured: MeasuredPreload | None = None
+    load: float = 0.0
+    """N·m, for which `measured` gives the turn."""
 
     @property
     def nearest(self) -> _Row:
@@ -72,6 +79,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=float,
         metavar='N·m',
         help='wanted preload of the branches; negative: by turning the other way',
+    )
+    ways.add_argument(
+        '--measured',
+        type=Path,
+        metavar='JSON',
+        help='the least turn without play by measured ramps: from gearkin lost-motion --preloads '
+        '--json',
+    )
+    parser.add_argument(
+        '--load',
+        type=arguments.positive,
+        metavar='N·m',
+        help='under which there must be no play, with --measured (default: none)',
     )
     parser.add_argument(
         '--phase-b', action='store_true', help='add the turn for the cam phase of branch B'
@@ -110,8 +130,18 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _answer(options: argparse.Namespace) -> _Answer:
     known, bracing = arguments.stiffness(options), arguments.ring_turn(options)
     backlash = options.backlash or 0.0
+    measured = None
+    if options.measured:
+        if known:
+            raise ValueError('--measured contains the stiffness and backlash, give no others')
+        measured = read_advice(options.measured, options.load or 0.0)
+        known, backlash = measured.preload.stiffness, measured.preload.play
+        # The greatest turn that may be needed suffices.
+        bracing = measured.least.high
+    elif options.load:
+        raise ValueError('--load needs --measured')
     if bracing is None and options.preload is None and not options.phase_b:
-        raise ValueError('give --angle, --degrees, --preload or --phase-b')
+        raise ValueError('give --angle, --degrees, --preload, --measured or --phase-b')
     if not 0 <= options.neighbours <= _MAX_NEIGHBOURS:
         raise ValueError(f'--neighbours must be 0 to {_MAX_NEIGHBOURS}, not {options.neighbours}')
     # The vernier alone does not depend on the satellite.
@@ -121,6 +151,8 @@ def _answer(options: argparse.Namespace) -> _Answer:
         else None
     )
     ring_teeth = pair.ring_teeth if pair else options.ring_teeth
+    if measured and pair and not math.isclose(measured.scale, ring_teeth / pair.satellite_teeth):
+        raise ValueError(f'{options.measured}: measured on a gear with other teeth')
     phase = ring_phase(pair) if pair and options.phase_b else None
     if options.preload is not None:
         if not (pair and known):
@@ -138,7 +170,16 @@ def _answer(options: argparse.Namespace) -> _Answer:
     start = vernier.pin_setting(ring_teeth, *(options.start or (0, 0, 0)))
     choices = vernier.choices(ring_teeth, wanted_turn, start, options.neighbours)
     rows = tuple(_Row(choice, preload(choice.ring_turn)) for choice in choices)
-    return _Answer(ring_teeth, start, phase, wanted_turn, preload(wanted_turn), rows)
+    return _Answer(
+        ring_teeth,
+        start,
+        phase,
+        wanted_turn,
+        preload(wanted_turn),
+        rows,
+        measured,
+        options.load or 0.0,
+    )
 
 
 def _data(answer: _Answer) -> dict[str, Any]:
@@ -154,6 +195,7 @@ def _data(answer: _Answer) -> dict[str, Any]:
             'phase': answer.phase,
             'preload': answer.preload,
         },
+        'measured': plain(answer.measured and answer.measured._asdict()),
         'positions_around': [
             {
                 'steps': choice.steps,
@@ -226,6 +268,18 @@ def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
     yield 'turn', f'{arc(choice.ring_turn)} for a wanted {arc(answer.ring_turn)} ({error})'
     if answer.phase is not None:
         yield 'phase', f'{arc(answer.phase)} of it'
+    if measured := answer.measured:
+        least = measured.least
+        under = f'under {torque(answer.load)} N·m' if answer.load else 'without a load'
+        yield (
+            'measured',
+            (
+                f'no play {under} from {arc(least.value)} on ({PERCENT}: {arc(least.low)} to '
+                f'{arc(least.high)}, which is wanted)'
+            ),
+        )
+        if measured.price and answer.load:
+            yield 'price', f'{plus_minus(measured.price)} N·m more friction'
     if preload is not None and answer.preload is not None:
         error = f'{preload - answer.preload:+.2g}'
         yield 'preload', f'{preload:.4g} N·m for a wanted {answer.preload:.4g} N·m ({error} N·m)'

@@ -9,14 +9,18 @@ from pathlib import Path
 from gear_kinematics.bag import fleet
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Reporter, complain, message_progress, progress
+from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.lost_motion import LostMotionReport
 from gear_kinematics.lost_motion.common import at_common_torque
 from gear_kinematics.lost_motion.compared import Compared, compared
 from gear_kinematics.lost_motion.comparison import at_positions, grouped
 from gear_kinematics.lost_motion.document import document
+from gear_kinematics.lost_motion.encoder_step import UNITS
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
+from gear_kinematics.lost_motion.over_preload import over_preload
 from gear_kinematics.lost_motion.over_time import over_time
 from gear_kinematics.lost_motion.positions import DEFAULT_PATTERN, over_positions
+from gear_kinematics.lost_motion.preload_settings import settings_of
 from gear_kinematics.lost_motion.task import WORK, Outcome, Task, measure_recording
 from gear_kinematics.lost_motion.times import common_times
 
@@ -88,6 +92,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='combine recordings at several positions of the output, by the text in parentheses '
         'of a regular expression in their names (default: position_1 ...)',
     )
+    several.add_argument(
+        '--preloads',
+        nargs='?',
+        const='',
+        metavar='PATTERN',
+        help='advise a preload by recordings at three settings or more, by a regular expression '
+        'in their names: one group in parentheses, or three for pins (default: preload_1 ... or '
+        'pins_0_78_1 ...)',
+    )
+    several.add_argument(
+        '--preload-unit',
+        choices=tuple(UNITS),
+        help='of settings that are turns of a ring gear (default: plain numbers)',
+    )
+    several.add_argument(
+        '--load',
+        type=arguments.positive,
+        metavar='N·m',
+        help='under which there must be no play (default: none)',
+    )
     ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
     arguments.add_fleet(several.add_mutually_exclusive_group())
     arguments.add_report_forms(parser)
@@ -95,6 +119,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Measure every recording, even if others are unusable, and compare them."""
+    if options.preloads is None and (options.load or options.preload_unit):
+        raise ValueError(f'--{"load" if options.load else "preload-unit"} needs --preloads')
     reporter = Reporter(options, len(options.recordings), compared=True)
     outcomes = list(_outcomes(options))
     usable = [outcome for outcome in outcomes if outcome.report]
@@ -148,8 +174,9 @@ def _compared(
     reports = [outcome.report for outcome in usable if outcome.report]
     torques = options.rated_torque, options.stiffness_torques
     if options.trend:
-        if options.positions:
-            raise ValueError('--positions cannot be combined with --trend')
+        if options.positions or options.preloads is not None:
+            wrong = 'positions' if options.positions else 'preloads'
+            raise ValueError(f'--{wrong} cannot be combined with --trend')
         times, source = common_times([outcome.times for outcome in usable if outcome.times])
         order = sorted(range(len(reports)), key=times.__getitem__)
         reports = at_common_torque([reports[number] for number in order], *torques)
@@ -168,11 +195,20 @@ def _compared(
         gears, positions = at_positions(names, options.positions)
         groups = groups or gears
         found.append(over_positions(reports, groups, positions))
-    if comparison := compared(reports, groups):
+    if options.preloads is not None:
+        found.append(_over_preload(reports, options))
+    elif comparison := compared(reports, groups):
         found.append(comparison)
     if options.plot and not found and len(usable) > 1:
         raise ValueError('--plot: the recordings have no figure in common')
     return [*reports, *apart], found
+
+
+def _over_preload(reports: Sequence[LostMotionReport], options: argparse.Namespace) -> Compared:
+    gear = gear_from_mapping(arguments.load_config(options, options.recordings[0]))
+    names = [report.recording.name for report in reports]
+    settings, scale = settings_of(names, options.preloads, options.preload_unit, gear)
+    return over_preload(reports, settings, scale, options.load or 0.0)
 
 
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:

@@ -107,7 +107,7 @@ def quantities(reports: Sequence[LostMotionReport], common: Basis | None) -> lis
     """Return what can be compared among recordings at a common torque, at least two each."""
     listed: list[Quantity] = []
     if common:
-        small, loaded = _chosen(reports, common.small), _chosen(reports, common.loaded)
+        small, loaded = chosen(reports, common.small), chosen(reports, common.loaded)
         listed += [
             _angle('hysteresis', small, lambda figures: figures.hysteresis),
             _angle('backlash', small, lambda figures: figures.play),
@@ -131,7 +131,7 @@ def doubts(reports: Sequence[LostMotionReport], common: Basis) -> list[str]:
         for report, place in zip(reports, common.small, strict=True)
         if report.hysteresis and place is None
     ]
-    loaded = _chosen(reports, common.loaded)
+    loaded = chosen(reports, common.loaded)
     wider = [
         report.recording.name
         for report, figures in zip(reports, loaded, strict=True)
@@ -179,9 +179,15 @@ def _listed(names: Sequence[str]) -> str:
     return ', '.join(names[:_NAMED]) + more
 
 
-def _chosen(
+def highest_range(loaded: Sequence[Figures | None], reach: float) -> tuple[float, float]:
+    """Return the highest range of stiffness, N·m; zeros if there is none clear of zero."""
+    return max(_ranges(loaded, reach), default=(0.0, 0.0))
+
+
+def chosen(
     reports: Sequence[LostMotionReport], places: Sequence[int | None]
 ) -> list[Figures | None]:
+    """Return the figures of the ramps with these numbers."""
     return [
         report.hysteresis.figures[place] if report.hysteresis and place is not None else None
         for report, place in zip(reports, places, strict=True)

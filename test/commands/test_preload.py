@@ -262,7 +262,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
 @pytest.mark.parametrize(
     ('arguments', 'cause'),
     [
-        (['index'], 'give --angle, --degrees, --preload or --phase-b'),
+        (['index'], 'give --angle, --degrees, --preload, --measured or --phase-b'),
         (['index', '--preload', '1'], '--preload needs the stiffness of branches and shaft'),
         (['index', '--angle', 'nan'], 'at most a whole turn, not by nan rad'),
         (['index', '--degrees', '361'], 'at most a whole turn, not by 6.30064 rad'),
