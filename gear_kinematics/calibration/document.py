@@ -8,12 +8,12 @@ from gear_kinematics.calibration.curves import panels
 from gear_kinematics.calibration.result import Fit, Fitted, Residuals
 from gear_kinematics.calibration.terms import OrderTerm, StopTerm, output_cycles
 from gear_kinematics.lost_motion.document import plain
+from gear_kinematics.lost_motion.remarks import ratio_remarks
 from gear_kinematics.lost_motion.wording import (
     ARC_MINUTES,
     PERCENT,
     arc_minutes,
     plus_minus,
-    ratio_remarks,
 )
 from gear_kinematics.report.document import (
     Cell,

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from gear_kinematics.lost_motion import hysteresis
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
-from gear_kinematics.lost_motion.wording import ARC_MINUTES, rate_and_duration, torque
+from gear_kinematics.lost_motion.wording import ARC_MINUTES, play, rate_and_duration, torque
 from gear_kinematics.state.uncertainty import Estimate
 
 LOST_MOTION = 'lost motion'
@@ -59,7 +59,9 @@ def at_common_torque(
             ramps,
             settings=settings,
             rated_by='given' if rated_torque else 'least of the recordings',
-            figures=hysteresis.figures(ramps.ramps, settings),
+            figures=hysteresis.figures(
+                ramps.ramps, settings, [figures.play_model for figures in ramps.figures]
+            ),
         )
 
     return [
@@ -143,7 +145,23 @@ def doubts(reports: Sequence[LostMotionReport], common: Basis) -> list[str]:
             f'all recordings load the gear. {_listed(wider)} went much further: that widens a '
             'curve.'
         )
-    return [*said, *rate_doubts(reports, common, range(len(reports)))]
+    everything = range(len(reports))
+    if unknown := without_play(reports, common, everything):
+        listed = ', '.join(f'{name} ({found})' for name, found in unknown)
+        said.append(f'Backlash is not compared where it has no value, in arcmin: {listed}.')
+    return [*said, *rate_doubts(reports, common, everything)]
+
+
+def without_play(
+    reports: Sequence[LostMotionReport], common: Basis, members: Sequence[int]
+) -> list[tuple[str, str]]:
+    """Return which recordings of some, by number, have no value of backlash, and what instead."""
+    small = chosen(reports, common.small)
+    return [
+        (reports[number].recording.name, play(figures.play_model))
+        for number in members
+        if (figures := small[number]) and figures.play_model and not figures.play
+    ]
 
 
 def rate_doubts(

@@ -10,9 +10,11 @@ from gear_kinematics.lost_motion.common import (
     Basis,
     Quantity,
     basis,
+    chosen,
     doubts,
     quantities,
     rate_doubts,
+    without_play,
 )
 from gear_kinematics.lost_motion.comparison import (
     SIGNIFICANCE,
@@ -25,7 +27,7 @@ from gear_kinematics.lost_motion.comparison import (
 )
 from gear_kinematics.lost_motion.overview import overview
 from gear_kinematics.lost_motion.report import LostMotionReport
-from gear_kinematics.lost_motion.wording import PERCENT, plus_minus, rounded, torque
+from gear_kinematics.lost_motion.wording import PERCENT, play, plus_minus, rounded, torque
 from gear_kinematics.report.document import Cell, Layout, Section, Table, Tone, number, printable
 from gear_kinematics.state.uncertainty import Estimate
 
@@ -106,12 +108,26 @@ def _rated(reports: Sequence[LostMotionReport]) -> float:
 
 
 def _limits(
-    reports: Sequence[LostMotionReport], common: Basis | None, *groups: Group
+    reports: Sequence[LostMotionReport], common: Basis | None, first: Group, second: Group
 ) -> list[str]:
-    """Say in short by what else than the gear groups differ."""
-    members = [number for group in groups for number in group.members]
-    differ = common and rate_doubts(reports, common, members)
-    return ['at different rates of the torque'] if differ else []
+    """Say in short what cannot be judged as a difference, and by what else the groups differ."""
+    if not common:
+        return []
+    members = [*first.members, *second.members]
+    said = []
+    if without_play(reports, common, members):
+        before, after = (_plays(reports, common, group) for group in (first, second))
+        said.append(f'backlash {before} → {after} arcmin')
+    if rate_doubts(reports, common, members):
+        said.append('at different rates of the torque')
+    return said
+
+
+def _plays(reports: Sequence[LostMotionReport], common: Basis, group: Group) -> str:
+    """List the backlashes of a group, in arc minutes: values and bounds."""
+    small = chosen(reports, common.small)
+    found = [play(figures.play_model) for number in group.members if (figures := small[number])]
+    return ' / '.join(filter(None, found)) or 'unknown'
 
 
 def _sentence(pair: Sequence[Change], at: str, limits: Sequence[str]) -> str:

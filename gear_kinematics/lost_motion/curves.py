@@ -38,7 +38,7 @@ def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
         lines.append(_half_loop('torque falling', Pen.SECOND, loop.fall, centre, ramps))
     if model := figures.play_model:
         load, angle = model.loop(ramps.amplitude)
-        lines.append(Line('play model', Pen.MODEL, load, (angle - centre) * ARC_MINUTES))
+        lines.append(Line(f'model: {model.name}', Pen.MODEL, load, (angle - centre) * ARC_MINUTES))
     at = LOST_MOTION_SHARE * rated_torque
     width = arc_minutes(figures.hysteresis)
     return Panel(

@@ -11,15 +11,17 @@ import numpy as np
 from gear_kinematics.lost_motion.compared import Compared
 from gear_kinematics.lost_motion.curves import panels
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
+from gear_kinematics.lost_motion.play import Candidate
+from gear_kinematics.lost_motion.remarks import remarks
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
 from gear_kinematics.lost_motion.transmission import TransmissionFigures
 from gear_kinematics.lost_motion.wording import (
     ARC_MINUTES,
     PERCENT,
     arc_minutes,
+    play,
     plus_minus,
     rate_and_duration,
-    remarks,
     rounded,
     torque,
 )
@@ -119,14 +121,17 @@ def plain(value: Any) -> Any:
             }
         case Fraction():
             return str(value)
-        case np.ndarray():
-            return None
         case Mapping():
             return {key: plain(item) for key, item in value.items()}
         case tuple() | list():
             return [plain(item) for item in value]
     if is_dataclass(value):
-        return {field.name: plain(getattr(value, field.name)) for field in fields(value)}
+        members = {field.name: getattr(value, field.name) for field in fields(value)}
+        return {
+            name: plain(member)
+            for name, member in members.items()
+            if not isinstance(member, np.ndarray)
+        }
     return value
 
 
@@ -161,6 +166,8 @@ def _tables(report: LostMotionReport) -> Iterator[Table]:
         if len(found.figures) > 1:
             yield _amplitude_table(found)
         yield _stiffness_table(found)
+        if (model := found.smallest.play_model) and model.candidates:
+            yield _candidate_table(model.candidates)
     if report.transmission:
         yield _transmission_table(report.transmission, in_rows=_in_rows(report))
         yield _order_table(report.transmission)
@@ -173,15 +180,51 @@ def _figure_table(found: HysteresisReport) -> Table:
     at = torque(LOST_MOTION_SHARE * found.settings.rated_torque)
     rows = [
         _angle('hysteresis at zero torque', smallest.hysteresis, small),
-        _angle('backlash (play model)', smallest.play, small),
+        _play_row(smallest, small),
         _row('friction (play model)', 'N·m', smallest.friction, small),
         _angle(f'lost motion at ±{at} N·m', largest.lost_motion, large),
         *(
             _row(f'stiffness {_range(s.low, s.high)}', 'N·m/rad', s.both, large)
             for s in largest.stiffness
         ),
+        *_spring_rows(found, large),
     ]
     return Table(_FIGURES, tuple(row for row in rows if row), _WORDS)
+
+
+def _play_row(figures: Figures, source: str) -> tuple[Cell, ...] | None:
+    model, label = figures.play_model, 'backlash (play model)'
+    if not model or model.play:
+        return _angle(label, figures.play, source)
+    limit = number(math.degrees(model.limit)) if model.limit is not None else ''
+    return (
+        Cell(label, unit='arcmin'),
+        Cell(play(model), unit='arcmin'),
+        Cell(''),
+        Cell(f'below {limit}' if limit else '', unit='°'),
+        Cell(str(figures.loops)),
+        Cell(source),
+    )
+
+
+def _spring_rows(found: HysteresisReport, source: str) -> Iterator[tuple[Cell, ...] | None]:
+    if spring := found.spring:
+        label = f'stiffness of the spring {_range(spring.low, spring.high)}'
+        yield _row(label, 'N·m/rad', spring.stiffness, source)
+
+
+def _candidate_table(candidates: Sequence[Candidate]) -> Table:
+    """Return the models that were tried for the smallest ramps, the best first."""
+    return Table.of_items(
+        {
+            'model': lambda candidate: candidate.name,
+            'error of prediction [N·m]': lambda candidate: number(candidate.error),
+            'gap [arcmin]': lambda candidate: arc_minutes(candidate.gap),
+            'judgement': lambda candidate: 'plausible' if candidate.plausible else 'rejected',
+        },
+        candidates,
+        ('model', 'judgement'),
+    )
 
 
 def _amplitude_table(found: HysteresisReport) -> Table:
@@ -192,10 +235,11 @@ def _amplitude_table(found: HysteresisReport) -> Table:
             'loops': lambda f: str(f.loops),
             'hysteresis [arcmin]': lambda f: arc_minutes(f.hysteresis),
             'lost motion [arcmin]': lambda f: arc_minutes(f.lost_motion),
-            'backlash [arcmin]': lambda f: arc_minutes(f.play),
+            'backlash [arcmin]': lambda f: play(f.play_model),
             'friction [N·m]': lambda f: plus_minus(f.friction),
-            'model residual [arcmin]': lambda f: (
-                number(f.play_model.residual * ARC_MINUTES) if f.play_model else ''
+            'model': lambda f: f.play_model.name if f.play_model else '',
+            'model residual [N·m]': lambda f: (
+                number(f.play_model.residual) if f.play_model else ''
             ),
         },
         found.figures,
@@ -265,14 +309,14 @@ def _summary(reports: Sequence[LostMotionReport]) -> Table:
 
 
 def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
-    hysteresis = play = lost_motion = spring = accuracy = None
+    hysteresis = lost_motion = spring = accuracy = model = None
     if error := report.transmission:
         lost_motion, accuracy = error.lost_motion, error.forward
     if found := report.hysteresis:
-        hysteresis, play = found.smallest.hysteresis, found.smallest.play
+        hysteresis, model = found.smallest.hysteresis, found.smallest.play_model
         lost_motion = found.largest.lost_motion
         spring = found.largest.stiffness[-1].both if found.largest.stiffness else None
-    angles = (arc_minutes(value) for value in (hysteresis, play, lost_motion))
+    angles = (arc_minutes(hysteresis), play(model), arc_minutes(lost_motion))
     values = (*angles, plus_minus(spring), arc_minutes(accuracy))
     return tuple(map(Cell, (printable(report.recording.name), *values)))
 

@@ -105,12 +105,12 @@ def over_preload(
 
 def reading_of(name: str, setting: float, small: Figures, spring: Stiffness | None) -> Reading:
     """Take from the small ramps of a recording what the advice needs, and the stiffness."""
-    play, limit = _play(small)
+    model = small.play_model
     return Reading(
         name,
         setting,
-        play,
-        limit,
+        model.play if model else None,
+        model.limit if model else None,
         small.friction,
         spring.positive if spring else None,
         spring.negative if spring else None,
@@ -120,18 +120,6 @@ def reading_of(name: str, setting: float, small: Figures, spring: Stiffness | No
 def _over(figures: Figures, low: float, high: float) -> Stiffness | None:
     """The stiffness over a range of torque."""
     return next((s for s in figures.stiffness if (s.low, s.high) == (low, high)), None)
-
-
-def _play(figures: Figures) -> tuple[Estimate | None, float | None]:
-    """The play and its upper bound, rad, of which there is at most one."""
-    play = figures.play
-    spread = play.uncertainty if play else None
-    if play is None or spread is None:
-        return None, None
-    if play.value > spread:
-        return play, None
-    # The interval of a play may lie below zero, where there is none: its width counts.
-    return None, max(play.value, 0.0) + spread
 
 
 def told(advice: Advice, scale: Scale, load: float) -> str:

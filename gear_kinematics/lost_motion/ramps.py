@@ -4,8 +4,8 @@ Ramps are found by the torque alone, without numbers of tests; times are optiona
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 
 import numpy as np
@@ -61,6 +61,22 @@ class HalfLoop:
         """Whether the torque increases."""
         return self.end > self.start
 
+    @property
+    def times(self) -> Array:
+        """The times at these torques, where they are known.
+
+        Raises:
+            ValueError: if they are not.
+        """
+        if self.time is None:
+            raise ValueError('the times of these ramps are not known')
+        return self.time
+
+    @property
+    def rate(self) -> float:
+        """Mean change of the torque with time, where it is known, N·m/s, positive."""
+        return abs(self.end - self.start) / float(self.times[-1] - self.times[0])
+
     def reaches(self, torque: float) -> bool:
         """Whether the half loop includes a torque, within the noise."""
         low, high = sorted((self.start, self.end))
@@ -112,6 +128,23 @@ class Ramps:
     loops: tuple[Loop, ...]
     pulls: tuple[tuple[HalfLoop, HalfLoop], ...]
     """Half loops to the positive and to the negative peak, paired in order of time."""
+    history: tuple[HalfLoop, ...]
+    """All half loops of the recording in order of time, also those of other amplitudes."""
+    whole: tuple[Loop, ...]
+    """The loops, where a recording ends before one is closed with the end of the one before it."""
+
+    def halves(self) -> Iterator[HalfLoop]:
+        """Yield the half loops of all loops."""
+        return (half for loop in self.loops for half in (loop.fall, loop.rise))
+
+    def changed(self, change: Callable[[HalfLoop], HalfLoop]) -> 'Ramps':
+        """Return the ramps with changed angles, beside an unchanged history."""
+        return replace(
+            self,
+            loops=tuple(Loop(change(loop.fall), change(loop.rise)) for loop in self.loops),
+            pulls=tuple((change(first), change(second)) for first, second in self.pulls),
+            whole=tuple(Loop(change(loop.fall), change(loop.rise)) for loop in self.whole),
+        )
 
 
 def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[Ramps, ...]:
@@ -153,7 +186,38 @@ def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLo
         float(np.mean([loop.amplitude for loop in group])),
         tuple(loop for loop in loops if loop in group),
         tuple(zip(rises, falls, strict=False)),
+        tuple(halves),
+        tuple(_whole(loop, halves) for loop in loops if loop in group),
     )
+
+
+def _whole(loop: Loop, halves: Sequence[HalfLoop]) -> Loop:
+    """Close a loop, from the peak of its first half loop to the same torque."""
+    last = next(k for k, half in enumerate(halves) if half is loop.fall or half is loop.rise) + 1
+    first, second = halves[last - 1], halves[last]
+    sign = 1.0 if second.rising else -1.0
+    if sign * second.end >= sign * first.start:
+        return loop
+    # The first half loop of a recording starts anywhere, so the other branch takes its place.
+    before = _turned(first, second) if first is halves[1] else halves[last - 2]
+    beyond = sign * before.torque > sign * second.end
+    times = (half.times[rows] for half, rows in ((second, slice(None)), (before, beyond)))
+    closed = replace(
+        second,
+        torque=np.concatenate([second.torque, before.torque[beyond]]),
+        angle=np.concatenate([second.angle, before.angle[beyond]]),
+        time=None if second.time is None else np.concatenate([*times]),
+    )
+    return _loop(first, closed)
+
+
+def _turned(first: HalfLoop, second: HalfLoop) -> HalfLoop:
+    """Turn the first half of a loop round its centre, by which it becomes like the second."""
+    torque = -first.torque
+    low, high = sorted((second.start, second.end))
+    both = (torque >= low) & (torque <= high)
+    centre = 0.5 * float(np.mean(first.angle[both] + second.angle_at(torque[both])))
+    return replace(first, torque=torque, angle=2.0 * centre - first.angle)
 
 
 def _half_loops(torque: Array, angle: Array, time: Array | None) -> list[HalfLoop]:

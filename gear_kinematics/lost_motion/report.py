@@ -5,8 +5,10 @@ from typing import Literal
 
 from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.lost_motion import hysteresis, transmission
+from gear_kinematics.lost_motion.creep import Creep
 from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
-from gear_kinematics.lost_motion.ramps import RampError, Ramps, find_ramps
+from gear_kinematics.lost_motion.models import Effects, Spring, models_of, settled
+from gear_kinematics.lost_motion.ramps import RampError, Ramps
 from gear_kinematics.lost_motion.rate import Rate, rates
 from gear_kinematics.lost_motion.ratio import RatioEstimate, check_ratio
 from gear_kinematics.lost_motion.recording import Loading, Recording
@@ -25,6 +27,11 @@ class HysteresisReport:
     figures: tuple[Figures, ...]
     ramps: tuple[Ramps, ...]
     """Curves of the figures."""
+    effects: Effects
+    """What time does to the recording, and has been taken out."""
+    spring: Spring | None
+    """The stiffness without friction and creep."""
+    creep: Creep | None
     rates: tuple[Rate | None, ...]
     """How fast the torque of the ramps changed; None where their times are not known."""
 
@@ -99,16 +106,23 @@ def measure(
 def _hysteresis(
     loading: Loading, rated_torque: float | None, corners: tuple[float, ...] | None
 ) -> HysteresisReport:
-    ramps = find_ramps(loading.torque, loading.angle, loading.time)
+    ramps, effects = settled(loading)
+    step = loading.angle_step.size
+    hysteresis.check(ramps[-1], step)
+    models = models_of(ramps, step, effects.lag)
     rated = ramps[-1].amplitude if rated_torque is None else rated_torque
     if corners is None:
         corners = tuple(share * rated for share in STIFFNESS_SHARES)
-    settings = Settings(rated, corners, loading.angle_step.size)
+    late = effects.lag.standard or 0.0 if effects.lag else 0.0
+    settings = Settings(rated, corners, step, late)
     return HysteresisReport(
         settings,
         'largest ramps' if rated_torque is None else 'given',
         loading.measured,
-        hysteresis.figures(ramps, settings),
+        hysteresis.figures(ramps, settings, models.plays),
         ramps,
+        effects,
+        models.spring,
+        models.creep,
         rates(ramps),
     )

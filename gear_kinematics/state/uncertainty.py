@@ -91,6 +91,13 @@ class Estimate:
         ]
         return Estimate(value, *combined(parts), repeats)
 
+    def joined(self, *others: Component) -> 'Estimate':
+        """Add components of uncertainty that the repeats do not show (GUM 5.1.2)."""
+        if self.standard is None:
+            return self
+        own = Component(self.standard, self.degrees_of_freedom)
+        return Estimate(self.value, *combined((own, *others)), self.repeats)
+
     def times(self, factor: float) -> 'Estimate':
         """Estimate a multiple of the quantity."""
         standard = None if self.standard is None else abs(factor) * self.standard

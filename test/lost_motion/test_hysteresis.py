@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, quantised, ramps
 
-from gear_kinematics.lost_motion.hysteresis import Figures, Settings, figures
+from gear_kinematics.lost_motion.hysteresis import Figures, Settings, check, figures
+from gear_kinematics.lost_motion.models import models_of
 from gear_kinematics.lost_motion.ramps import RampError, find_ramps
 from gear_kinematics.state.uncertainty import student_t
 
@@ -55,18 +56,21 @@ def truth(gear: Gear) -> Truth:
 
 def measured(torque, angle, step=STEP, rated=RATED) -> tuple[Figures, ...]:
     settings = Settings(rated, (0.15 * rated, 0.5 * rated), step)
-    return figures(find_ramps(torque, angle), settings)
+    found = find_ramps(torque, angle)
+    check(found[-1], step)
+    return figures(found, settings, models_of(found, step, None).plays)
 
 
 def estimates(found: tuple[Figures, ...]) -> dict:
     small, large = found[0], found[-1]
-    return {
+    found = {
         'hysteresis': small.hysteresis,
         'play': small.play,
         'friction': small.friction,
         'lost_motion': large.lost_motion,
         'stiffness': large.stiffness[-1].both,
     }
+    return {name: estimate for name, estimate in found.items() if estimate}
 
 
 @pytest.fixture(scope='module')
@@ -85,7 +89,11 @@ def recorded(angle, noise: float, seed: int):
 @pytest.mark.parametrize('name', GEARS)
 def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
     expected = truth(GEARS[name])._asdict()
-    for figure, estimate in estimates(measured(TORQUE, angles[name], step=0.0)).items():
+    found = measured(TORQUE, angles[name], step=0.0)
+    if not expected['play']:
+        assert found[0].play is None
+        assert 0.0 <= found[0].play_model.limit < 1e-4
+    for figure, estimate in estimates(found).items():
         # The simulation moves in steps of 2 µrad, and the torque in steps of 20 and 100 mN·m.
         tolerance = {'friction': 0.01, 'stiffness': 0.1}.get(figure, 2e-5)
         assert estimate.value == pytest.approx(expected[figure], abs=tolerance), figure
@@ -110,15 +118,16 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
                         errors.setdefault(figure, []).append(error / estimate.uncertainty)
                     widths.setdefault(f'{name} {figure}', []).append(estimate.uncertainty)
     for figure, held in hits.items():
-        assert len(held) == 64
-        # Of 64 intervals of 95 %, fewer than 55 hold the truth once in 1000 times.
-        assert sum(held) >= 55, figure
+        assert len(held) == (32 if figure == 'play' else 64)  # two gears have none
+        # Of 64 intervals of 95 %, fewer than 55 hold the truth once in 1000 times, of 32 than 26.
+        assert sum(held) >= (26 if figure == 'play' else 55), figure
     for figure, relative in errors.items():
         # Where noise dominates, an interval is a few times the error, not many times.
         assert np.sqrt(np.mean(np.square(relative))) > 0.1, figure
     for figure, limit in (('hysteresis', 4e-4), ('play', 3e-4), ('friction', 0.05)):
         for name in GEARS:
-            assert np.median(widths[f'{name} {figure}']) < limit, (name, figure)
+            if found := widths.get(f'{name} {figure}'):
+                assert np.median(found) < limit, (name, figure)
 
 
 @pytest.mark.slow
@@ -169,12 +178,12 @@ def test_ranges_that_the_ramps_do_not_reach_are_left_out():
     assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, 6.0)]
 
 
-def test_no_play_model_without_a_range_clear_of_the_play():
-    """Small ramps alone, of a gear that is rated far higher."""
+def test_play_is_that_of_small_ramps_alone():
+    """Small ramps alone, of a gear that is rated far higher: no stiffness is clear of its play."""
     torque = ramps(*[(SMALL, 200)] * 3)
     (found,) = measured(torque, creep(GEARS['backlash'], torque), step=0.0, rated=RATED)
     assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, SMALL)]
-    assert found.play_model is None
+    assert found.play.value == pytest.approx(0.02, abs=2e-5)
     assert found.hysteresis.value == pytest.approx(truth(GEARS['backlash']).hysteresis, abs=2e-5)
 
 
@@ -242,12 +251,13 @@ def test_preload_shows_in_the_hysteresis_of_the_actuator(actuator_test):
     assert small.amplitude == pytest.approx(4.0, abs=0.1)
     width = np.degrees(small.hysteresis.value)
     spread = np.degrees(small.hysteresis.uncertainty)
+    limit = small.play_model.limit
     if name in FILES[:2]:
         assert 1.5 < width - spread < width + spread < 2.0
-        assert np.degrees(small.play.value) > 1.0
+        assert limit is None or np.degrees(limit) > 0.5
     else:
         assert width + spread < 1.0
-        assert abs(np.degrees(small.play.value)) < 0.2
+        assert np.degrees(limit) < 0.5
 
 
 @pytest.mark.slow

@@ -1,0 +1,58 @@
+"""How often the figures of torque ramps hold on simulated gears, as a table."""
+
+import argparse
+import json
+import math
+import sys
+import time
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test' / 'support'))
+
+from judging_ramps import judge
+from simulated_ramps import SCENARIOS
+
+ARC_MINUTES = 60.0 * math.degrees(1.0)
+
+
+def main() -> None:
+    """Print a row for each scenario."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('--seeds', type=int, default=200, help='recordings of each scenario')
+    parser.add_argument('--jobs', type=int, default=1)
+    parser.add_argument('--json', action='store_true')
+    options = parser.parse_args()
+    start = time.perf_counter()
+    with ProcessPoolExecutor(options.jobs) as pool:
+        found = list(pool.map(partial(judge, seeds=options.seeds), SCENARIOS))
+    if options.json:
+        print(json.dumps({s.name: one._asdict() for s, one in zip(SCENARIOS, found, strict=True)}))
+        return
+    print(
+        '| scenario | play | of these values | values: bias ± | bounds below | not separable '
+        '| hysteresis | friction | spring |'
+    )
+    print('|---|---|---|---|---|---|---|---|---|')
+    for scenario, one in zip(SCENARIOS, found, strict=True):
+        shares = (one.play, one.valued, one.refused, one.hysteresis, one.friction, one.spring)
+        play, valued, refused, hysteresis, friction, spring = map(_percent, shares)
+        bias, spread, limit = (
+            '' if math.isnan(value) else f'{ARC_MINUTES * value:.2f}′'
+            for value in (one.play_bias, one.play_uncertainty, one.limit)
+        )
+        name = scenario.name if scenario.contained else f'*{scenario.name}*'
+        print(
+            f'| {name} | {play} | {valued} | {f"{bias} ± {spread}" if bias else ""} | {limit} '
+            f'| {refused} | {hysteresis} | {friction} | {spring} |'
+        )
+    print(f'{options.seeds} recordings each, {time.perf_counter() - start:.0f} s')
+
+
+def _percent(share: float) -> str:
+    return '' if math.isnan(share) else f'{100.0 * share:.1f} %'
+
+
+if __name__ == '__main__':
+    main()

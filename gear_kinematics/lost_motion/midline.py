@@ -1,0 +1,82 @@
+"""The middle line of hysteresis loops: the torque on the spring over the angle.
+
+At one angle, the torque exceeds that of the spring by the friction while it rises, and falls short
+of it by the friction while it falls. Half the sum of both is the load on the spring, half the
+difference is the friction, whatever it depends on.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Loop
+
+_LEVELS = 100
+"""Angles at which a loop is read."""
+_MARGIN = 0.03
+"""Share of the angles at either end that is left out, as the gear still sticks there."""
+_BUILT_UP = 0.85
+"""Share of the greatest load, up to which friction has certainly built up after a reversal."""
+_TIE = 1e-12
+"""Angles, rad, by which equal ones are told apart, in the order of their sampling."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Midlines:
+    """Loads and frictions of loops of one amplitude, (loops, levels) each."""
+
+    angle: Array
+    """rad, from the middle of each loop."""
+    load: Array
+    """N·m, of the spring."""
+    friction: Array
+    """N·m."""
+    centre: Array
+    """(loops,), rad, the middles."""
+    blur: float
+    """N·m, over which corners of the curve are rounded: by noise, and between samples."""
+
+    @classmethod
+    def of(cls, loops: Sequence[Loop]) -> 'Midlines':
+        """Read the middle lines of loops, at least one."""
+        found = [_read(loop) for loop in loops]
+        angle, load, friction = (np.array([row[k] for row in found]) for k in range(3))
+        centre = 0.5 * (angle[:, 0] + angle[:, -1])
+        blur = float(np.mean([_blur(half) for loop in loops for half in (loop.fall, loop.rise)]))
+        return cls(angle - centre[:, None], load, friction, centre, blur)
+
+    @property
+    def reach(self) -> float:
+        """Half of the angle of a loop, rad."""
+        return 0.5 * float(np.mean(np.ptp(self.angle, axis=1)))
+
+
+def _read(loop: Loop) -> tuple[Array, Array, Array]:
+    """Return angles, loads and frictions."""
+    fall, rise = loop.fall, loop.rise
+    # A ramp may go on beyond the loop, to a larger amplitude.
+    low = max(rise.angle[0], float(fall.angle_at(max(fall.end, rise.start))))
+    high = min(fall.angle[0], float(rise.angle_at(min(rise.end, fall.start))))
+    margin = _MARGIN * (high - low)
+    angle = np.linspace(low + margin, high - margin, _LEVELS)
+    load = 0.5 * (_torque(fall, angle) + _torque(rise, angle))
+    inside = np.flatnonzero((load >= _BUILT_UP * load[0]) & (load <= _BUILT_UP * load[-1]))
+    if len(inside):
+        angle = np.linspace(angle[inside[0]], angle[inside[-1]], _LEVELS)
+    back, forth = _torque(fall, angle), _torque(rise, angle)
+    return angle, 0.5 * (forth + back), 0.5 * (forth - back)
+
+
+def _blur(half: HalfLoop) -> float:
+    return max(half.blur, float(np.median(np.abs(np.diff(half.torque)))))
+
+
+def _torque(half: HalfLoop, angle: Array) -> Array:
+    """Torque at which a half loop passes angles: midway between the first and the last time."""
+    sign = 1.0 if half.rising else -1.0
+    passed, wanted = sign * half.angle, sign * angle
+    tie = _TIE * np.arange(len(passed))
+    first = np.interp(wanted, np.maximum.accumulate(passed) + tie, half.torque)
+    last = np.interp(wanted, np.minimum.accumulate(passed[::-1])[::-1] + tie, half.torque)
+    return 0.5 * (first + last)

@@ -1,0 +1,109 @@
+"""Remarks on the models of torque ramps, in sentences."""
+
+from collections.abc import Iterator
+
+from gear_kinematics.lost_motion.comparison import SIGNIFICANCE, holm
+from gear_kinematics.lost_motion.play import SOFTEST, Cause, PlayModel
+from gear_kinematics.lost_motion.report import HysteresisReport
+from gear_kinematics.lost_motion.wording import ARC_MINUTES, PERCENT, plus_minus, torque
+from gear_kinematics.report.document import number
+
+_LARGER = 3.0
+"""Amplitude of ramps that load the spring well, as a multiple of the friction."""
+
+
+def model_remarks(found: HysteresisReport) -> Iterator[str]:
+    """Describe what the models tell, and what was taken out of the recording."""
+    yield from _effects(found)
+    model = found.smallest.play_model
+    if not model:
+        yield 'There is no play model, as the ramps have no middle line.'
+        return
+    yield (
+        f'Backlash and friction are those of the simplest plausible model: {model.name}, '
+        f'{number(model.stiffness, 4)} N·m/rad, with a residual of {number(model.residual)} N·m '
+        '(root mean square) on the middle line of the hysteresis curve.'
+    )
+    yield from _play(model)
+    if model.growth:
+        yield f'The friction grows by {plus_minus(model.growth, 100.0)} % of the load.'
+    yield from _tests(model)
+
+
+def _effects(found: HysteresisReport) -> Iterator[str]:
+    if lag := found.effects.lag:
+        yield (
+            f'The angle was read {plus_minus(lag, 1e3)} ms later than the torque. This lag has '
+            'been taken out of the recording.'
+        )
+    for drift, figures in zip(found.effects.drifts, found.figures, strict=True):
+        if drift:
+            yield (
+                f'During the ramps to {torque(figures.amplitude)} N·m, the zero of the angle '
+                f'drifted by {number(60.0 * drift.rate * ARC_MINUTES)} arcmin per minute'
+                f'{"" if drift.steady else " in the mean, but not evenly"}. This has been taken '
+                'out.'
+            )
+    if (creep := found.creep) and found.spring:
+        likely = [(creep.constant, creep.compliance.value), *creep.others]
+        stiffness = 100.0 * found.spring.stiffness.value
+        pairs = ' or '.join(
+            f'{number(stiffness * compliance, 2)} % with {number(constant)} s'
+            for constant, compliance in sorted(likely)
+        )
+        yield (
+            'The gear creeps. By equally likely shares of its twist and time constants, what '
+            f'comes late is {pairs}. Backlash, friction and the stiffness of the spring are '
+            'without creep; hysteresis, lost motion and the other stiffnesses contain it.'
+        )
+
+
+def _play(model: PlayModel) -> Iterator[str]:
+    soft = (
+        f'Over it the gear yields at {number(model.softness, 2)} of its stiffness beyond'
+        if model.softness
+        else ''
+    )
+    match model.cause:
+        case Cause.NONE if soft:
+            yield f'{soft}; below {SOFTEST:g} this counts as backlash.'
+        case Cause.ZERO:
+            yield (
+                f'The backlash is an upper bound ({PERCENT}): models without any describe the '
+                'ramps as well.'
+            )
+        case Cause.SOFT:
+            yield (
+                f'The backlash is an upper bound ({PERCENT}): in the middle the gear yields at '
+                f'{number(model.softness or 0.0, 2)} of its stiffness beyond, which may be '
+                'backlash or a soft spring, such as an elastic bracing. Ramps at other positions '
+                'of the output, or an encoder at the output, tell them apart.'
+            )
+        case Cause.MODELS:
+            yield (
+                'The backlash is not separable from the spring, because models that describe the '
+                'ramps equally well have anything from no backlash to one as large as the '
+                'hysteresis. Repeat the small ramps more often, and more slowly.'
+            )
+        case Cause.FLANKS:
+            yield (
+                'The backlash is not separable from the spring, because these ramps hardly load '
+                f'the spring beyond it: of their torque, {torque(model.friction.value)} N·m are '
+                f'friction. Record ramps to {torque(_LARGER * model.friction.value)} N·m or more.'
+            )
+        case Cause.SINGLE:
+            yield 'No backlash shows. Without repeats there is no upper bound.'
+
+
+def _tests(model: PlayModel) -> Iterator[str]:
+    together = holm([test.probability for test in model.tests])
+    found = [
+        f'{test.name} ({number(test.statistic, 2)} where chance has {number(test.expected, 2)})'
+        for test, probability in zip(model.tests, together, strict=True)
+        if probability < SIGNIFICANCE
+    ]
+    if found:
+        yield (
+            f'What the model leaves is not chance alone: {", ".join(found)}. What is the same in '
+            'all loops is in the ± of the backlash.'
+        )

@@ -1,0 +1,149 @@
+"""Models of the ramps of a recording: the spring, its play and friction, and what time does."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gear_kinematics.lost_motion.creep import Creep, Loads, creep_of, without_creep
+from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
+from gear_kinematics.lost_motion.lag import encoder_lag, without_lag
+from gear_kinematics.lost_motion.midline import Midlines
+from gear_kinematics.lost_motion.play import PlayModel, play_model
+from gear_kinematics.lost_motion.ramps import Ramps, find_ramps
+from gear_kinematics.lost_motion.recording import Loading
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+
+_LOADED = 0.5
+"""Share of the greatest load from which on the stiffness of the spring is taken."""
+_LEVELS = 100
+"""Loads at which the slope of a curve is taken."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """The spring alone: on the middle line, where friction cancels, and without creep."""
+
+    low: float
+    """N·m, magnitude of the load."""
+    high: float
+    """N·m."""
+    stiffness: Estimate
+    """N·m/rad."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Effects:
+    """What time does to a recording; None where it does not show, or without times."""
+
+    lag: Estimate | None
+    """s, by which the encoder is late; taken out."""
+    drifts: tuple[Drift | None, ...]
+    """Of the ramps of each amplitude; taken out."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Models:
+    """What describes the ramps."""
+
+    plays: tuple[PlayModel | None, ...]
+    """Of the ramps of each amplitude."""
+    spring: Spring | None
+    """By the largest ramps."""
+    creep: Creep | None
+
+
+def settled(loading: Loading) -> tuple[tuple[Ramps, ...], Effects]:
+    """Find the ramps of a recording, without the lag of its encoder and the drift of its zero.
+
+    Raises:
+        RampError: if there are none.
+    """
+    torque, angle, time = loading.torque, loading.angle, loading.time
+    ramps = find_ramps(torque, angle, time)
+    if time is None:
+        return ramps, Effects(None, (None,) * len(ramps))
+    lag = encoder_lag(time, torque, angle, ramps, _friction(ramps))
+    if lag and lag.value > (lag.uncertainty or 0.0):
+        ramps = find_ramps(torque, without_lag(time, angle, lag.value), time)
+    else:
+        lag = None
+    drifts = tuple(map(drift_of, ramps))
+    still = (
+        without_drift(group, drift) if drift else group
+        for group, drift in zip(ramps, drifts, strict=True)
+    )
+    return tuple(still), Effects(lag, drifts)
+
+
+def _friction(ramps: Sequence[Ramps]) -> float:
+    """About the friction, N·m."""
+    return float(np.median(Midlines.of(ramps[0].whole).friction))
+
+
+def models_of(ramps: Sequence[Ramps], angle_step: float, lag: Estimate | None) -> Models:
+    """Model ramps.
+
+    Args:
+        ramps: of a recording, in ascending order of amplitude.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+        lag: s, that has been taken out.
+    """
+    creep, variants = None, []
+    if ramps[0].history[0].time is not None:
+        friction = _friction(ramps)
+        loads = Loads(ramps[0].history, friction)
+        creep = creep_of(loads, ramps, friction, angle_step)
+        if creep:
+            largest = ramps[-1]
+            others = (
+                (creep.compliance.value + (creep.compliance.standard or 0.0), creep.constant),
+                *((compliance, constant) for constant, compliance in creep.others),
+            )
+            variants = [without_creep(largest, loads, *other) for other in others]
+            ramps = [
+                without_creep(group, loads, creep.compliance.value, creep.constant)
+                for group in ramps
+            ]
+    late = lag.standard or 0.0 if lag else 0.0
+    return Models(
+        tuple(_play(group, angle_step, late) for group in ramps),
+        _spring(ramps[-1], variants, angle_step),
+        creep,
+    )
+
+
+def _play(ramps: Ramps, angle_step: float, late: float) -> PlayModel | None:
+    hysteresis = float(np.mean([loop.width(0.0) for loop in ramps.loops]))
+    rate = ramps.loops[0].fall.rate if late else 0.0
+    return play_model(ramps.whole, angle_step, hysteresis, rate * late)
+
+
+def _spring(ramps: Ramps, variants: Sequence[Ramps], angle_step: float) -> Spring | None:
+    """Measure the spring of ramps; from the variants, other creep that is likely is taken out."""
+    lines = Midlines.of(ramps.whole)
+    high = float(np.min(np.abs(lines.load[:, [0, -1]])))  # which all loops reach on both sides
+    low = _LOADED * high
+    compliances = _compliances(lines, low, high)
+    if min(compliances) <= 0.0:
+        return None
+    value = float(np.mean(compliances))
+    parts = [Component(np.sqrt(2.0) * resolution(angle_step) / (high - low))]
+    for variant in variants:
+        changed = _compliances(Midlines.of(variant.whole), low, high)
+        parts.append(Component(abs(float(np.mean(changed)) - value)))
+    return Spring(low, high, Estimate.of_mean(compliances, *parts).inverse())
+
+
+def _compliances(lines: Midlines, low: float, high: float) -> list[float]:
+    """Slopes of the lines through the middle line of each loop under both signs, rad/(N·m)."""
+    found = []
+    levels = np.linspace(low, high, _LEVELS)
+    for angle, load in zip(lines.angle, lines.load, strict=True):
+        rising = np.maximum.accumulate(load)
+        slopes = [
+            np.polynomial.polynomial.polyfit(side, np.interp(side, rising, angle), 1)[1]
+            for side in (levels, -levels[::-1])
+        ]
+        found.append(float(np.mean(slopes)))
+    return found

@@ -1,0 +1,333 @@
+"""Play and friction of hysteresis loops, by the members of a family of models that predict best.
+
+A model is judged by how well the other loops predict each loop. All models that do so about as
+well as the best one (within one standard error) count: play has a value only if all of them have
+it.
+"""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from gear_kinematics.lost_motion.creep import transmitted
+from gear_kinematics.lost_motion.midline import Midlines
+from gear_kinematics.lost_motion.ramps import Array, Loop
+from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
+from gear_kinematics.lost_motion.springs import SHAPES, Fit, Fitting, Gap, Model, Springs
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+
+SOFTEST = 0.2
+"""Play: the gear yields at less than this share of its stiffness beyond."""
+_HARDLY_SOFT = 0.5
+"""A middle that is stiffer than this share of the stiffness beyond is no gap."""
+_FLANKS = 0.95
+"""Share of the angle of a loop from which on a gap leaves too little of the spring beyond it."""
+_MOST_FRICTION = 0.8
+"""Share of the torque from which on friction leaves too little of it for the spring."""
+_CLEAR_OF_BLUR = 4.0
+"""In a soft middle, the load rises by more than this many times the blur of corners."""
+_CLEAR_OF_LOAD = 0.02
+"""And by more than this share of the greatest load."""
+_MISFIT = 2.0 / math.sqrt(3.0)
+"""Share of a misfit, at both ends of the gap, that counts as standard uncertainty (GUM 4.3.7)."""
+_ROUNDING = 1e-3
+"""Share of the greatest load by which predictions may differ and still be as good."""
+_LEVELS = 200
+"""Torques of the loop of a model."""
+
+
+class Cause(StrEnum):
+    """Why a play has no value."""
+
+    NONE = ''
+    ZERO = 'zero is within reach'
+    SOFT = 'soft middle'
+    """Play or a soft spring: a limit."""
+    MODELS = 'models differ'
+    """Neither value nor limit, as is the following."""
+    FLANKS = 'ramps too small'
+    SINGLE = 'not repeated'
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A model that was tried."""
+
+    name: str
+    error: float
+    """N·m, root mean square of the load of each loop, as predicted by the others."""
+    plausible: bool
+    """Whether it predicts about as well as the best model."""
+    gap: Estimate | None
+    """rad, if it is plausible and has one."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlayModel:
+    """The simplest plausible model, and what all plausible ones tell of the play."""
+
+    name: str
+    stiffness: float
+    """N·m/rad, of the spring beyond the play, up to the peak."""
+    play: Estimate | None
+    """rad, the backlash; None if zero is within reach or if it cannot be told from the spring."""
+    limit: float | None
+    """rad, below which the play is with 95 %, if it has no value."""
+    cause: Cause
+    """Why there is no value, or neither value nor limit."""
+    friction: Estimate
+    """N·m, at the output, without load."""
+    growth: Estimate | None
+    """Share of the load that adds to the friction; None if not significant."""
+    residual: float
+    """N·m, root mean square of the load on the middle lines minus the model's."""
+    softness: float | None
+    """Stiffness over the play as a share of that beyond it; None without a rest of stiffness."""
+    tests: tuple[ResidualTest, ...]
+    """Of what the model leaves of the middle lines."""
+    candidates: tuple[Candidate, ...]
+    """All models tried, the best first; empty without repeats."""
+    angles: Array
+    """(n,), rad, ascending: the curve of the model."""
+    loads: Array
+    """(n,), N·m, ascending, at these angles."""
+
+    def loop(self, amplitude: float) -> tuple[Array, Array]:
+        """Torques and angles of the model's hysteresis loop, from one peak back to it."""
+        torque = amplitude * np.linspace(1.0, -1.0, _LEVELS)
+        growth = self.growth.value if self.growth else 0.0
+        peak = max(0.0, amplitude - self.friction.value) / (1.0 + growth)
+        load = transmitted(torque, peak, self.friction.value, growth)
+        there = np.concatenate([load, -load])
+        tie = np.linspace(0.0, 1e-9, len(self.loads))
+        angle = np.interp(there, self.loads + tie * amplitude, self.angles)
+        return np.concatenate([torque, -torque]), angle
+
+
+def play_model(
+    loops: Sequence[Loop], angle_step: float, hysteresis: float, late: float = 0.0
+) -> PlayModel | None:
+    """Choose a model for loops of one amplitude; None if they have no middle line.
+
+    Args:
+        loops: at least one.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+        hysteresis: rad, the width of the loops at zero torque, which play does not exceed.
+        late: N·m, standard uncertainty of the torque by that of the encoder's lag.
+    """
+    lines = Midlines.of(loops)
+    if not (lines.reach and np.ptp(lines.load)):
+        return None
+    fitting = Fitting(lines)
+    if len(loops) > 1:
+        tried = _tried(fitting, lines)
+        plausible = _plausible(tried, lines)
+        chosen = min(
+            plausible, key=lambda model: (model.size, float(np.mean(tried[model].errors)))
+        )
+    else:
+        chosen, plausible = Model(SHAPES[0], Gap.PLAY), []
+        found = fitting.fit(chosen)
+        tried = {chosen: found} if found else {}
+    if not tried:
+        return None
+    springs = fitting.each(chosen, tried[chosen])
+    stiffness = _stiffness(chosen, springs, lines)
+    rest = lines.load - fitting.load(chosen, springs, lines.angle)
+    middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
+    friction, growth = _friction(lines, angle_step)
+    if friction.value > _MOST_FRICTION * loops[0].amplitude:
+        play, limit, cause = None, None, Cause.FLANKS
+    elif middles:
+        misfit = _common(rest) / stiffness
+        play, limit, cause = _verdict(chosen, middles, misfit, angle_step, hysteresis)
+    else:
+        play, limit, cause = _single(float(springs.gap[0]))
+    angles = np.linspace(np.min(lines.angle), np.max(lines.angle), _LEVELS)
+    curves = fitting.load(chosen, springs, np.tile(angles, (len(loops), 1)))
+    return PlayModel(
+        chosen.name,
+        stiffness,
+        play,
+        limit,
+        cause,
+        friction.joined(Component(late)),
+        growth,
+        float(np.sqrt(np.mean(rest**2))),
+        max((middle.ratio for middle in middles.values()), default=0.0) or None,
+        residual_tests(rest, lines.load),
+        _candidates(tried, middles) if middles else (),
+        angles + float(np.mean(lines.centre)),
+        np.maximum.accumulate(np.mean(curves, axis=0)),
+    )
+
+
+def _single(gap: float) -> tuple[Estimate | None, None, Cause]:
+    """Return the play of a single loop."""
+    if gap:
+        return Estimate.of_mean([gap]), None, Cause.NONE
+    return None, None, Cause.SINGLE
+
+
+def _common(rest: Array) -> float:
+    """Root mean square of what is the same in all loops, of (loops, levels)."""
+    count = len(rest)
+    if count < 2:  # noqa: PLR2004, nothing to compare
+        return 0.0
+    scatter = float(np.mean(np.var(rest, axis=0, ddof=1))) / count
+    return math.sqrt(max(0.0, float(np.mean(np.mean(rest, axis=0) ** 2)) - scatter))
+
+
+def _tried(fitting: Fitting, lines: Midlines) -> dict[Model, Fit]:
+    """Fit the family, without soft middles that noise can make by rounding the corners."""
+    tried = {}
+    for shape in SHAPES:
+        for gap in Gap:
+            model = Model(shape, gap)
+            found = fitting.fit(model)
+            if found and not (gap == Gap.SOFT and _rounded(fitting, model, found, lines)):
+                tried[model] = found
+    return tried
+
+
+def _rounded(fitting: Fitting, model: Model, found: Fit, lines: Midlines) -> bool:
+    rise = _rise(model, fitting.each(model, found), lines)
+    least = max(_CLEAR_OF_BLUR * lines.blur, _CLEAR_OF_LOAD * float(np.max(np.abs(lines.load))))
+    return float(np.mean(rise)) <= least
+
+
+def _plausible(tried: Mapping[Model, Fit], lines: Midlines) -> list[Model]:
+    """Return the models that predict as well as the best one, within one standard error."""
+    rounding = (_ROUNDING * float(np.max(np.abs(lines.load)))) ** 2
+    best = min(tried.values(), key=lambda fit: float(np.mean(fit.errors))).errors
+    found = []
+    for model, fit in tried.items():
+        worse = fit.errors - best
+        error = float(np.std(worse, ddof=1)) / math.sqrt(len(worse))
+        if float(np.mean(worse)) <= error + rounding:
+            found.append(model)
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class _Middle:
+    """What a plausible model tells of the play, rad."""
+
+    gap: Estimate
+    least: float
+    most: float
+    ratio: float = 0.0
+    """Stiffness within a soft middle over that beyond."""
+
+    @classmethod
+    def of(
+        cls, model: Model, fitting: Fitting, tried: Mapping[Model, Fit], lines: Midlines
+    ) -> '_Middle':
+        """Fit the gap of a model, or that which a model without one could have."""
+        wider = Model(model.shape, Gap(max(model.gap, Gap.PLAY)))
+        springs = fitting.each(wider, tried[wider])
+        gap = Estimate.of_mean(springs.gap.tolist())
+        reach = gap.uncertainty or 0.0
+        least, most = gap.value - reach, gap.value + reach
+        if model.gap == Gap.SOFT and least <= 0.0:
+            return cls.of(Model(model.shape, Gap.NONE), fitting, tried, lines)
+        if most > _FLANKS * 2.0 * lines.reach and model.gap != Gap.SOFT:
+            return cls(gap, 0.0, math.inf)
+        if model.gap == Gap.NONE:
+            return cls(gap, 0.0, most)
+        if model.gap == Gap.PLAY:
+            return cls(gap, least, most)
+        within = float(np.mean(_rise(model, springs, lines))) / gap.value
+        ratio = within / _stiffness(model, springs, lines)
+        if ratio <= SOFTEST:
+            return cls(gap, least, most, ratio)
+        if ratio <= _HARDLY_SOFT:
+            return cls(gap, 0.0, most, ratio)
+        return cls.of(Model(model.shape, Gap.NONE), fitting, tried, lines)
+
+
+def _rise(model: Model, springs: Springs, lines: Midlines) -> Array:
+    """Rise of the load within the gap, (loops,), N·m."""
+    if model.gap != Gap.SOFT:
+        return np.zeros(len(springs.gap))
+    rise: Array = springs.factors[:, -1] * springs.gap / lines.reach
+    return rise
+
+
+def _stiffness(model: Model, springs: Springs, lines: Midlines) -> float:
+    """Stiffness beyond the gap, from its ends to those of the loops, N·m/rad."""
+    load, angle = np.ptp(lines.load, axis=1), np.ptp(lines.angle, axis=1)
+    beyond = np.maximum(angle - springs.gap, 1e-3 * angle)
+    return float(np.mean((load - _rise(model, springs, lines)) / beyond))
+
+
+def _verdict(
+    chosen: Model,
+    middles: Mapping[Model, _Middle],
+    misfit: float,
+    angle_step: float,
+    hysteresis: float,
+) -> tuple[Estimate | None, float | None, Cause]:
+    """Return value, limit and cause.
+
+    Args:
+        chosen: the simplest plausible model.
+        middles: of all plausible models.
+        misfit: rad, by which the chosen one errs in all loops alike, at either end of the gap.
+        angle_step: rad, between readings of the encoder.
+        hysteresis: rad.
+    """
+    values = np.array([middle.gap.value for middle in middles.values()])
+    own = middles[chosen].gap
+    choice = Component(float(np.sqrt(np.mean((values - own.value) ** 2))))
+    wider = own.joined(choice, Component(_MISFIT * misfit), Component(resolution(angle_step)))
+    if all(middle.least > 0.0 for middle in middles.values()) and (
+        wider.value > (wider.uncertainty or 0.0)
+    ):
+        return wider, None, Cause.NONE
+    limit = max(middle.most for middle in middles.values()) + 2.0 * _MISFIT * misfit
+    limit = max(limit, _ROUNDING * hysteresis)
+    if math.isinf(limit):
+        return None, None, Cause.FLANKS
+    if limit >= hysteresis:
+        return None, None, Cause.MODELS
+    soft = any(middle.ratio > SOFTEST for middle in middles.values())
+    return None, max(limit, angle_step), Cause.SOFT if soft else Cause.ZERO
+
+
+def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | None]:
+    """Return the friction without load, and its growth with the load if that is significant."""
+    load = np.abs(lines.load)
+    # What is at no load counts most.
+    weight = 1.0 - load / (1.01 * np.max(load, axis=1, keepdims=True))
+    fits = [
+        np.polynomial.polynomial.polyfit(x, f, 1, w=w)
+        for x, f, w in zip(load, lines.friction, weight, strict=True)
+    ]
+    growth = Estimate.of_mean([float(fit[1]) for fit in fits])
+    stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
+    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step))
+    if growth.uncertainty is not None and growth.value > growth.uncertainty:
+        return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
+    means = np.average(lines.friction, axis=1, weights=weight**2)
+    # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
+    uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
+    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(12.0))), None
+
+
+def _candidates(
+    tried: Mapping[Model, Fit], middles: Mapping[Model, _Middle]
+) -> tuple[Candidate, ...]:
+    found = [
+        Candidate(
+            model.name,
+            math.sqrt(max(0.0, float(np.mean(fit.errors)))),  # it may be rounded below zero
+            model in middles,
+            middles[model].gap if model in middles and model.gap else None,
+        )
+        for model, fit in tried.items()
+    ]
+    return tuple(sorted(found, key=lambda candidate: candidate.error))

@@ -1,0 +1,128 @@
+"""Models of torque ramps: of simulated gears that are known, and of a measured actuator."""
+
+import math
+
+import numpy as np
+import pytest
+from judging_ramps import judge
+from simulated_ramps import SCENARIOS, STEP, Scenario, simulate, truth
+
+from gear_kinematics.lost_motion import models
+from gear_kinematics.lost_motion.encoder_step import Source, Step
+from gear_kinematics.lost_motion.play import Cause
+from gear_kinematics.lost_motion.recording import Loading
+
+ARC_MINUTE = math.radians(1.0 / 60.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('scenario', SCENARIOS, ids=lambda scenario: scenario.name)
+def test_figures_hold(scenario: Scenario):
+    """Of 12 intervals of 95 %, fewer than 8 hold once in 6000 times, of 90 % once in 200."""
+    found = judge(scenario, 12)
+    assert not found.below_zero
+    least = 8.0 / 12.0
+    assert found.hysteresis >= least
+    assert math.isnan(found.play) or found.play >= least
+    if scenario.contained:
+        assert found.friction >= least
+        assert found.spring >= least
+    if scenario.contained and not scenario.play:
+        assert found.valued <= 2.0 / 12.0  # zero is within reach
+    if scenario.contained and scenario.play:
+        assert found.valued == 1.0
+        assert abs(found.play_bias) < 0.3 * ARC_MINUTE
+
+
+def loading(scenario: Scenario, *, times: bool = True) -> Loading:
+    recorded = simulate(scenario, 1, np.random.default_rng(3))
+    return Loading(
+        recorded.torque[:, 0],
+        recorded.angle[:, 0],
+        Step(STEP, Source.GIVEN),
+        measured=True,
+        time=recorded.time if times else None,
+    )
+
+
+def scenario(name: str) -> Scenario:
+    return next(scenario for scenario in SCENARIOS if scenario.name == name)
+
+
+def test_a_late_encoder_is_found_and_taken_out():
+    late = scenario('encoder 20 ms late')
+    ramps, effects = models.settled(loading(late))
+    assert effects.lag.value == pytest.approx(late.lag, abs=0.003)
+    assert effects.lag.uncertainty < 0.003
+    widths = [loop.width(0.0) for loop in ramps[0].loops]
+    assert np.mean(widths) == pytest.approx(truth(late).hysteresis, abs=0.5 * ARC_MINUTE)
+
+
+def test_a_drift_is_found_and_taken_out():
+    drifting = scenario('drift')
+    _, effects = models.settled(loading(drifting))
+    assert effects.lag is None
+    assert effects.drifts[0].rate == pytest.approx(drifting.drift, rel=0.2)
+
+
+def test_creep_is_found_where_the_gear_stands_still():
+    creeping = scenario('creep of 10 %')
+    ramps, effects = models.settled(loading(creeping))
+    creep = models.models_of(ramps, STEP, effects.lag).creep
+    share, constant = creeping.creeps[0]
+    likely = {creep.constant: creep.compliance.value, **dict(creep.others)}
+    assert 300.0 * likely[constant] == pytest.approx(share, rel=0.15)
+
+
+def test_without_times_nothing_is_said_of_time():
+    ramps, effects = models.settled(loading(scenario('creep of 10 %'), times=False))
+    assert effects.lag is None
+    assert effects.drifts == (None, None)
+    assert models.models_of(ramps, STEP, None).creep is None
+
+
+def test_friction_that_grows_with_the_load():
+    growing = scenario('friction that grows by 10 % of the load')
+    ramps, _ = models.settled(loading(growing))
+    model = models.models_of(ramps, STEP, None).plays[0]
+    assert model.growth.value == pytest.approx(growing.load_friction, abs=0.03)
+    assert model.friction.value == pytest.approx(growing.friction, abs=0.04)
+
+
+def test_a_soft_middle_is_a_bound_and_says_why():
+    ramps, _ = models.settled(loading(scenario('soft middle')))
+    model = models.models_of(ramps, STEP, None).plays[0]
+    assert model.play is None
+    assert model.cause == Cause.SOFT
+    assert 0.2 < model.softness < 0.6
+
+
+def test_rejected_models_have_their_scores():
+    ramps, _ = models.settled(loading(scenario('play, hardening spring')))
+    model = models.models_of(ramps, STEP, None).plays[0]
+    errors = [candidate.error for candidate in model.candidates]
+    assert errors == sorted(errors)
+    assert model.candidates[0].plausible
+    linear = next(c for c in model.candidates if c.name == 'linear spring, no play')
+    assert not linear.plausible
+    assert linear.error > 5.0 * errors[0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('folder', ['torque_ramps', 'torque_ramps_more'])
+def test_no_play_of_a_measured_actuator_is_negative_or_exceeds_its_hysteresis(shared_path, folder):
+    for path in sorted(shared_path(f'data/{folder}').glob('*.csv')):
+        data = np.genfromtxt(path, delimiter=',', names=True)
+        recorded = Loading(
+            data['TORQUE'],
+            2.0 * math.pi * data['POSITION'],
+            Step(2.0 * math.pi / 65536.0, Source.FOUND),
+            measured=False,
+        )
+        ramps, _ = models.settled(recorded)
+        for group, model in zip(ramps, models.models_of(ramps, 0.0, None).plays, strict=True):
+            hysteresis = np.mean([loop.width(0.0) for loop in group.loops])
+            if model.play:
+                assert model.play.value > model.play.uncertainty, path.name
+            if model.limit is not None:
+                assert 0.0 < model.limit < hysteresis, path.name

@@ -1,0 +1,219 @@
+"""Torque ramps of gears that are known, stepped through time; nothing under test is used.
+
+The load on the spring is the state: friction holds it until the torque differs from it by more
+than the friction, and then lets it follow just so far. Play is a step of the spring's curve, a
+table. All recordings of a scenario step together: arrays are (time, recordings).
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+INTERVAL = 2.5e-3  # s
+STEP = 2.0 * math.pi / 65536.0  # rad, of the encoder
+SMALL, LARGE = 4.0, 40.0  # N·m
+LOOPS = ((SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0)) + 3 * (
+    (LARGE, 20.0),
+)
+"""Amplitude, N·m, and duration, s, of the loops of a recording."""
+RATED = LARGE
+
+Spring = Callable[[np.ndarray], np.ndarray]
+"""Twist, rad, under a load, N·m, of either sign, without the play."""
+
+
+def linear(load: np.ndarray) -> np.ndarray:
+    return load / 300.0
+
+
+def softening(load: np.ndarray) -> np.ndarray:
+    """600 N·m/rad at no load, and softer the larger the load."""
+    return load / 600.0 + np.sign(load) * (load / 110.0) ** 2
+
+
+def hardening(load: np.ndarray) -> np.ndarray:
+    """150 N·m/rad at no load, 600 N·m/rad far above 5 N·m."""
+    return load / 600.0 + 0.025 * np.tanh(load / 5.0)
+
+
+def soft_middle(load: np.ndarray) -> np.ndarray:
+    """60 N·m/rad within 1 N·m, as of tooth flanks that are not yet fully in contact."""
+    return load / 300.0 + 0.0133 * np.tanh(load)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A gear and its sensors; angles in rad at the output."""
+
+    name: str
+    contained: bool = True
+    """Whether the family of models contains it."""
+    play: float = 0.0
+    spring: Spring = linear
+    friction: float = 1.0
+    """N·m."""
+    load_friction: float = 0.0
+    """Share of the load that adds to it."""
+    creeps: tuple[tuple[float, float], ...] = ()
+    """Share of the twist, and time constant, s, of each."""
+    bristle: float = 0.0
+    """N·m over which friction builds up after a reversal."""
+    slip: float = 0.0
+    """Share of the friction by which it falls once the gear moves (stick-slip)."""
+    drift: float = 0.0
+    """rad/s, of the encoder."""
+    thermal: tuple[float, float] = (0.0, 60.0)
+    """Amplitude, rad, and period, s, of a wandering zero."""
+    lag: float = 0.0
+    """s, by which the readings of the encoder are late."""
+    noise: float = 0.1
+    """N·m, of the torque sensor."""
+    repeat: float = 0.01
+    """Relative scatter of the friction from loop to loop."""
+
+
+SCENARIOS = (
+    Scenario('play, linear spring', play=0.02),
+    Scenario('little play, linear spring', play=0.003),
+    Scenario('no play, linear spring'),
+    Scenario('no play, softening spring', spring=softening),
+    Scenario('no play, hardening spring', spring=hardening),
+    Scenario('play, softening spring', play=0.01, spring=softening),
+    Scenario('play, hardening spring', play=0.01, spring=hardening),
+    Scenario('creep of 10 %', play=0.01, creeps=((0.1, 5.0),)),
+    Scenario('friction that grows by 10 % of the load', play=0.01, load_friction=0.1),
+    Scenario('drift', play=0.01, drift=3e-5),
+    Scenario('thermal sine', play=0.01, thermal=(1e-3, 60.0)),
+    Scenario('encoder 20 ms late', play=0.01, lag=0.02),
+    Scenario('soft middle', contained=False, spring=soft_middle),
+    Scenario(
+        'creep with two times', contained=False, play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))
+    ),
+    Scenario('friction that builds up', contained=False, play=0.01, bristle=0.5),
+    Scenario('stick-slip', contained=False, play=0.01, slip=0.3),
+    Scenario(
+        'creep, drift and growing friction',
+        contained=False,
+        play=0.01,
+        creeps=((0.05, 5.0),),
+        load_friction=0.05,
+        drift=2e-5,
+    ),
+)
+
+
+class Ramps(NamedTuple):
+    """Recordings of a scenario."""
+
+    time: np.ndarray
+    """(time,), s."""
+    torque: np.ndarray
+    """(time, recordings), N·m, measured."""
+    angle: np.ndarray
+    """(time, recordings), rad, measured."""
+
+
+class Truth(NamedTuple):
+    """The figures of a gear, without its sensors' errors."""
+
+    hysteresis: float
+    play: float
+    friction: float
+    stiffness: float
+    """N·m/rad, of the spring, between 50 % and 100 % of the rated torque."""
+
+
+def truth(scenario: Scenario) -> Truth:
+    """Return the figures by definition, of the curve that is gone through at its usual pace."""
+    ideal = replace(scenario, repeat=0.0)
+    angle = _motion(ideal, 1, np.random.default_rng(0))[:, 0]
+    widths = []
+    rows = round(LOOPS[0][1] / INTERVAL)
+    for k in range(1, 5):
+        half, end = k * rows + rows // 2, (k + 1) * rows
+        widths.append(angle[half] - angle[end])
+    low, high = (ideal.spring(np.array([share * RATED]))[0] for share in (0.5, 1.0))
+    return Truth(
+        float(np.mean(widths)), scenario.play, scenario.friction, 0.5 * RATED / (high - low)
+    )
+
+
+def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ramps:
+    """Record a gear many times."""
+    time, torque = _torque()
+    angle = _motion(scenario, count, random)
+    size, period = scenario.thermal
+    phase = random.uniform(-np.pi, np.pi, count)
+    angle = angle + scenario.drift * time[:, None]
+    angle += size * np.sin(2.0 * np.pi * time[:, None] / period + phase)
+    if scenario.lag:
+        late = time - scenario.lag
+        angle = np.stack([np.interp(late, time, column) for column in angle.T], axis=1)
+    zero = random.uniform(0.0, STEP, count)
+    noise = scenario.noise * random.standard_normal(angle.shape)
+    return Ramps(time, torque[:, None] + noise, np.round((angle + zero) / STEP) * STEP)
+
+
+def _torque() -> tuple[np.ndarray, np.ndarray]:
+    parts = []
+    for amplitude, duration in LOOPS:
+        quarter = round(0.25 * duration / INTERVAL)
+        for start, end, quarters in ((0, 1, 1), (1, -1, 2), (-1, 0, 1)):
+            parts.append(amplitude * np.linspace(start, end, quarters * quarter, endpoint=False))
+    torque = np.concatenate([*parts, [0.0]])
+    return INTERVAL * np.arange(len(torque)), torque
+
+
+def _loops_of_rows() -> np.ndarray:
+    rows = [round(duration / INTERVAL) for _, duration in LOOPS]
+    return np.append(np.repeat(np.arange(len(rows)), rows), len(rows) - 1)
+
+
+def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
+    """Angle, (time, recordings), without the errors of the encoder."""
+    _, torque = _torque()
+    # The curve of the spring with its play: twist at loads, and loads at twists.
+    loads = np.linspace(-1.5 * LARGE, 1.5 * LARGE, 240001)
+    twists = s.spring(loads) + 0.5 * s.play * np.sign(loads)
+    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(LOOPS), count)))
+    loop = _loops_of_rows()
+    twist = np.zeros(count)
+    load = np.zeros(count)
+    built = np.zeros(count)  # N·m, friction that has built up, with its sign
+    late = np.zeros((len(s.creeps), count))
+    angles = np.empty((len(torque), count))
+    for k, applied in enumerate(torque):
+        held = strength[loop[k]] + s.load_friction * np.abs(load)
+        if s.bristle:
+            load, built = _bristles(applied, load, built, held, s.bristle)
+        else:
+            net = applied - load
+            moves = np.abs(net) > held
+            sliding = held * (1.0 - s.slip)
+            # A load that grows makes its own friction grow.
+            towards = np.sign(net)
+            growing = towards * np.sign(applied - towards * sliding) * s.load_friction
+            fresh = strength[loop[k]] * (1.0 - s.slip)
+            load = np.where(moves, (applied - towards * fresh) / (1.0 + growing), load)
+        twist = np.interp(load, loads, twists)
+        for j, (share, constant) in enumerate(s.creeps):
+            late[j] += (share * s.spring(load) - late[j]) * -math.expm1(-INTERVAL / constant)
+        angles[k] = twist + late.sum(axis=0)
+    return angles
+
+
+def _bristles(
+    applied: float, load: np.ndarray, built: np.ndarray, held: np.ndarray, width: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Dahl's friction, solved for the load by small steps: its slope falls as it builds up."""
+    for _ in range(8):
+        short = applied - load - built  # what pulls the gear on
+        way = np.sign(short)
+        slope = held / width * (1.0 - way * built / held)
+        step = short / (1.0 + np.maximum(slope, 0.0))
+        load = load + step
+        built = np.clip(built + slope * step, -held, held)
+    return load, built
