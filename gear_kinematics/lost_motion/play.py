@@ -16,6 +16,7 @@ from gear_kinematics.lost_motion.creep import transmitted
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, Loop
 from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
+from gear_kinematics.lost_motion.soft_middle import soft_middle
 from gear_kinematics.lost_motion.springs import SHAPES, Fit, Fitting, Gap, Model, Springs
 from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
@@ -35,6 +36,8 @@ _MISFIT = 2.0 / math.sqrt(3.0)
 """Share of a misfit, at both ends of the gap, that counts as standard uncertainty (GUM 4.3.7)."""
 _ROUNDING = 1e-3
 """Share of the greatest load by which predictions may differ and still be as good."""
+_BEYOND = 1.6
+"""Share of half of a loop's angle up to which the curve of a model is drawn."""
 _LEVELS = 200
 """Torques of the loop of a model."""
 
@@ -62,7 +65,7 @@ class Candidate:
     plausible: bool
     """Whether it predicts about as well as the best model."""
     gap: Estimate | None
-    """rad, if it is plausible and has one."""
+    """rad, if it is plausible and has one clear of zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +138,7 @@ def play_model(
     if not tried:
         return None
     springs = fitting.each(chosen, tried[chosen])
-    stiffness = _stiffness(chosen, springs, lines)
+    stiffness = soft_middle(chosen, springs, fitting, lines, SOFTEST).beyond
     rest = lines.load - fitting.load(chosen, springs, lines.angle)
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
     friction, growth = _friction(lines, angle_step)
@@ -146,7 +149,7 @@ def play_model(
         play, limit, cause = _verdict(chosen, middles, misfit, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
-    angles = np.linspace(np.min(lines.angle), np.max(lines.angle), _LEVELS)
+    angles = _BEYOND * lines.reach * np.linspace(-1.0, 1.0, _LEVELS)
     curves = fitting.load(chosen, springs, np.tile(angles, (len(loops), 1)))
     return PlayModel(
         chosen.name,
@@ -194,9 +197,8 @@ def _tried(fitting: Fitting, lines: Midlines) -> dict[Model, Fit]:
 
 
 def _rounded(fitting: Fitting, model: Model, found: Fit, lines: Midlines) -> bool:
-    rise = _rise(model, fitting.each(model, found), lines)
     least = max(_CLEAR_OF_BLUR * lines.blur, _CLEAR_OF_LOAD * float(np.max(np.abs(lines.load))))
-    return float(np.mean(rise)) <= least
+    return _rise(model, fitting.each(model, found), lines) <= least
 
 
 def _plausible(tried: Mapping[Model, Fit], lines: Midlines) -> list[Model]:
@@ -220,48 +222,30 @@ class _Middle:
     least: float
     most: float
     ratio: float = 0.0
-    """Stiffness within a soft middle over that beyond."""
+    """Stiffness within it over that beyond."""
 
     @classmethod
     def of(
         cls, model: Model, fitting: Fitting, tried: Mapping[Model, Fit], lines: Midlines
     ) -> '_Middle':
-        """Fit the gap of a model, or that which a model without one could have."""
-        wider = Model(model.shape, Gap(max(model.gap, Gap.PLAY)))
-        springs = fitting.each(wider, tried[wider])
+        """Take the soft middle of a model, or the gap that a model without one could have."""
+        springs = fitting.each(model, tried[model])
+        soft = soft_middle(model, springs, fitting, lines, SOFTEST)
+        if soft.width.value and (model.gap == Gap.PLAY or soft.least > 0.0):
+            most = soft.most if soft.most < _FLANKS * 2.0 * lines.reach else math.inf
+            return cls(soft.width, soft.least if math.isfinite(most) else 0.0, most, soft.ratio)
+        vague = soft_middle(model, springs, fitting, lines, _HARDLY_SOFT)
+        springs = fitting.each(wider := Model(model.shape, Gap.PLAY), tried[wider])
         gap = Estimate.of_mean(springs.gap.tolist())
-        reach = gap.uncertainty or 0.0
-        least, most = gap.value - reach, gap.value + reach
-        if model.gap == Gap.SOFT and least <= 0.0:
-            return cls.of(Model(model.shape, Gap.NONE), fitting, tried, lines)
-        if most > _FLANKS * 2.0 * lines.reach and model.gap != Gap.SOFT:
-            return cls(gap, 0.0, math.inf)
-        if model.gap == Gap.NONE:
-            return cls(gap, 0.0, most)
-        if model.gap == Gap.PLAY:
-            return cls(gap, least, most)
-        within = float(np.mean(_rise(model, springs, lines))) / gap.value
-        ratio = within / _stiffness(model, springs, lines)
-        if ratio <= SOFTEST:
-            return cls(gap, least, most, ratio)
-        if ratio <= _HARDLY_SOFT:
-            return cls(gap, 0.0, most, ratio)
-        return cls.of(Model(model.shape, Gap.NONE), fitting, tried, lines)
+        most = max(gap.value + (gap.uncertainty or 0.0), vague.most)
+        return cls(gap, 0.0, most, vague.ratio)
 
 
-def _rise(model: Model, springs: Springs, lines: Midlines) -> Array:
-    """Rise of the load within the gap, (loops,), N·m."""
+def _rise(model: Model, springs: Springs, lines: Midlines) -> float:
+    """Mean rise of the load within the gap, N·m."""
     if model.gap != Gap.SOFT:
-        return np.zeros(len(springs.gap))
-    rise: Array = springs.factors[:, -1] * springs.gap / lines.reach
-    return rise
-
-
-def _stiffness(model: Model, springs: Springs, lines: Midlines) -> float:
-    """Stiffness beyond the gap, from its ends to those of the loops, N·m/rad."""
-    load, angle = np.ptp(lines.load, axis=1), np.ptp(lines.angle, axis=1)
-    beyond = np.maximum(angle - springs.gap, 1e-3 * angle)
-    return float(np.mean((load - _rise(model, springs, lines)) / beyond))
+        return 0.0
+    return float(np.mean(springs.factors[:, -1] * springs.gap)) / lines.reach
 
 
 def _verdict(
@@ -294,7 +278,7 @@ def _verdict(
         return None, None, Cause.FLANKS
     if limit >= hysteresis:
         return None, None, Cause.MODELS
-    soft = any(middle.ratio > SOFTEST for middle in middles.values())
+    soft = any(middle.ratio and middle.most for middle in middles.values())
     return None, max(limit, angle_step), Cause.SOFT if soft else Cause.ZERO
 
 
@@ -326,7 +310,7 @@ def _candidates(
             model.name,
             math.sqrt(max(0.0, float(np.mean(fit.errors)))),  # it may be rounded below zero
             model in middles,
-            middles[model].gap if model in middles and model.gap else None,
+            middles[model].gap if model in middles and middles[model].least > 0.0 else None,
         )
         for model, fit in tried.items()
     ]
