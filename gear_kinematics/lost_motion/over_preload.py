@@ -11,6 +11,7 @@ from gear_kinematics.lost_motion.advice import FEWEST, Advice, advise, without
 from gear_kinematics.lost_motion.common import basis, chosen, doubts, highest_range
 from gear_kinematics.lost_motion.compared import Compared
 from gear_kinematics.lost_motion.hysteresis import Figures, Stiffness
+from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.preload_curves import FIGURES, PreloadFigure, drawing, shown
 from gear_kinematics.lost_motion.preload_settings import Scale
 from gear_kinematics.lost_motion.preloaded import Reading, Span
@@ -106,11 +107,13 @@ def over_preload(
 def reading_of(name: str, setting: float, small: Figures, spring: Stiffness | None) -> Reading:
     """Take from the small ramps of a recording what the advice needs, and the stiffness."""
     model = small.play_model
+    # A soft middle bounds the play, but does not tell that there may be none.
+    bounded = model if model and model.cause == Cause.ZERO else None
     return Reading(
         name,
         setting,
         model.play if model else None,
-        model.limit if model else None,
+        bounded.limit if bounded else None,
         small.friction,
         spring.positive if spring else None,
         spring.negative if spring else None,
