@@ -95,7 +95,7 @@ def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
         assert 0.0 <= found[0].play_model.limit < 1e-4
     for figure, estimate in estimates(found).items():
         # The simulation moves in steps of 2 µrad, and the torque in steps of 20 and 100 mN·m.
-        tolerance = {'friction': 0.01, 'stiffness': 0.1}.get(figure, 2e-5)
+        tolerance = {'friction': 0.02, 'stiffness': 0.1}.get(figure, 2e-5)
         assert estimate.value == pytest.approx(expected[figure], abs=tolerance), figure
 
 
