@@ -65,5 +65,5 @@ def run(arguments: list[str]) -> None:
 if __name__ == '__main__':
     os.chdir(ROOT)  # pages show the paths that they were made from
     for name, arguments in DRAWN.items():
-        run([*arguments, str(DOCS / name)])
+        run([*arguments, str(DOCS / name), '--force'])
     photograph(PAGES)

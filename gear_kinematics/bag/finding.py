@@ -6,10 +6,13 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from gear_kinematics.bag.errors import BagError
+from gear_kinematics.bag.reading import is_bag_file
 
 _BAG_FILE = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
 """Number of a file of a split recording."""
+_METADATA = 'metadata.yaml'
+_TABLES = {'.csv', '.tsv'}
 
 
 def find_bags(patterns: Iterable[str]) -> list[Path]:
@@ -28,6 +31,17 @@ def find_bags(patterns: Iterable[str]) -> list[Path]:
     return list(dict.fromkeys(found))
 
 
+def is_recording(path: Path) -> bool:
+    """Return whether a file is a recording or its metadata, or has the name of one.
+
+    Raises:
+        OSError: if it cannot be read.
+    """
+    if _BAG_FILE.search(path.name) or path.suffix.lower() in _TABLES:
+        return True
+    return path.name == _METADATA or (path.is_file() and is_bag_file(path))
+
+
 def _glob(pattern: str) -> Iterator[Path]:
     # Path.glob takes no absolute patterns.
     matches = sorted(map(Path, glob.iglob(pattern, recursive=True)))  # noqa: PTH207
@@ -37,7 +51,7 @@ def _glob(pattern: str) -> Iterator[Path]:
 
 
 def _bags_below(path: Path) -> Iterator[Path]:
-    if not path.is_dir() or (path / 'metadata.yaml').exists():
+    if not path.is_dir() or (path / _METADATA).exists():
         yield path
         return
     children = sorted(
@@ -53,7 +67,7 @@ def _bags_below(path: Path) -> Iterator[Path]:
 
 def _leads_astray(path: Path) -> bool:
     """Whether it is a link to a folder that is not a bag: such links can form cycles."""
-    return path.is_symlink() and path.is_dir() and not (path / 'metadata.yaml').exists()
+    return path.is_symlink() and path.is_dir() and not (path / _METADATA).exists()
 
 
 def _may_hold(path: Path) -> bool:

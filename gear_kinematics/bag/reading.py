@@ -230,6 +230,17 @@ def sort_by_topic(messages: Iterable[Message], columns: Mapping[str, TopicMessag
         column.received.append(received)
 
 
+def is_bag_file(path: Path) -> bool:
+    """Return whether a file is one of a bag, or compressed as such are, by its content.
+
+    Raises:
+        OSError: if it cannot be read.
+    """
+    with path.open('rb') as file:
+        start = _start(file, 16)
+    return start.startswith(tuple(_KINDS)) or start[:4] in FILE_OPENERS
+
+
 @contextmanager
 def _opened(file: Path, budget: Budget, read: int = 0) -> Iterator[Storage]:
     """Open a file of a bag, if compressed via a temporary file.

@@ -1,7 +1,6 @@
 """The calibration file of a fit."""
 
 from datetime import UTC, datetime
-from pathlib import Path
 
 import numpy as np
 
@@ -9,9 +8,7 @@ from gear_kinematics.calibration.normal import Array
 from gear_kinematics.calibration.result import Fit, Fitted, Residuals
 from gear_kinematics.calibration.terms import OrderTerm, StopTerm, TorqueTerm
 from gear_kinematics.state.calibration_file import (
-    SCHEMA,
     Calibration,
-    CalibrationError,
     Compliance,
     Order,
     Prediction,
@@ -21,27 +18,8 @@ from gear_kinematics.state.calibration_file import (
 )
 from gear_kinematics.state.share import version
 
-_HEAD = f'schema: {SCHEMA.rpartition("/")[0]}'
-"""The begin of a calibration file of any version."""
 _MARGIN = 0.1
 """Share of the span of speed and torque beyond which they are not calibrated."""
-
-
-def check_target(path: Path) -> None:
-    """Check that writing a calibration would replace nothing else.
-
-    Raises:
-        CalibrationError: if there is another file.
-    """
-    if not path.exists():
-        return
-    try:
-        with path.open(encoding='utf-8') as file:
-            ours = file.read(len(_HEAD)) == _HEAD
-    except (OSError, UnicodeDecodeError):
-        ours = False
-    if not ours:
-        raise CalibrationError(f'{path}: there is something else than a calibration')
 
 
 def to_calibration(fit: Fit) -> Calibration:

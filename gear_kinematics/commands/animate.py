@@ -9,6 +9,7 @@ from typing import Any
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import progress, warn_if_teeth_cannot_mesh, write_file
+from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.trajectory import Trajectory
@@ -25,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('out', metavar='FILE', help='image file: .gif or .mp4')
     arguments.add_mechanism(parser)
     arguments.add_sizes(parser)
+    add_force(parser)
     motions = parser.add_mutually_exclusive_group()
     arguments.add_recording(parser, motions)
     motions.add_argument(
@@ -48,6 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the frames, write the file and print its length."""
+    check_targets(options, {'FILE': options.out})
     config = arguments.node_parameters(options)
     mechanism, module = Mechanism.from_mapping(config), config['module']
     for name, (low, high) in _BOUNDS.items():

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.commands.output import message_progress
+from gear_kinematics.commands.targets import add_force
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -66,10 +67,9 @@ def add_config(parser: argparse.ArgumentParser) -> None:
 def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) -> None:
     """Add the options for files of the report; see `output.Reporter`."""
     for form in ('json', *(['junit'] if junit else []), 'html'):
-        parser.add_argument(
-            f'--{form}', nargs='?', const='-', metavar='FILE', help=f'as {form} (default: stdout)'
-        )
+        parser.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
     parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+    add_force(parser)
 
 
 _COLUMNS = {

@@ -11,9 +11,9 @@ from gear_kinematics.calibration.fit import fit
 from gear_kinematics.calibration.judgement import judge
 from gear_kinematics.calibration.reading import read_bag, read_csv
 from gear_kinematics.calibration.recording import Recording
-from gear_kinematics.calibration.to_file import check_target, to_calibration
+from gear_kinematics.calibration.to_file import to_calibration
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Reporter, message_progress, write_file
+from gear_kinematics.commands.output import Reporter, message_progress, write
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.lost_motion.csv_files import is_csv
 from gear_kinematics.state.calibration_file import Calibration
@@ -46,14 +46,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Calibrate with all recordings together, or judge a calibration by each."""
-    reporter = Reporter(options, len(options.recordings) if options.check else 1)
+    others = {} if options.check else {'-o': options.output}
+    reporter = Reporter(options, len(options.recordings) if options.check else 1, others)
     # All recordings are of one gear, so one configuration applies to all.
     config = arguments.load_config(options, options.recordings[0])
     if options.max_gap is not None:
         config['transmission_error_max_gap'] = options.max_gap
     if options.check:
         return _check(options, config, reporter)
-    check_target(Path(options.output))
     gear = gear_from_mapping(config)
     recordings = [_read(path, options, config) for path in options.recordings]
     result = fit(
@@ -63,7 +63,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         fit_ratio=options.fit_ratio,
     )
     if result.helps:
-        write_file(options.output, to_calibration(result).text().encode())
+        write(options.output, to_calibration(result).text())
     reporter.write(document(result, options.output))
     return ExitCode.DONE if result.helps else ExitCode.FAILED
 

@@ -28,6 +28,7 @@ from gear_kinematics.report.document import (
     Table,
     Tone,
 )
+from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.angles import arc, arc_seconds
 from gear_kinematics.shape.pin_sheet import MOST_TEETH, draw
 
@@ -114,7 +115,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Report the setting and its neighbours, and draw it."""
     if options.mirrored and not options.drawing:
         raise ValueError('--mirrored needs --drawing')
-    reporter = Reporter(options, drawing=options.drawing)
+    reporter = Reporter(options, others={'--drawing': options.drawing})
     answer = _answer(options)
     drawing = ''
     if options.drawing or (options.html and answer.ring_teeth <= MOST_TEETH):
@@ -122,7 +123,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         notes = [' '.join(fact) for fact in _outcome(answer)]
         drawing = draw(answer.ring_teeth, setting, notes, mirrored=options.mirrored)
     if options.drawing:
-        write(options.drawing, drawing)
+        write(options.drawing, f'{drawing}<!-- {MARK} -->\n')
     reporter.write(Document('gearkin index', (_section(answer, drawing),), _data(answer)))
     return ExitCode.DONE
 

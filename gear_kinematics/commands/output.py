@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from rich import console
@@ -15,6 +16,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.text import Text
 
 from gear_kinematics.bag import ReportProgress
+from gear_kinematics.commands.targets import check_targets
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Document, printable
 from gear_kinematics.report.html import to_html
@@ -73,7 +75,7 @@ class Reporter:
         self,
         options: argparse.Namespace,
         sections: int = 1,
-        drawing: str | None = None,
+        others: Mapping[str, str | None] = MappingProxyType({}),
         *,
         compared: bool = False,
     ) -> None:
@@ -82,21 +84,25 @@ class Reporter:
         Args:
             options: the parsed arguments.
             sections: number of sections of the document.
-            drawing: target of `--drawing`, if any.
+            others: targets of further options, which the command writes itself.
             compared: whether the last section compares the others, and has the figure of the plot.
 
         Raises:
-            ValueError: if options exclude each other.
+            ValueError: if options exclude each other, or a file must not or cannot be written.
             ModuleNotFoundError: if a form needs a package that is not installed.
         """
         self._targets = {
             form: target for form in _FORMS if (target := getattr(options, form, None))
         }
         self._plot: str | None = options.plot
-        given = {**self._targets, 'drawing': drawing}
-        to_stdout = [f'--{form}' for form, target in given.items() if target == '-']
+        given = {f'--{form}': target for form, target in self._targets.items()}
+        given |= {'--plot': self._plot, **others}
+        to_stdout = [option for option, target in given.items() if target == '-']
         if len(to_stdout) > 1:
             raise ValueError(f'only one report can go to stdout, not {" and ".join(to_stdout)}')
+        if '--html' in to_stdout and sys.stdout.isatty():
+            raise ValueError('--html -: a page goes into a file or a pipe, not to a terminal')
+        check_targets(options, given)
         self._silent = bool(to_stdout)
         if self._plot:
             if sections > 1 and not compared:

@@ -9,6 +9,7 @@ from typing import Any
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments, calibrations
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
+from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import (
     Gear,
     Mechanism,
@@ -16,6 +17,7 @@ from gear_kinematics.kinematics import (
     gear_from_mapping,
     split_turns,
 )
+from gear_kinematics.report.image import format_of
 from gear_kinematics.state.trajectory import MOST_TURNS, Trajectory
 
 Config = Mapping[str, Any]
@@ -34,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         figure.add_argument('out', metavar='FILE', help='image file: .png, .svg, .pdf ...')
         arguments.add_mechanism(figure)
         arguments.add_sizes(figure)
+        add_force(figure)
         motions = figure.add_mutually_exclusive_group()
         arguments.add_recording(figure, motions, **options)
         figure.set_defaults(draw=draw)
@@ -62,6 +65,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the figure and write its file."""
+    check_targets(options, {'FILE': options.out})
+    format_of(Path(options.out))  # its errors, before any work
     config = arguments.node_parameters(options)
     # The output needs no more than the ratio.
     gear = gear_from_mapping(config) if options.draw is _output else Mechanism.from_mapping(config)

@@ -14,6 +14,7 @@ from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, styled
+from gear_kinematics.report.mark import MARK
 from gear_kinematics.state.trajectory import Trajectory
 
 _WIDTH = 4.0  # inches for any number of pixels, so that lines and text scale with them
@@ -122,6 +123,7 @@ def _gif(figure: Any, frames: Iterator[None], fps: int) -> bytes:
         append_images=others,
         duration=10 * max(2, round(100.0 / fps)),  # ms; players ignore durations under 20
         loop=0,
+        comment=MARK.encode(),
     )
     return content.getvalue()
 
@@ -147,7 +149,7 @@ def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
 
     if not FFMpegWriter.isAvailable():
         raise RuntimeError('an MP4 needs the program ffmpeg; a GIF does not')
-    writer = FFMpegWriter(fps)
+    writer = FFMpegWriter(fps, metadata={'comment': MARK})
     with TemporaryDirectory() as folder:
         path = Path(folder, 'animation.mp4')
         try:

@@ -9,6 +9,7 @@ from typing import Any
 
 from gear_kinematics.report.document import Figure, Panel, Pen
 from gear_kinematics.report.interactive import BEHIND, FEW, SymmetricLog, tick_angle, tick_range
+from gear_kinematics.report.mark import MARK
 
 INK, FAINT = '#24292f', '#8c959f'
 SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df', '#cf222e', '#1b7c83')
@@ -26,7 +27,16 @@ _STYLE = {
     'svg.hashsalt': 'gear_kinematics',  # for reproducible files
     'pdf.fonttype': 42,  # TrueType, which publishers require
 }
-_UNDATED = {'svg': {'Date': None}, 'pdf': {'CreationDate': None}}
+_METADATA = {
+    'png': {'Comment': MARK},
+    'svg': {'Description': MARK, 'Date': None},  # undated, for reproducible files
+    'pdf': {'Creator': MARK, 'CreationDate': None},
+    'ps': {'Creator': MARK},
+    'eps': {'Creator': MARK},
+}
+_WITH_EXIF = 'jpg', 'jpeg', 'tif', 'tiff', 'webp'
+_SOFTWARE = 0x0131
+"""The tag in Exif."""
 _FOLDER = Path(__file__).parent
 """To import matplotlib in: it obeys a matplotlibrc in the current folder, which may come with a
 recording."""
@@ -59,10 +69,21 @@ def render(path: Path, size: tuple[float, float], draw: Callable[[Any], None]) -
     def make(figure: Any) -> bytes:
         draw(figure)
         buffer = BytesIO()
-        figure.savefig(buffer, format=kind, dpi=_DPI, metadata=_UNDATED.get(kind))
+        figure.savefig(buffer, format=kind, dpi=_DPI, **_marked(kind))
         return buffer.getvalue()
 
     return styled(size, make)
+
+
+def _marked(kind: str) -> dict[str, Any]:
+    """Options of savefig for our mark, in the formats that have a place for it."""
+    if kind not in _WITH_EXIF:
+        return {'metadata': _METADATA.get(kind)}
+    from PIL import Image  # noqa: PLC0415, comes with matplotlib
+
+    exif = Image.Exif()
+    exif[_SOFTWARE] = MARK
+    return {'pil_kwargs': {'exif': exif}}
 
 
 def format_of(path: Path) -> str:

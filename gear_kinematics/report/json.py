@@ -9,9 +9,13 @@ from gear_kinematics.report.document import Document
 
 
 def to_json(document: Document) -> str:
-    """Write the data of a report; numbers that strict JSON cannot express are null."""
+    """Write the data of a report; numbers that strict JSON cannot express are null.
+
+    The first member names the command, by which `mark.is_report` recognises the file.
+    """
+    data = {'made_by': document.title, **document.data}
     # ASCII passes every pipe and every code page.
-    return json.dumps(_strict(document.data), indent=2, allow_nan=False, ensure_ascii=True) + '\n'
+    return json.dumps(_strict(data), indent=2, allow_nan=False, ensure_ascii=True) + '\n'
 
 
 def _strict(value: Any) -> Any:

@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 from xml.etree import ElementTree as ET
 
 from gear_kinematics.report.document import Document, Section
+from gear_kinematics.report.mark import MARK
 from gear_kinematics.report.text import section_lines
 
 
@@ -19,9 +20,8 @@ def to_junit(document: Document, when: datetime | None = None) -> str:
     for number, section in enumerate(document.sections):
         _add_suite(root, section, document.title.replace(' ', '.'), number, stamp)
     ET.indent(root)
-    return (
-        '<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding='unicode') + '\n'
-    )
+    head = f'<?xml version="1.0" encoding="UTF-8"?>\n<!-- {MARK} -->\n'
+    return head + ET.tostring(root, encoding='unicode') + '\n'
 
 
 def _add_suite(root: ET.Element, section: Section, package: str, number: int, stamp: str) -> None:

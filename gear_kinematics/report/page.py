@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from html import escape
 from importlib.resources import files
 
+from gear_kinematics.report.mark import MARK
+
 
 def page(title: str, body: str, *, scripts: Sequence[str] = ()) -> str:
     """Write a page that holds all it needs, with plotly.js where there are scripts.
@@ -20,7 +22,8 @@ def page(title: str, body: str, *, scripts: Sequence[str] = ()) -> str:
     """
     sources = [_plotly_js(), *map(_resource, scripts)] if scripts else []
     return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        f'<!DOCTYPE html>\n<!-- {MARK} -->\n'
+        '<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{_policy(sources)}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<title>{escape(title)}</title>\n'

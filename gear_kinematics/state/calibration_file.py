@@ -23,6 +23,17 @@ _GREATEST = 1e30  # no number of a real gear is near it
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
 
 
+def is_calibration(path: Path) -> bool:
+    """Return whether a file is a calibration of any version.
+
+    Raises:
+        OSError: if it cannot be read.
+    """
+    begin = f'schema: {SCHEMA.rpartition("/")[0]}'.encode()
+    with path.open('rb') as file:
+        return file.read(len(begin)) == begin
+
+
 class CalibrationError(ValueError):
     """A calibration that cannot be used; the text names the cause."""
 

@@ -31,7 +31,7 @@ def computed(file, tmp_path):
 
 def topics_of(path, capsys, *options) -> dict[str, dict]:
     """Validate a bag; gives what is reported of its topics, by name."""
-    assert main(['validate', str(path), '--json', *map(str, options)]) == 0
+    assert main(['validate', str(path), '--json', '-', *map(str, options)]) == 0
     (bag,) = json.loads(capsys.readouterr().out)['bags']
     return {topic['topic']: topic for topic in bag['topics']}
 

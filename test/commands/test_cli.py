@@ -59,9 +59,10 @@ def test_demo_names_a_calibration_that_is_missing(capsys):
 
 
 def test_describe_tells_the_numbers_of_the_specification(capsys):
-    assert main(['describe', '--json']) == 0
+    assert main(['describe', '--json', '-']) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts == {
+        'made_by': 'gearkin describe',
         'ring_teeth': 80,
         'satellite_teeth': 76,
         'eccentricity': 0.0011,
@@ -100,7 +101,7 @@ def test_describe_takes_another_tooth_pair(capsys):
 
 def test_describe_says_where_teeth_cannot_avoid_interference(capsys):
     arguments = ['describe', '--eccentricity', '0.001', '--module', '0.00051']
-    assert main([*arguments, '--json']) == 0
+    assert main([*arguments, '--json', '-']) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts['contact_ratio'] is None
     assert 'tip interference margin of -' in facts['interference']

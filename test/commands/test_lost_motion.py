@@ -69,7 +69,7 @@ def test_report_says_what_is_inferred(recording, motion, capsys):
 
 
 def test_json_is_in_si_units_and_has_every_figure(recording, capsys):
-    assert main(['lost-motion', str(recording), '--json']) == 0
+    assert main(['lost-motion', str(recording), '--json', '-']) == 0
     document = json.loads(capsys.readouterr().out)
     assert (document['schema'], document['version']) == ('gear_kinematics/lost_motion', 1)
     assert document['coverage'] == 0.95
@@ -86,7 +86,7 @@ def test_json_is_in_si_units_and_has_every_figure(recording, capsys):
 
 
 def test_rated_torque_and_ranges_can_be_told(recording, capsys):
-    arguments = ['--rated-torque', '50', '--stiffness-torques', '30', '10', '--json']
+    arguments = ['--rated-torque', '50', '--stiffness-torques', '30', '10', '--json', '-']
     assert main(['lost-motion', str(recording), *arguments]) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert found['hysteresis']['settings']['rated_torque'] == 50.0
@@ -100,14 +100,14 @@ def test_at_one_speed_a_delay_must_be_known(motion, capsys):
     output = capsys.readouterr().out
     assert 'tell the delay with --delay, in rows' in output
     assert 'lost motion on reversals' not in output
-    assert main(['lost-motion', str(motion), '--json']) == 0
+    assert main(['lost-motion', str(motion), '--json', '-']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert found['transmission']['lost_motion'] is found['transmission']['delay'] is None
     assert found['transmission']['reversals']['value'] == pytest.approx(2e-3, abs=1e-5)
 
 
 def test_transmission_error_of_both_encoders(motion, capsys):
-    assert main(['lost-motion', str(motion), '--json', '--delay', '0']) == 0
+    assert main(['lost-motion', str(motion), '--json', '-', '--delay', '0']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     transmission = found['transmission']
     assert transmission['lost_motion']['value'] == pytest.approx(2e-3, abs=1e-5)
@@ -172,7 +172,7 @@ def test_several_recordings_are_compared(recording, motion, capsys, monkeypatch)
             'the recordings have no figure in common',
         ),
         (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot must be one of'),
-        (['{recording}', '--json', '--html'], 'only one report can go to stdout'),
+        (['{recording}', '--json', '-', '--html', '-'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are rotor, output"),
     ],
 )
@@ -203,7 +203,7 @@ def test_options_out_of_range_are_refused(recording, given, capsys):
 
 def test_unusable_recording_does_not_keep_the_others(recording, tmp_path, capsys):
     flat = write_csv(tmp_path / 'flat.csv', angle=np.zeros(500), torque=np.zeros(500))
-    assert main(['lost-motion', str(flat), str(recording), '--json']) == 2
+    assert main(['lost-motion', str(flat), str(recording), '--json', '-']) == 2
     captured = capsys.readouterr()
     assert captured.err == (
         f'gearkin: {flat}: no torque ramp that goes to one side, to the other and back to zero\n'
@@ -222,7 +222,7 @@ def test_garbage_in_one_recording_keeps_no_other(recording, tmp_path, column, va
     columns[column] = columns[column].copy()
     columns[column][150] = value
     spoilt = write_csv(tmp_path / 'spoilt.csv', **columns)
-    assert main(['lost-motion', str(spoilt), str(recording), '--json']) in {0, 2}
+    assert main(['lost-motion', str(spoilt), str(recording), '--json', '-']) in {0, 2}
     captured = capsys.readouterr()
     assert 'Traceback' not in captured.err
     assert len(captured.err.splitlines()) <= 1
@@ -284,7 +284,7 @@ def test_damaged_bag_is_measured_as_far_as_it_goes(tmp_path, capsys):
     samples = Samples(stamps, -19.0 * angle, torque / -19.0)
     (file,) = write_recording(tmp_path / 'ramps', samples).glob('*.mcap')
     file.write_bytes(file.read_bytes()[: file.stat().st_size * 3 // 4])
-    assert main(['lost-motion', str(file), '--json']) == 2
+    assert main(['lost-motion', str(file), '--json', '-']) == 2
     captured = capsys.readouterr()
     assert captured.err.startswith(f'gearkin: {file}: ')
     assert captured.err.count('\n') == 1
@@ -298,7 +298,7 @@ def test_motion_with_a_torque_that_is_no_ramp_is_motion(tmp_path, capsys):
     stamps = 10**18 + np.arange(len(ideal)) * 10**6
     rotor = Samples(stamps, -19.0 * ideal, np.full(len(ideal), 0.1))
     path = write_recording(tmp_path / 'motion', rotor, Samples(stamps, ideal))
-    assert main(['lost-motion', str(path), '--json']) == 0
+    assert main(['lost-motion', str(path), '--json', '-']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert found['hysteresis'] is None
     assert found['transmission']['samples'] == 3000
@@ -366,7 +366,7 @@ def test_one_sentence_says_what_has_changed_and_what_has_not(worn, capsys):
 
 
 def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsys):
-    assert main(['lost-motion', worn[2], worn[0], '--json']) == 0
+    assert main(['lost-motion', worn[2], worn[0], '--json', '-']) == 0
     document = json.loads(capsys.readouterr().out)
     for found in document['recordings']:
         assert found['hysteresis']['rated_by'] == 'least of the recordings'
@@ -379,7 +379,7 @@ def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsy
     assert backlash['difference']['value'] == pytest.approx(-0.008, abs=1e-4)
     assert backlash['significant']
     assert not changes['friction']['significant']
-    assert main(['lost-motion', worn[2], worn[0], '--rated-torque', '20', '--json']) == 0
+    assert main(['lost-motion', worn[2], worn[0], '--rated-torque', '20', '--json', '-']) == 0
     document = json.loads(capsys.readouterr().out)
     for found in document['recordings']:
         assert found['hysteresis']['rated_by'] == 'given'
@@ -389,7 +389,7 @@ def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsy
 def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys):
     for patterns in (['_(new|worn)'], ['*_new.csv', '*_worn.csv']):
         options = [f'--group={pattern}' for pattern in patterns]
-        assert main(['lost-motion', *options, *worn, '--json']) == 0
+        assert main(['lost-motion', *options, *worn, '--json', '-']) == 0
         comparison = json.loads(capsys.readouterr().out)['comparison']
         names = [path.rpartition('/')[2] for path in worn]
         assert [group['recordings'] for group in comparison['groups']] == [names[:2], names[2:]]
@@ -401,7 +401,7 @@ def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys
 
 
 def test_recordings_of_no_group_keep_their_own_torque(worn, capsys):
-    options = ['--group', '*_0900_new*', '--group', '*_1000_new*', '--json']
+    options = ['--group', '*_0900_new*', '--group', '*_1000_new*', '--json', '-']
     assert main(['lost-motion', *worn[1:3], worn[0], *options]) == 0
     captured = capsys.readouterr()
     assert captured.err == 'gearkin: 0302_0900_worn.csv: is of no group, and not compared\n'
@@ -436,7 +436,7 @@ def test_what_cannot_be_compared_gets_one_line(worn, arguments, complaint, capsy
 
 def test_trend_is_in_order_of_time(worn, capsys):
     shuffled = [worn[k] for k in (2, 0, 3, 1)]
-    assert main(['lost-motion', *shuffled, '--trend', '--json']) == 0
+    assert main(['lost-motion', *shuffled, '--trend', '--json', '-']) == 0
     document = json.loads(capsys.readouterr().out)
     names = [path.rpartition('/')[2] for path in worn]
     assert [found['recording'] for found in document['recordings']] == names
@@ -478,9 +478,9 @@ def test_processes_measure_what_one_does(worn, tmp_path, capsys):
     bad = tmp_path / 'bad.csv'
     bad.write_text('angle,torque\n1,2\n', 'utf-8')
     paths = [*worn, str(bad), str(tmp_path / 'missing.csv')]
-    assert main(['lost-motion', *paths, '--json']) == 2
+    assert main(['lost-motion', *paths, '--json', '-']) == 2
     one = capsys.readouterr()
-    assert main(['lost-motion', *paths, '--json', '--jobs', '2']) == 2
+    assert main(['lost-motion', *paths, '--json', '-', '--jobs', '2']) == 2
     assert capsys.readouterr() == one
     assert len(one.err.splitlines()) == 2
 
@@ -489,11 +489,11 @@ def test_processes_measure_what_one_does(worn, tmp_path, capsys):
 def test_cluster_measures_what_one_process_does(worn, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(Path(worn[0]).parent)  # the workers are elsewhere
     names = [Path(path).name for path in worn]
-    assert main(['lost-motion', *names, '--json']) == 0
+    assert main(['lost-motion', *names, '--json', '-']) == 0
     one = capsys.readouterr()
     with cluster(tmp_path / 'cluster') as dask:
         dask.add_worker('--no-nanny')
-        assert main(['lost-motion', *names, '--json', '--scheduler', dask.address]) == 0
+        assert main(['lost-motion', *names, '--json', '-', '--scheduler', dask.address]) == 0
     assert capsys.readouterr() == one
 
 
@@ -515,7 +515,9 @@ def another_gear(folder):
 
 
 def test_any_ratio_can_be_given(tmp_path, capsys):
-    assert main(['lost-motion', str(another_gear(tmp_path)), '--ratio', '-58/3', '--json']) == 0
+    assert (
+        main(['lost-motion', str(another_gear(tmp_path)), '--ratio', '-58/3', '--json', '-']) == 0
+    )
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert (found['gear_ratio'], found['fitted_ratio']) == ('-58/3', None)
     cycles = {order['name']: order['cycles'] for order in found['transmission']['orders']}
@@ -533,7 +535,7 @@ def test_ratio_can_be_that_of_the_parameter_file(tmp_path, capsys):
 
 def test_ratio_is_estimated_and_the_gears_that_have_it_are_named(tmp_path, capsys):
     path = str(another_gear(tmp_path))
-    assert main(['lost-motion', path, '--fit-ratio', '--json']) == 0
+    assert main(['lost-motion', path, '--fit-ratio', '--json', '-']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     fitted = found['fitted_ratio']
     assert found['gear_ratio'] == fitted['simplest'] == '-58/3'
@@ -548,7 +550,7 @@ def test_ratio_is_estimated_and_the_gears_that_have_it_are_named(tmp_path, capsy
 
 
 def test_fitted_ratio_of_the_config_keeps_the_orders_of_its_teeth(motion, capsys):
-    assert main(['lost-motion', str(motion), '--fit-ratio', '--json']) == 0
+    assert main(['lost-motion', str(motion), '--fit-ratio', '--json', '-']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert found['gear_ratio'] == '-19'
     assert 'teeth × 1' in {order['name'] for order in found['transmission']['orders']}

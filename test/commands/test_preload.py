@@ -18,7 +18,7 @@ SECOND = 4.848136811095360e-6  # rad
 
 
 def answer(capsys, *arguments: str) -> dict:
-    assert main([*arguments, '--json']) == 0
+    assert main([*arguments, '--json', '-']) == 0
     return json.loads(capsys.readouterr().out)
 
 
@@ -273,7 +273,7 @@ def test_without_matplotlib_a_plot_is_an_error_and_no_file(tmp_path):
         (['index', '--angle', '1', '--backlash', '0.1'], '--branch-stiffness is missing'),
         (['index', '--angle', '1', '--config', 'none.yaml'], 'gearkin: none.yaml: No such file'),
         (['index', '--angle', '1', '--mirrored'], '--mirrored needs --drawing'),
-        (['index', '--angle', '1', '--json', '--drawing', '-'], 'not --json and --drawing'),
+        (['index', '--angle', '1', '--json', '-', '--drawing', '-'], 'not --json and --drawing'),
         (['index', '--angle', '1', '--drawing', 'none/a.svg'], 'none/a.svg: No such file'),
         (['index', '--angle', '1', '--drawing', '.'], 'gearkin: .: Is a directory'),
         (['index', '--angle', '1', '--ring-teeth', '2000', '--drawing', 'a.svg'], '1000 teeth'),

@@ -25,7 +25,7 @@ def module(source: str) -> ModuleType:
 
 def test_a_check_fails_a_bag_and_says_why(monkeypatch, capsys):
     monkeypatch.setattr(checks, 'CHECKS', (*checks.CHECKS, module(CHECK).OutputTravel))
-    assert cli.main(['validate', str(BAG), '--json']) == 1
+    assert cli.main(['validate', str(BAG), '--json', '-']) == 1
     [bag] = json.loads(capsys.readouterr().out)['bags']
     assert bag['verdict'] == 'fail'
     assert any(finding.endswith('beyond the end stops') for finding in bag['findings'])
@@ -57,8 +57,8 @@ def test_a_subcommand_reports_in_every_form(monkeypatch, capsys):
     monkeypatch.setitem(cli.COMMANDS, 'ratio', module(COMMAND))
     outputs = {}
     for form in ('', '--json', '--html'):
-        assert cli.main(['ratio', *filter(None, [form])]) == 0
+        assert cli.main(['ratio', *([form, '-'] if form else [])]) == 0
         outputs[form] = capsys.readouterr().out
     assert outputs[''] == 'gear ratio: -19\n'
-    assert json.loads(outputs['--json']) == {'gear_ratio': '-19'}
+    assert json.loads(outputs['--json']) == {'made_by': 'gearkin ratio', 'gear_ratio': '-19'}
     assert '<dt>gear ratio</dt><dd class="">-19</dd>' in outputs['--html']

@@ -1,0 +1,33 @@
+"""The mark by which gearkin recognises the files that it wrote, and so replaces no others."""
+
+from pathlib import Path
+
+MARK = 'made by gearkin'
+"""In comments of text and in the metadata of images."""
+_JSON = b'{\n  "made_by": "gearkin '
+_STARTS = (
+    *(b'<!DOCTYPE html>', b'<?xml ', b'<svg '),
+    *(b'\x89PNG\r\n', b'GIF8', b'\xff\xd8\xff', b'RIFF', b'II*\0', b'MM\0*'),
+    *(b'%PDF-', b'%!PS'),
+)
+"""Begins of the other formats: pages and drawings, images, documents."""
+_MP4 = b'ftyp'
+"""At the fifth byte."""
+_SEARCHED = 2**16
+"""Bytes at either end of a file in which its mark is."""
+
+
+def is_report(path: Path) -> bool:
+    """Return whether a file is a report, a figure or an animation that gearkin wrote.
+
+    Raises:
+        OSError: if it cannot be read.
+    """
+    with path.open('rb') as file:
+        start = file.read(_SEARCHED)
+        file.seek(max(len(start), path.stat().st_size - _SEARCHED))
+        ends = start + file.read(_SEARCHED)
+    if start.startswith(_JSON):
+        return True
+    known = start.startswith(_STARTS) or start[4:].startswith(_MP4)
+    return known and MARK.encode() in ends

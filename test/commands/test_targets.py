@@ -1,0 +1,221 @@
+"""Files that gearkin writes: it replaces its own, and never a recording."""
+
+import json
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+from blocked_bags import BAGS, gearkin
+from terminals import ENVIRONMENT, Terminal
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.report.mark import is_report
+
+SERVO = BAGS / 'servo_point_to_point'
+RAMPS = BAGS.parent / 'docs' / 'examples' / 'ramps.csv'
+STIFFNESS = ['--branch-stiffness', '3000', '--shaft-stiffness', '1000']
+NOTES = '# made by gearkin, and then much work\n'
+
+
+@pytest.fixture
+def work(tmp_path, monkeypatch):
+    """A folder with recordings, in which gearkin runs."""
+    shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'k1.mcap')
+    shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'k2.mcap')
+    shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'unnamed')
+    shutil.copytree(BAGS / 'driver_faults', tmp_path / 'bag')
+    shutil.copy(RAMPS, tmp_path / 'before.csv')
+    shutil.copy(RAMPS, tmp_path / 'samples.txt')
+    (tmp_path / 'packed').write_bytes(b'\x28\xb5\x2f\xfd' + bytes(20))  # zstd
+    (tmp_path / 'link').symlink_to('k1.mcap')
+    (tmp_path / 'my.yaml').write_text('/**: {ros__parameters: {module: 0.0005}}\n')
+    (tmp_path / 'notes.md').write_text(NOTES)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in folder.rglob('*') if path.is_file()}
+
+
+RECORDINGS = {
+    'validate --junit k1.mcap k2.mcap': 'a recording',
+    'validate --json k1.mcap k2.mcap': 'a recording',
+    'validate --html k1.mcap k2.mcap': 'a recording',
+    'validate --json new.db3 k2.mcap': 'a recording',
+    'validate --json unnamed k2.mcap': 'a recording',
+    'validate --json packed k2.mcap': 'a recording',
+    'validate --json link k2.mcap': 'a recording',
+    'validate --json ./bag/metadata.yaml k2.mcap': 'a recording',
+    'validate --json k2.mcap k2.mcap': 'what is read',
+    'validate --json my.yaml k2.mcap --config my.yaml': 'what is read',
+    'lost-motion --html before.csv samples.txt': 'a recording',
+    'lost-motion --json samples.txt samples.txt': 'what is read',
+    'lost-motion --plot before.csv samples.txt': 'a recording',
+    'calibrate samples.txt -o before.csv': 'a recording',
+    'describe --json before.csv': 'a recording',
+    'preload --degrees 1 --json k1.mcap': 'a recording',
+    'index --degrees 1 --drawing k1.mcap': 'a recording',
+    'plot scheme k1.mcap': 'a recording',
+    'animate k1.mcap': 'a recording',
+}
+
+
+@pytest.mark.parametrize('force', [[], ['--force']], ids=['', 'force'])
+@pytest.mark.parametrize('command', RECORDINGS)
+def test_a_recording_is_never_replaced(command, force, work, capsys):
+    before = contents(work)
+    assert main([*command.split(), *force]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err.count('\n') == 1
+    assert f': {RECORDINGS[command]} is never replaced; name a file to write' in captured.err
+    assert contents(work) == before
+
+
+def test_the_first_of_many_bags_survives_an_option_without_a_file(work):
+    """As the shell expands `gearkin validate --junit k*.mcap`, in the words of the issue."""
+    before = contents(work)
+    done = gearkin('validate', '--junit', 'k1.mcap', 'k2.mcap')
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr.startswith('gearkin: --junit k1.mcap: ')
+    assert contents(work) == before
+
+
+OTHERS = [
+    ['describe', '--json', 'notes.md'],
+    ['describe', '--html', 'notes.md'],
+    ['index', '--degrees', '1', '--drawing', 'notes.md'],
+    ['validate', 'k1.mcap', '--junit', 'notes.md'],
+]
+
+
+@pytest.mark.parametrize('arguments', OTHERS, ids=' '.join)
+def test_other_files_are_replaced_only_by_force(arguments, work, capsys):
+    before = contents(work)
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err == (
+        f'gearkin: {arguments[-2]} notes.md: there is something else than a report of gearkin; '
+        '--force replaces it\n'
+    )
+    assert contents(work) == before
+    assert main([*arguments, '--force']) == 0
+    assert is_report(work / 'notes.md')
+    capsys.readouterr()
+
+
+def test_a_figure_replaces_no_other_picture(work, capsys):
+    pytest.importorskip('matplotlib')
+    from PIL import Image  # noqa: PLC0415, comes with matplotlib
+
+    for name, command in (('a.png', ['plot', 'scheme']), ('a.gif', ['animate'])):
+        Image.new('RGB', (9, 9)).save(work / name)
+        before = contents(work)
+        assert main([*command, name]) == 2
+        assert f'FILE {name}: there is something else' in capsys.readouterr().err
+        assert contents(work) == before
+
+
+REPORTS = {
+    'a.json': ['describe', '--json'],
+    'a.xml': ['validate', 'k1.mcap', '--junit'],
+    'a.html': ['describe', '--html'],
+    'drawing.svg': ['index', '--degrees', '1', '--drawing'],
+    'a.gif': ['animate', '--duration', '0.1', '--width', '100'],
+    **{
+        f'a.{suffix}': ['preload', '--degrees', '1', *STIFFNESS, '--plot']
+        for suffix in ('png', 'svg', 'pdf', 'eps', 'ps', 'jpg', 'webp', 'tif')
+    },
+}
+
+
+@pytest.mark.parametrize('name', REPORTS)
+def test_each_kind_of_report_is_recognised(name, work, capsys):
+    pytest.importorskip('matplotlib')
+    assert main([*REPORTS[name], name]) == 0
+    written = (work / name).read_bytes()
+    assert is_report(work / name)
+    (work / name).write_bytes(written.replace(b'gearkin', b'another'))
+    assert not is_report(work / name)
+    capsys.readouterr()
+
+
+def test_a_report_is_replaced_by_the_next(work, capsys):
+    for module in ('0.0005', '0.00051'):
+        assert main(['describe', '--module', module, '--json', 'a.json']) == 0
+    assert json.loads((work / 'a.json').read_text())['module'] == 0.00051
+    assert main(['describe', '--html', 'a.json']) == 0
+    assert (work / 'a.json').read_text().startswith('<!DOCTYPE html>')
+    capsys.readouterr()
+
+
+def test_an_empty_file_is_filled(work, capsys):
+    """As mktemp makes it."""
+    (work / 'empty').touch()
+    assert main(['describe', '--json', 'empty']) == 0
+    assert json.loads((work / 'empty').read_text())['gear_ratio'] == '-19'
+    assert main(['describe', '--json', '/dev/null', '--html', '/dev/null']) == 0
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'error'),
+    [
+        (['--json', 'none/a.json'], 'none/a.json: No such file or directory'),
+        (['--json', 'notes.md/a.json'], 'notes.md/a.json: Not a directory'),
+        (['--json', 'bag', '--force'], 'bag: Is a directory'),
+        (['--json', 'a', '--html', './a'], '--json and --html are both to write ./a'),
+    ],
+)
+def test_a_file_that_cannot_be_written_is_named_before_any_work(arguments, error, work, capsys):
+    before = contents(work)
+    assert main(['validate', 'k1.mcap', *arguments]) == 2
+    assert capsys.readouterr() == ('', f'gearkin: {error}\n')
+    assert contents(work) == before
+
+
+@pytest.mark.parametrize('option', ['--json', '--html', '--junit'])
+def test_an_option_needs_its_file(option, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(['validate', 'bag', option])
+    assert ended.value.code == 2
+    assert f'{option}: expected one argument' in capsys.readouterr().err
+
+
+def test_a_page_is_not_written_to_a_terminal():
+    with Terminal() as terminal:
+        done = gearkin('describe', '--html', '-', stdout=terminal.other, env=ENVIRONMENT)
+        assert terminal.text() == ''
+    assert done.returncode == 2
+    assert done.stderr == (
+        'gearkin: --html -: a page goes into a file or a pipe, not to a terminal\n'
+    )
+    assert gearkin('describe', '--html', '-').stdout.startswith('<!DOCTYPE html>')
+
+
+def test_a_calibration_replaces_a_calibration_alone(work, capsys):
+    assert main(['calibrate', 'samples.txt', '-o', 'notes.md']) == 2
+    error = '-o notes.md: there is something else than a calibration of gearkin'
+    assert error in capsys.readouterr().err
+    report = work / 'report.json'
+    assert main(['describe', '--json', str(report)]) == 0
+    assert main(['calibrate', 'samples.txt', '-o', str(report)]) == 2
+    assert is_report(report)
+
+
+def test_a_folder_that_must_not_be_written_is_told_at_once(work, monkeypatch, capsys):
+    """Tests may run as root, who may write everywhere."""
+    monkeypatch.setattr(os, 'access', lambda path, _: path != work)
+    assert main(['validate', 'k1.mcap', '--json', 'a.json']) == 2
+    assert capsys.readouterr() == ('', 'gearkin: a.json: Permission denied\n')
+
+
+def test_compute_replaces_nothing(work, capsys):
+    before = contents(work)
+    for out in ('bag', 'k2.mcap', 'notes.md'):
+        assert main(['compute', 'k1.mcap', out]) == 2
+        assert capsys.readouterr().err == f'gearkin: {out}: exists already\n'
+    assert contents(work) == before
