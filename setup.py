@@ -61,6 +61,8 @@ setup(
         'dask': ['dask[distributed]'],
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],
+        # `gearkin animate` to an .mp4, where the system has no ffmpeg
+        'video': ['imageio-ffmpeg'],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

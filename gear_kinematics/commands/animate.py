@@ -51,6 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the frames, write the file and print its length."""
     check_targets(options, {'FILE': options.out})
+    plotting.check_animation(Path(options.out))
     config = arguments.node_parameters(options)
     mechanism, module = Mechanism.from_mapping(config), config['module']
     for name, (low, high) in _BOUNDS.items():

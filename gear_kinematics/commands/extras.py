@@ -6,14 +6,24 @@ EXTRAS = {
     'PIL': 'plot',
     'plotly': 'html',
     'distributed': 'dask',
+    'imageio_ffmpeg': 'video',
 }
 """The extra that installs a package; setup.py defines the extras."""
+_MESSAGES = '_msgs', '_srvs', '_interfaces'
+"""Ends of the names of further packages of the extra `ros`."""
+_INSTEAD = {
+    'ros': 'source a ROS 2 installation, or ',
+    'video': 'install it with the system, or ',
+}
+"""What does as well."""
+_NAMES = {'imageio_ffmpeg': 'ffmpeg'}
 
 
 def remedy(error: ImportError) -> str:
     """Describe in one line what is missing and how to install it."""
     package = (error.name or '').partition('.')[0]
-    if not (isinstance(error, ModuleNotFoundError) and package in EXTRAS):
+    extra = EXTRAS.get(package) or ('ros' if package.endswith(_MESSAGES) else None)
+    if not (isinstance(error, ModuleNotFoundError) and extra):
         return ' '.join(str(error).split())
-    ros = 'source a ROS 2 installation, or ' if package == 'rclpy' else ''
-    return f"{package} is not installed: {ros}pip install 'gear_kinematics[{EXTRAS[package]}]'"
+    name, instead = _NAMES.get(package, package), _INSTEAD.get(extra, '')
+    return f"{name} is not installed: {instead}pip install 'gear_kinematics[{extra}]'"

@@ -4,9 +4,18 @@ Plots take the path of the image file, whose suffix determines the format. They 
 for an unknown suffix and ModuleNotFoundError without matplotlib.
 """
 
-from gear_kinematics.plotting.animation import animate
+from gear_kinematics.plotting.animation import animate, check_animation
 from gear_kinematics.plotting.mechanism import outlines, scheme
 from gear_kinematics.plotting.motion import output, roses, slides
 from gear_kinematics.plotting.preload import torque_split
 
-__all__ = ['animate', 'outlines', 'output', 'roses', 'scheme', 'slides', 'torque_split']
+__all__ = [
+    'animate',
+    'check_animation',
+    'outlines',
+    'output',
+    'roses',
+    'scheme',
+    'slides',
+    'torque_split',
+]

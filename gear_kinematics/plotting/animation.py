@@ -1,5 +1,6 @@
 """Animations of the mechanism as GIF or MP4."""
 
+import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from io import BytesIO
@@ -22,6 +23,25 @@ _HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at hal
 _GROUND = '#ffffff'
 _MOST_PIXELS = 1_000_000_000
 """Pixels of all frames of a GIF, which are in memory until the last one is drawn."""
+
+
+def check_animation(path: Path) -> None:
+    """Check that an animation can be written, before any work.
+
+    Args:
+        path: of the image file, .gif or .mp4.
+
+    Raises:
+        ValueError: if `path` has another suffix.
+        ModuleNotFoundError: without matplotlib or, for an MP4, ffmpeg.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in _WRITERS:
+        known = ', '.join(sorted(known[1:] for known in _WRITERS))
+        raise ValueError(f'{path}: the suffix of an animation is one of {known}')
+    styled((1.0, 1.0), lambda _: b'')
+    if suffix == '.mp4':
+        _ffmpeg()
 
 
 def animate(
@@ -49,14 +69,11 @@ def animate(
 
     Raises:
         ValueError: if `path` has another suffix, or a GIF would need too much memory.
-        ModuleNotFoundError: without matplotlib.
-        RuntimeError: for an MP4, if ffmpeg is missing or fails.
+        ModuleNotFoundError: without matplotlib or, for an MP4, ffmpeg.
+        RuntimeError: for an MP4, if ffmpeg fails.
     """
-    writers = {'.gif': _gif, '.mp4': _mp4}
-    suffix = path.suffix.lower()
-    if suffix not in writers:
-        raise ValueError(f'{path}: the suffix of an animation is one of gif, mp4')
-    write = writers[suffix]
+    check_animation(path)
+    write = _WRITERS[path.suffix.lower()]
     if write is _gif and len(frames.time) * _HEIGHT * width**2 > _MOST_PIXELS:
         raise ValueError(
             f'{path}: too large for a GIF: {len(frames.time)} frames, {width} px wide'
@@ -145,10 +162,10 @@ def _palette() -> Any:
 
 
 def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
+    from matplotlib import rcParams  # noqa: PLC0415, an extra
     from matplotlib.animation import FFMpegWriter  # noqa: PLC0415, an extra
 
-    if not FFMpegWriter.isAvailable():
-        raise RuntimeError('an MP4 needs the program ffmpeg; a GIF does not')
+    rcParams['animation.ffmpeg_path'] = _ffmpeg()  # `styled` restores it
     writer = FFMpegWriter(fps, metadata={'comment': MARK})
     with TemporaryDirectory() as folder:
         path = Path(folder, 'animation.mp4')
@@ -159,3 +176,16 @@ def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
         except (subprocess.SubprocessError, OSError) as error:
             raise RuntimeError(f'ffmpeg failed: {error}') from error
         return path.read_bytes()
+
+
+def _ffmpeg() -> str:
+    """Return the path of the program: the system's, or that of the package imageio-ffmpeg."""
+    if found := shutil.which('ffmpeg'):
+        return found
+    from imageio_ffmpeg import get_ffmpeg_exe  # noqa: PLC0415, an extra
+
+    return str(get_ffmpeg_exe())
+
+
+_WRITERS = {'.gif': _gif, '.mp4': _mp4}
+"""By the suffix of the file."""

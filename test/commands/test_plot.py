@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from gear_recordings import Samples, write_recording
@@ -163,17 +164,36 @@ def test_ffmpeg_gets_every_frame_of_an_mp4(tmp_path, monkeypatch):
     assert {file.name for file in tmp_path.iterdir()} == {'bin', 'loop.mp4'}
 
 
+def test_ffmpeg_is_taken_from_its_package_where_the_system_has_none(tmp_path, monkeypatch):
+    fake_ffmpeg(tmp_path / 'bin', monkeypatch, 0)
+    monkeypatch.setenv('PATH', str(tmp_path))
+    package = SimpleNamespace(get_ffmpeg_exe=lambda: tmp_path / 'bin' / 'ffmpeg')
+    monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', package)
+    path = tmp_path / 'loop.mp4'
+    assert main(['animate', str(path), '--duration', '0.1', '--width', '150']) == 0
+    assert path.read_text().split()[1] == str(tmp_path / 'bin' / 'ffmpeg')
+
+
+MISSING = (
+    'ffmpeg is not installed: install it with the system, or '
+    "pip install 'gear_kinematics[video]'\n"
+)
+
+
 @pytest.mark.parametrize('code', [1, None], ids=['that fails', 'that is missing'])
 def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
     if code is None:
         monkeypatch.setenv('PATH', str(tmp_path))
+        monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', None)
+        # Found out before any frame.
+        monkeypatch.setattr('gear_kinematics.commands.animate.plotting.animate', None)
     else:
         fake_ffmpeg(tmp_path / 'bin', monkeypatch, code)
     assert main(['animate', str(tmp_path / 'loop.mp4'), '--duration', '0.1']) == 2
     captured = capsys.readouterr()
     assert captured.out == ''
     assert captured.err.count('\n') == 1
-    cause = 'ffmpeg failed: ' if code else 'an MP4 needs the program ffmpeg; a GIF does not\n'
+    cause = 'ffmpeg failed: ' if code else MISSING
     assert captured.err.startswith(f'gearkin: {cause}')
     assert not (tmp_path / 'loop.mp4').exists()
 
