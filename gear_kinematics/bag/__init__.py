@@ -13,7 +13,7 @@ from gear_kinematics.bag.reading import (
     sort_by_topic,
 )
 from gear_kinematics.bag.storage import Message
-from gear_kinematics.bag.topics import Topic, listed
+from gear_kinematics.bag.topics import Topic
 from gear_kinematics.bag.writing import BagWriter
 
 __all__ = [
@@ -27,6 +27,5 @@ __all__ = [
     'TopicError',
     'TopicMessages',
     'in_batches',
-    'listed',
     'sort_by_topic',
 ]

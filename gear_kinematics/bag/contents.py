@@ -1,6 +1,7 @@
 """The files of a recording, and the contents of its metadata.yaml."""
 
 import re
+from itertools import islice
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
@@ -14,7 +15,9 @@ except ImportError:  # PyYAML was built without libyaml
 from gear_kinematics.bag.errors import bag_errors
 from gear_kinematics.bag.storage import DECOMPRESSORS
 from gear_kinematics.bag.topics import Topic
+from gear_kinematics.wire.nearest import among
 
+BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
 
 _TEXT = 'tag:yaml.org,2002:str'
@@ -24,6 +27,7 @@ _MAX_NUMBERS = 100
 _MAX_EVENTS = 400_000
 _MAX_DEPTH = 20
 _MAX_FILES = 50_000
+_MAX_NEIGHBOURS = 10_000
 
 
 class Contents(NamedTuple):
@@ -49,7 +53,7 @@ def find_contents(path: Path) -> Contents:
     if path.is_file():
         return Contents([path], {}, None)
     if not path.is_dir():
-        raise ValueError('no such file or folder')
+        raise ValueError(f'no such file or folder{bags_beside(path)}')
     metadata = path / 'metadata.yaml'
     if metadata.exists():
         with bag_errors(metadata):
@@ -64,6 +68,20 @@ def find_contents(path: Path) -> Contents:
     if len({_STORAGE_NAME.sub('', file.name) for file in files}) > 1:
         raise ValueError('several recordings without a metadata.yaml; name one of its files')
     return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
+
+
+def bags_beside(path: Path) -> str:
+    """End of a message on a path without a bag: the nearest of those in its folder, and all."""
+    try:
+        entries = list(islice(path.parent.iterdir(), _MAX_NEIGHBOURS))
+        names = [str(entry) for entry in entries if entry != path and _may_hold_bags(entry)]
+    except OSError:
+        return ''
+    return among(str(path), names) if names else ''
+
+
+def _may_hold_bags(path: Path) -> bool:
+    return bool(BAG_NAME.search(path.name)) or (path.is_dir() and not path.name.startswith('.'))
 
 
 class _Loader(SafeLoader):

@@ -1,13 +1,17 @@
 """Finds the topics of the rotor, the outputs and the encoder in a recording."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple, Self
 
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.reading import Bag
-from gear_kinematics.bag.topics import listed, missing_topic
+from gear_kinematics.bag.topics import missing_topic
+from gear_kinematics.wire.cdr import MalformedMessageError
+from gear_kinematics.wire.joint_reader import joints_of
+from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_TOPICS,
@@ -19,6 +23,8 @@ from gear_kinematics.wire.topics import (
 
 _PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
 """Topics by their parts in a validation; the rotor is found last, among the remaining topics."""
+_OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
+_PEEKED = 20  # topics of which the joints are looked up
 
 
 class Topics(NamedTuple):
@@ -41,6 +47,7 @@ def find_topics(
     *,
     outputs: bool = True,
     poses: bool = True,
+    joint: str = '',
 ) -> Topics:
     """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
 
@@ -49,10 +56,16 @@ def find_topics(
         given: names of known topics by their parts.
         outputs: whether the outputs must exist too.
         poses: whether the poses are one of the outputs.
+        joint: of the rotor, to choose among several topics.
+
+    Returns:
+        The names; that of poses that are not recorded at all, nor given, is empty.
 
     Raises:
         BagError: if a topic is missing or ambiguous.
     """
+    if outputs and poses and not given.get('poses'):
+        poses = TOPICS[BODY_POSES].type in bag.topics.values()
     left_out = {'output': not outputs, 'poses': not (outputs and poses)}
     parts = [part for part in _PARTS if not left_out.get(part)]
     found = {part: topic for part in parts if (topic := given.get(part))}
@@ -67,18 +80,36 @@ def find_topics(
         del left[topic]
     for part in parts:
         if part not in found:
-            found[part] = _find_topic(bag, left, _PARTS[part])
+            found[part] = _find_topic(bag, left, _PARTS[part], joint if part == 'rotor' else '')
             del left[found[part]]
+    if outputs:
+        found.setdefault('poses', '')
     return Topics(**found)
 
 
-def find_rotor_topic(bag: Bag, given: str | None = None) -> str:
+def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str:
     """Return the rotor's topic: the given one, or else by type and name.
+
+    Args:
+        bag: an open bag.
+        given: its name, if known.
+        joint: of the rotor, to choose among several topics.
 
     Raises:
         BagError: if it is missing or ambiguous.
     """
-    return find_topics(bag, {'rotor': given}, outputs=False).rotor
+    return find_topics(bag, {'rotor': given}, outputs=False, joint=joint).rotor
+
+
+def joints_on(bag: Bag, topic: str) -> list[str]:
+    """Return the joints in the first message on a topic of joint states, safe to print.
+
+    None, if there is no readable message.
+    """
+    with suppress(BagError, MalformedMessageError):
+        for _, _, data in bag.messages([topic]):
+            return joints_of(data)
+    return []
 
 
 def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
@@ -93,6 +124,13 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
         return given
     named = [topic for topic in _of_type(bag.topics, wanted) if _base(topic) == OUTPUT_ENCODER]
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
+
+
+def missing_encoder(bag: Bag) -> BagError:
+    """Return the error for a bag without a topic of the output encoder."""
+    topics = _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)
+    hint = among(OUTPUT_ENCODER, topics)
+    return BagError(f'{bag.path}: no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}')
 
 
 def corrected_beside(output: str = Topics().output) -> dict[str, str]:
@@ -115,20 +153,38 @@ def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
     }
 
 
-def _find_topic(bag: Bag, available: Mapping[str, str], name: str) -> str:
+def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str) -> str:
     of_type = _of_type(available, TOPICS[name].type)
     candidates = [topic for topic in of_type if _base(topic) == name] or [
         topic for topic in of_type if _base(topic) not in TOPICS
     ]
     if not candidates:
         raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
-    return _only(bag.path, candidates, name)
+    joints: dict[str, list[str]] = {}
+    if len(candidates) > 1 and name == ROTOR_STATE:
+        joints = {topic: joints_on(bag, topic) for topic in candidates[:_PEEKED]}
+        candidates = [topic for topic in joints if joint in joints[topic]] or candidates
+    return _only(bag.path, candidates, name, joints)
 
 
-def _only(path: Path, candidates: list[str], name: str) -> str:
+def _only(
+    path: Path,
+    candidates: list[str],
+    name: str,
+    joints: Mapping[str, list[str]] = MappingProxyType({}),
+) -> str:
     if len(candidates) > 1:
-        raise BagError(f'{path}: which topic is {name}? {listed(candidates)}')
+        topics = [topic + described(joints.get(topic, [])) for topic in candidates]
+        option = f'--{_OPTIONS[name]}-topic'
+        raise BagError(f'{path}: which topic is {name}? {listed(topics)}; name it with {option}')
     return candidates[0]
+
+
+def described(joints: Sequence[str], most: int = 10) -> str:
+    """Write the joints of a topic behind its name, at most some of them."""
+    if len(joints) == 1:
+        return f' (joint {joints[0]})'
+    return f' (joints {listed(joints, most=most)})' if joints else ''
 
 
 def _of_type(topics: Mapping[str, str], wanted: str) -> list[str]:

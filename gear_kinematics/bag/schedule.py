@@ -3,6 +3,7 @@
 import math
 import time
 from collections.abc import Collection, Iterator
+from contextlib import suppress
 from itertools import chain
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress
@@ -30,6 +31,20 @@ def due_messages(
         raise ValueError(f'rate must be positive and finite, but is {rate:g}')
     rounds = _rounds(source, topics, rate, start_offset, duration, loop=loop)
     return chain([next(rounds)], rounds)
+
+
+def count_due(
+    source: Bag, topics: Collection[str], start_offset: float = 0.0, duration: float = math.inf
+) -> int | None:
+    """Count the messages of one round of `due_messages`; None if there are none.
+
+    That takes reading them all.
+    """
+    count = 0
+    with suppress(BagError):  # which playing them raises, too
+        for _ in due_messages(source, topics, 1.0, start_offset, duration):
+            count += 1
+    return count or None
 
 
 def _rounds(

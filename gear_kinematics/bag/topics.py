@@ -1,6 +1,6 @@
 """Descriptions of topics, and the definitions of their types."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -8,10 +8,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.ros1_types import ros1_types
-from gear_kinematics.wire.nearest import nearest
-
-_SHOWN = 10  # topics
-_COMPARED = 1000  # topics whose names are compared with a missing one
+from gear_kinematics.wire.nearest import listed, nearest
 
 
 class Topic(NamedTuple):
@@ -28,18 +25,6 @@ class Topic(NamedTuple):
     type_hash: str = ''
     qos: Any = ''
     """The offered QoS profiles, as a list or as YAML."""
-
-
-def listed(names: Collection[str], first: Collection[str] = ()) -> str:
-    """List topics in one line, only the first of many: a bag can have tens of thousands.
-
-    Args:
-        names: names of the topics.
-        first: those to list before the others.
-    """
-    shown, more = sorted(names, key=lambda name: (name not in first, name)), len(names) - _SHOWN
-    text = ', '.join(f'{name:.100}' for name in shown[:_SHOWN])
-    return f'{text} and {more} more' if more > 0 else text
 
 
 def missing_topic(
@@ -59,7 +44,7 @@ def missing_topic(
     if name in topics:
         text += f', it is of type {topics[name]}'
     elif suggest:
-        text += nearest(name, sorted(of_type or topics)[:_COMPARED])
+        text += nearest(name, sorted(of_type or topics))
     there = f'there are: {listed(topics, of_type)}' if topics else 'there are no topics'
     return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')
 

@@ -105,6 +105,15 @@ class BagWriter:
             if kind is None:
                 self._partial.rename(self.path)
 
+    def add_file(self, name: str, content: bytes) -> None:
+        """Put another file into the folder.
+
+        Raises:
+            BagError: if it cannot be written.
+        """
+        with bag_errors(self.path):
+            (self._partial / name).write_bytes(content)
+
     def add_topic(self, name: str, message_type: str) -> None:
         """Add a topic of a type that ROS 2 Jazzy has, such as sensor_msgs/msg/JointState.
 

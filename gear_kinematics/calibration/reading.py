@@ -1,7 +1,7 @@
 """Reads the angles of rotor and output from bags and CSV files, in little memory."""
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from gear_kinematics.bag import (
     in_batches,
     sort_by_topic,
 )
-from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic
+from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
 from gear_kinematics.calibration.normal import Array
 from gear_kinematics.calibration.recording import (
     Recording,
@@ -29,9 +29,8 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, split_turns
 from gear_kinematics.lost_motion.csv_files import ENCODERS, Columns, read_columns
 from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 
 def read_bag(
@@ -58,12 +57,12 @@ def read_bag(
     settings = EncoderSettings.from_mapping(parameters)
     inputs: list[tuple[Array, ...]] = []
     outputs: list[tuple[Array, ...]] = []
-    remarks = []
+    remarks, lacking = [], ''
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, encoder_topic)
         if not encoder:
-            raise BagError(f'{path}: no {OUTPUT_ENCODER}; name its topic with --encoder-topic')
-        rotor = find_rotor_topic(bag, rotor_topic)
+            raise missing_encoder(bag)
+        rotor = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
         messages = bag.messages((rotor, encoder))
         try:
             for batch in in_batches(messages, progress=progress, total=bag.message_count):
@@ -73,14 +72,17 @@ def read_bag(
                 inputs.append(
                     (samples.stamp, samples.turns, samples.angle, samples.effort, samples.stretch)
                 )
-                outputs.append(_measured(columns[encoder], settings))
+                states = decode_joint_states(columns[encoder].data, settings.output_encoder_joint)
+                lacking = lacking or states.lacking
+                outputs.append(_measured(states, columns[encoder].received, settings))
         except DamagedBagError as damage:
             remarks.append(f'{damage}; what was before it is used')
     rejected = rotor_input.rejected.items()
     remarks += [f'{rotor}: {count} states {cause}' for cause, count in rejected]
     stamp, turns, angle, effort, stretch = _joined(inputs, 5)
     if not len(stamp):
-        raise BagError(f'{path}: no usable rotor states on {rotor}')
+        why = f': {rotor_input.why_rejected}' if rotor_input.rejected else ''
+        raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
     if set_back := np.flatnonzero(np.diff(stamp) < 0).tolist():
         kept = slice(set_back[0] + 1)
         stamp, turns, angle, effort, stretch = (
@@ -88,6 +90,8 @@ def read_bag(
         )
         remarks.append('its clock was set back; what was before is used')
     stamps, angles = _joined(outputs, 2)
+    if lacking and not len(stamps):
+        raise BagError(f'{path}: {encoder}: {lacking}')
     rows = spread(len(stamps))
     stamps, angles = stamps[rows], angles[rows]
     complete = bool(np.isfinite(effort).all())
@@ -112,12 +116,13 @@ def read_bag(
     )
 
 
-def _measured(messages: TopicMessages, settings: EncoderSettings) -> tuple[Array, Array]:
-    """Stamps and output angles of messages of the encoder."""
-    states = decode_joint_states(messages.data, settings.output_encoder_joint)
+def _measured(
+    states: JointStates, times: Sequence[int], settings: EncoderSettings
+) -> tuple[Array, Array]:
+    """Stamps and output angles of messages of the encoder, and their times of reception, ns."""
     angle = settings.output_angle(states.values[:, 0])
     usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
-    received = np.asarray(messages.received, np.int64)
+    received = np.asarray(times, np.int64)
     stamp = np.where(states.stamp == 0, received, states.stamp)
     return stamp[usable], angle[usable]
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import progress, warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import Mechanism
@@ -27,8 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_mechanism(parser)
     arguments.add_sizes(parser)
     add_force(parser)
+    arguments.add_quiet(parser)
     motions = parser.add_mutually_exclusive_group()
-    arguments.add_recording(parser, motions)
+    bags.add_recording(parser, motions)
     motions.add_argument(
         '--speed',
         type=float,
@@ -59,7 +60,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             raise ValueError(f'--{name} must be between {low} and {high}, not {given}')
     frames = _frames(options, config, mechanism.cycle_turns)
     count = len(frames.time)
-    with progress('frames') as bars:
+    with progress('frames', quiet=options.quiet) as bars:
         task = bars.add_task(options.out, total=count)
         content = plotting.animate(
             mechanism,
@@ -72,6 +73,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             progress=lambda done: bars.update(task, completed=done),
         )
     write_file(options.out, content)
+    if options.quiet:
+        return ExitCode.DONE
     print(f'{options.out}: {count} frames, {options.fps} per second')
     warn_if_teeth_cannot_mesh(mechanism, module)
     step = frames.longest_step
@@ -86,7 +89,7 @@ def _frames(
     options: argparse.Namespace, config: Mapping[str, Any], cycle_turns: int
 ) -> Trajectory:
     closed = not (options.bag or options.duration)
-    moved = arguments.recording(options, config) or Trajectory.at_constant_speed(
+    moved = bags.recording(options, config) or Trajectory.at_constant_speed(
         options.speed, turns=cycle_turns, duration=options.duration
     )
     interval = options.rate / options.fps

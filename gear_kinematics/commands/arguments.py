@@ -2,11 +2,9 @@
 
 import argparse
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.commands.output import message_progress
 from gear_kinematics.commands.targets import add_force
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
@@ -14,7 +12,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.lost_motion.csv_files import Columns
 from gear_kinematics.lost_motion.encoder_step import UNITS
 from gear_kinematics.state import parameters
-from gear_kinematics.state.trajectory import Trajectory, read_trajectory
+from gear_kinematics.wire.nearest import among
 
 
 def positive(text: str) -> float:
@@ -70,6 +68,17 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
         parser.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
     parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
     add_force(parser)
+    add_quiet(parser)
+
+
+def add_quiet(parser: argparse.ArgumentParser) -> None:
+    """Add the option for less output."""
+    parser.add_argument(
+        '-q',
+        '--quiet',
+        action='store_true',
+        help='print neither progress nor results, but what failed',
+    )
 
 
 _COLUMNS = {
@@ -101,30 +110,10 @@ def columns(options: argparse.Namespace) -> Columns:
     return Columns(**names, unit=options.angle_unit, on_rotor=options.on_rotor)
 
 
-def add_encoder_topics(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the topics of both encoders in a bag."""
-    topics = parser.add_argument_group('topics of a bag')
-    for topic in ('rotor', 'encoder'):
-        topics.add_argument(f'--{topic}-topic', metavar='NAME', help='(default: by type and name)')
-    topics.add_argument(
-        '--max-gap',
-        type=positive,
-        metavar='S',
-        help='between interpolated rotor states (default: transmission_error_max_gap)',
-    )
-
-
 def add_fleet(ways: argparse._ActionsContainer) -> None:
     """Add the options that distribute many recordings; see `bag.fleet`."""
     ways.add_argument('--jobs', type=count, default=1, metavar='N', help='processes')
     ways.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
-
-
-def add_topics(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the names of the node's topics in a bag."""
-    text = '(default: found by type and name)'
-    for topic in ('rotor', 'output', 'poses'):
-        parser.add_argument(f'--{topic}-topic', metavar='NAME', help=text)
 
 
 def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
@@ -136,7 +125,7 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
 
 
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
-    """Load the parameters from `config_path`; the option `--ratio` replaces `gear_ratio`.
+    """Load the parameters from `config_path`, some of them replaced by `--ratio` and `--joint`.
 
     Raises:
         ValueError: for values that the node would refuse.
@@ -144,6 +133,8 @@ def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[st
     config = parameters.load(config_path(options, bag), options.node)
     if given := getattr(options, 'ratio', None):
         config['gear_ratio'] = str(given)
+    if (joint := getattr(options, 'joint', None)) is not None:
+        config['rotor_joint'] = joint
     return config
 
 
@@ -220,44 +211,8 @@ def branch(options: argparse.Namespace, mechanism: Mechanism) -> int:
     """
     names = [branch.name for branch in mechanism.branches]
     if options.branch not in {None, *names}:
-        raise ValueError(f'no branch {options.branch!r}; there are {", ".join(names)}')
+        raise ValueError(f'no branch {options.branch!r}{among(options.branch, names)}')
     return names.index(options.branch) if options.branch else 0
-
-
-def add_recording(
-    parser: argparse.ArgumentParser, motions: argparse._ActionsContainer, *, lasting: bool = True
-) -> None:
-    """Add the options for a motion of the rotor from a bag, one of alternative motions."""
-    motions.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
-    parser.add_argument('--rotor-topic', metavar='NAME', help='(default: found by type and name)')
-    parser.add_argument('--start-offset', type=float, metavar='S', help='start in the recording')
-    if lasting:
-        parser.add_argument('--duration', type=positive, metavar='S', help='(default: all of it)')
-
-
-def recording(
-    options: argparse.Namespace, config: Mapping[str, Any], *bag_only_options: str
-) -> Trajectory | None:
-    """Read the rotor's motion from the bag, from the offset on; None without a bag.
-
-    Args:
-        options: parsed arguments.
-        config: the parameters of the node.
-        bag_only_options: names of further options that need a bag.
-
-    Raises:
-        ValueError: if such options are given without a bag.
-    """
-    if not options.bag:
-        for name in ('rotor_topic', 'start_offset', *bag_only_options):
-            if getattr(options, name) is not None:
-                raise ValueError(f'--{name.replace("_", "-")} needs --bag')
-        return None
-    start = options.start_offset or 0.0
-    duration = getattr(options, 'duration', None) or math.inf
-    with message_progress(options.bag.name) as report_progress:
-        whole = read_trajectory(options.bag, config, options.rotor_topic, report_progress)
-    return whole.between(start, start + duration)
 
 
 def add_ring_turn(ways: argparse._ActionsContainer) -> None:

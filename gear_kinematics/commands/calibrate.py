@@ -12,7 +12,7 @@ from gear_kinematics.calibration.judgement import judge
 from gear_kinematics.calibration.reading import read_bag, read_csv
 from gear_kinematics.calibration.recording import Recording
 from gear_kinematics.calibration.to_file import to_calibration
-from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, message_progress, write
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.lost_motion.csv_files import is_csv
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(parser)
     arguments.add_ratio(parser)
     arguments.add_columns(parser, 'rotor', 'output', 'torque', 'time')
-    arguments.add_encoder_topics(parser)
+    bags.add_encoders(parser)
     arguments.add_report_forms(parser)
 
 
@@ -80,5 +80,5 @@ def _read(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) ->
     if is_csv(path):
         ratio = gear_from_mapping(config).gear_ratio
         return read_csv(path, arguments.columns(options), float(ratio))
-    with message_progress(path.name) as report_progress:
+    with bags.naming(path), message_progress(path.name, quiet=options.quiet) as report_progress:
         return read_bag(path, config, options.rotor_topic, options.encoder_topic, report_progress)

@@ -9,7 +9,8 @@ from gear_kinematics.commands import arguments
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.state.calibration_file import Calibration
 
-_BESIDE = 'calibration.yaml'
+BESIDE = 'calibration.yaml'
+"""Name of the file beside a bag."""
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
@@ -19,7 +20,7 @@ def add_option(parser: argparse.ArgumentParser) -> None:
         type=Path,
         metavar='FILE',
         help='calibration of the gear (default: the parameter `calibration`, or else '
-        f'{_BESIDE} beside the bag)',
+        f'{BESIDE} beside the bag)',
     )
 
 
@@ -27,7 +28,7 @@ def find(options: argparse.Namespace, config: Mapping[str, Any], bag: Path | Non
     """The given calibration, or that of the parameters, or the one in the bag's folder."""
     if given := options.calibration or config['calibration']:
         return Path(given)
-    return arguments.beside(bag, _BESIDE) if bag else None
+    return arguments.beside(bag, BESIDE) if bag else None
 
 
 def load(

@@ -6,7 +6,7 @@ Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
 import argparse
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from io import TextIOWrapper
 from typing import Any, NoReturn
 
@@ -32,6 +32,7 @@ from gear_kinematics.commands import (
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
 from gear_kinematics.state.share import version
+from gear_kinematics.wire.nearest import among
 
 COMMANDS: dict[str, Command] = {
     'validate': validate,
@@ -57,6 +58,21 @@ class _Parser(argparse.ArgumentParser):
         # By its own pattern, -58/3 would be an unknown option.
         self._negative_number_matcher = re.compile(r'-\d+(/\d+)?$|-\d*\.\d+$')
 
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Name the nearest choice, too."""
+        if action.choices is not None and value not in action.choices:
+            choices = list(map(str, action.choices))
+            hint = among(str(value), choices, most=len(choices))
+            raise argparse.ArgumentError(action, f'invalid choice: {value!r}{hint}')
+
+    def refuse(self, unknown: Sequence[str]) -> NoReturn:
+        """Report unknown options, with those that there are, or surplus arguments."""
+        message = f'unrecognized arguments: {" ".join(unknown)}'
+        if options := [word for word in unknown if word.startswith('-') and word != '-']:
+            known = [text for text in self._option_string_actions if text.startswith('--')]
+            message += among(options[0].partition('=')[0], known, most=len(known))
+        self.error(message)
+
     def error(self, message: str) -> NoReturn:
         """Print the message and exit."""
         complain(f'{message}; see {self.prog} --help')
@@ -67,7 +83,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
-    options = make_parser().parse_args(arguments)
+    options, unknown = make_parser().parse_known_args(arguments)
+    if unknown:
+        options.parser.refuse(unknown)
     code = ExitCode.DONE
     try:
         # Overflows show in the results.
@@ -97,4 +115,13 @@ def make_parser() -> argparse.ArgumentParser:
             '--debug', action='store_true', help='print the traceback of an unexpected error'
         )
         added.set_defaults(run=command.run)
+        for each in (added, *_below(added)):
+            each.set_defaults(parser=each)
     return parser
+
+
+def _below(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+    """Yield the parsers of the subcommands of a command."""
+    for action in parser._actions:  # noqa: SLF001, argparse has no other way
+        if isinstance(action.choices, dict):
+            yield from action.choices.values()

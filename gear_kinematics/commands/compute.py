@@ -1,14 +1,18 @@
 """`gearkin compute`: add the outputs to a bag that has only the rotor topic."""
 
 import argparse
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-from gear_kinematics.bag import Bag, TopicError, listed
+from gear_kinematics.bag import Bag, TopicError
 from gear_kinematics.bag.roles import Topics, find_rotor_topic
-from gear_kinematics.commands import ExitCode, arguments, calibrations
+from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.report.document import printable
-from gear_kinematics.state.compute import compute
+from gear_kinematics.state import parameters
+from gear_kinematics.state.compute import ComputeResult, compute
+from gear_kinematics.wire.nearest import listed
 
 HELP = 'write a bag with the outputs for a recorded rotor topic'
 
@@ -16,7 +20,9 @@ HELP = 'write a bag with the outputs for a recorded rotor topic'
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
-    arguments.add_topics(parser)
+    bags.add_rotor(parser)
+    bags.add_outputs(parser)
+    arguments.add_quiet(parser)
     calibrations.add_option(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
@@ -28,10 +34,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Write the bag and print the number of its messages."""
+    """Write the bag, with its parameters beside it, and print the number of its messages."""
     config = arguments.load_config(options, options.bag)
-    with Bag(options.bag) as bag, message_progress(options.bag.name) as progress:
-        rotor = options.rotor_topic or find_rotor_topic(bag)
+    calibration = calibrations.load(options, config, options.bag)
+    with (
+        bags.naming(options.bag),
+        Bag(options.bag) as bag,
+        message_progress(options.bag.name, quiet=options.quiet) as progress,
+    ):
+        rotor = options.rotor_topic or find_rotor_topic(bag, joint=config['rotor_joint'])
         beside = Topics.beside(rotor)
         try:
             result = compute(
@@ -41,17 +52,37 @@ def run(options: argparse.Namespace) -> ExitCode:
                 rotor_topic=rotor,
                 output_topic=options.output_topic or beside.output,
                 poses_topic=options.poses_topic or beside.poses,
-                calibration=calibrations.load(options, config, options.bag),
+                calibration=calibration,
                 topics=options.topics,
+                files=_files(options, config),
                 storage=options.storage,
                 compression=options.compression,
                 progress=progress,
             )
         except TopicError as error:
             raise TopicError(f'{error}; --topics says which topics to copy') from error
+    if not options.quiet:
+        _tell(options.out, result)
+    if result.mostly_rejected:
+        joints = f': {result.missing_joint}' if result.missing_joint else ''
+        complain(f'{options.bag}: most messages on {rotor} were rejected{joints}')
+        return ExitCode.FAILED
+    return ExitCode.DONE
+
+
+def _files(options: argparse.Namespace, config: Mapping[str, Any]) -> dict[str, bytes]:
+    """The files with which the bag was computed, which `gearkin validate` finds beside it."""
+    files = {}
+    if calibration := calibrations.find(options, config, options.bag):
+        files[calibrations.BESIDE] = calibration.read_bytes()
+    used = {**config, 'calibration': calibrations.BESIDE if calibration else ''}
+    return {parameters.default_config().name: parameters.as_file(used).encode(), **files}
+
+
+def _tell(out: Path, result: ComputeResult) -> None:
     rejected = ', '.join(f'{cause} {number}' for cause, number in result.rejected.items())
     print(
-        f'{options.out}: {result.computed} outputs for {result.received} rotor states'
+        f'{out}: {result.computed} outputs for {result.received} rotor states'
         + (f' (rejected: {rejected})' if rejected else '')
         + f', {result.copied} other messages copied'
     )
@@ -59,7 +90,3 @@ def run(options: argparse.Namespace) -> ExitCode:
         print(printable(f'left out: {listed(result.left_out)}'))
     if result.undefined:
         print(printable(f'copied without a definition of the type: {listed(result.undefined)}'))
-    if result.mostly_rejected:
-        complain(f'{options.bag}: most messages on {rotor} were rejected')
-        return ExitCode.FAILED
-    return ExitCode.DONE

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from gear_kinematics.bag import fleet
-from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress, progress
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.lost_motion import LostMotionReport
@@ -48,7 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
     )
     arguments.add_columns(parser, 'angle', 'torque', 'rotor', 'output', 'time')
-    arguments.add_encoder_topics(parser)
+    bags.add_encoders(parser)
     encoders = parser.add_argument_group('encoders')
     encoders.add_argument(
         '--counts',
@@ -159,11 +159,11 @@ def _measured(
             if options.scheduler
             else fleet.on_this_machine(WORK, tasks, options.jobs)
         )
-        with progress('recordings') as bars:
+        with progress('recordings', quiet=options.quiet) as bars:
             yield from bars.track(together, total=len(tasks), description='recordings')
         return
     for task in tasks:
-        with message_progress(task.name) as report_progress:
+        with message_progress(task.name, quiet=options.quiet) as report_progress:
             yield task, measure_recording(task, report_progress)
 
 

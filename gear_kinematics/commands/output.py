@@ -78,6 +78,7 @@ class Reporter:
         others: Mapping[str, str | None] = MappingProxyType({}),
         *,
         compared: bool = False,
+        brief: bool = False,
     ) -> None:
         """Check that everything can be written, before any other work.
 
@@ -86,6 +87,7 @@ class Reporter:
             sections: number of sections of the document.
             others: targets of further options, which the command writes itself.
             compared: whether the last section compares the others, and has the figure of the plot.
+            brief: whether a section that passed is one line in a pipe.
 
         Raises:
             ValueError: if options exclude each other, or a file must not or cannot be written.
@@ -104,6 +106,7 @@ class Reporter:
             raise ValueError('--html -: a page goes into a file or a pipe, not to a terminal')
         check_targets(options, given)
         self._silent = bool(to_stdout)
+        self._quiet, self._brief = options.quiet, brief
         if self._plot:
             if sections > 1 and not compared:
                 raise ValueError('--plot takes one recording')
@@ -115,7 +118,8 @@ class Reporter:
         """Print the document, unless a form of it goes to stdout, and write the files."""
         if not self._silent:
             with closed_pipe_ignored():
-                render(document, Console())
+                shown = document.of_failed() if self._quiet else document
+                render(shown, Console(), brief=self._brief)
         if self._plot:
             figure = document.figure
             if not figure:
@@ -172,9 +176,9 @@ def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:
 
 
 @contextmanager
-def message_progress(name: str) -> Iterator[ReportProgress]:
+def message_progress(name: str, *, quiet: bool = False) -> Iterator[ReportProgress]:
     """Show messages/s and the remaining time; yields the function to report progress."""
-    with progress('messages') as bars:
+    with progress('messages', quiet=quiet) as bars:
         task = bars.add_task(printable(name), total=None)
 
         def update(done: int, total: int | None) -> None:
@@ -183,7 +187,7 @@ def message_progress(name: str) -> Iterator[ReportProgress]:
         yield update
 
 
-def progress(unit: str) -> Progress:
+def progress(unit: str, *, quiet: bool = False) -> Progress:
     """Create a progress bar on the terminal, on stderr to keep stdout clean."""
     return Progress(
         TextColumn('{task.description}', markup=False),
@@ -193,7 +197,7 @@ def progress(unit: str) -> Progress:
         TimeRemainingColumn(),
         console=console.Console(stderr=True),
         transient=True,
-        disable=not sys.stderr.isatty(),
+        disable=quiet or not sys.stderr.isatty(),
     )
 
 

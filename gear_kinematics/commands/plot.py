@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode, arguments, calibrations
+from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import (
@@ -37,8 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         arguments.add_mechanism(figure)
         arguments.add_sizes(figure)
         add_force(figure)
+        arguments.add_quiet(figure)
         motions = figure.add_mutually_exclusive_group()
-        arguments.add_recording(figure, motions, **options)
+        bags.add_recording(figure, motions, **options)
         figure.set_defaults(draw=draw)
         return figure, motions
 
@@ -71,7 +72,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     # The output needs no more than the ratio.
     gear = gear_from_mapping(config) if options.draw is _output else Mechanism.from_mapping(config)
     write_file(options.out, options.draw(options, config, gear, Path(options.out)))
-    if options.draw is _scheme and isinstance(gear, Mechanism):
+    if options.draw is _scheme and isinstance(gear, Mechanism) and not options.quiet:
         warn_if_teeth_cannot_mesh(gear, config['module'])
     return ExitCode.DONE
 
@@ -84,7 +85,7 @@ def _scheme(
 
 
 def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
-    if moved := arguments.recording(options, config):
+    if moved := bags.recording(options, config):
         return RotorPosition(int(moved.turns[0]), float(moved.angle[0]))
     degrees = _DEGREES if options.degrees is None else options.degrees
     angle = float(math.radians(degrees) if options.angle is None else options.angle)
@@ -94,7 +95,7 @@ def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
 
 
 def _roses(options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path) -> bytes:
-    return plotting.roses(mechanism, path, arguments.recording(options, config, 'duration'))
+    return plotting.roses(mechanism, path, bags.recording(options, config, 'duration'))
 
 
 def _slides(
@@ -112,7 +113,7 @@ def _output(options: argparse.Namespace, config: Config, gear: Gear, path: Path)
 
 
 def _moved(options: argparse.Namespace, config: Config, turns: int) -> Trajectory:
-    if moved := arguments.recording(options, config):
+    if moved := bags.recording(options, config):
         return moved
     speed = _SPEED if options.speed is None else options.speed
     return Trajectory.at_constant_speed(speed, turns=turns, duration=options.duration)

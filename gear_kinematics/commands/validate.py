@@ -2,9 +2,10 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
-from gear_kinematics.commands import ExitCode, arguments, calibrations
+from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import (
     Reporter,
     complain,
@@ -14,10 +15,10 @@ from gear_kinematics.commands.output import (
 )
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state import parameters
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.fleet import (
     Task,
+    unusable,
     validate_bag,
     validate_on_cluster,
     validate_on_this_machine,
@@ -36,7 +37,8 @@ _EXIT_CODES = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
-    arguments.add_topics(parser)
+    bags.add_rotor(parser)
+    bags.add_outputs(parser)
     calibrations.add_option(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     angle, position = Tolerances()
@@ -49,6 +51,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--strict',
         action='store_true',
         help='judge all messages, even where the recorder may have lost some',
+    )
+    parser.add_argument(
+        '-v',
+        '--verbose',
+        action='store_true',
+        help='in a pipe, print all about bags that passed, too',
     )
     way = parser.add_mutually_exclusive_group()
     way.add_argument(
@@ -63,38 +71,49 @@ def run(options: argparse.Namespace) -> ExitCode:
     tolerances = Tolerances(options.tolerance_angle, options.tolerance_position)
     if not (tolerances.angle >= 0.0 and tolerances.position >= 0.0):
         raise ValueError('a tolerance must not be negative')
-    bags = find_bags(options.bags)
-    reporter = Reporter(options, len(bags))
-    tasks = []
-    for bag in bags:
-        config = arguments.config_path(options, bag)
-        loaded = parameters.load(config, options.node)
-        gear_from_mapping(loaded)  # raises its errors here, not in the report on the bag
-        tasks.append(
-            Task(
-                bag,
-                loaded,
-                str(config),
-                tolerances,
-                options.allow_offset,
-                options.strict,
-                options.rotor_topic,
-                options.output_topic,
-                options.poses_topic,
-                calibrations.load(options, loaded, bag),
-                str(calibrations.find(options, loaded, bag) or ''),
-                options.debug,
-            )
-        )
+    found = find_bags(options.bags)
+    faults = dict(found.faults)
+    reporter = Reporter(options, len(found.bags) + len(faults), brief=not options.verbose)
+    tasks: list[Task] = []
+    for bag in found.bags:
+        try:
+            tasks.append(_task(bag, tolerances, options))
+        except (ValueError, OSError) as error:  # of the files beside it, or of options
+            faults[bag] = str(error)
+    if not tasks:
+        raise ValueError('; '.join(dict.fromkeys(faults.values())))
     if options.live:
         warn_of_shared_memory(participants=2)
-    order = {str(task.bag): number for number, task in enumerate(tasks)}
-    reports = sorted(_reports(options, tasks), key=lambda report: order[report.bag])
+    order = {str(path): number for number, path in enumerate([*found.bags, *found.faults])}
+    reports = [unusable(path, fault) for path, fault in faults.items()]
+    reports += _reports(options, tasks)
+    reports.sort(key=lambda report: order[report.bag])
     for report in reports:
         if report.error:
-            complain(report.error)
+            complain(
+                report.error if report.bag in report.error else f'{report.bag}: {report.error}'
+            )
     reporter.write(document(reports))
     return max(_EXIT_CODES[report.verdict] for report in reports)
+
+
+def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
+    config = arguments.load_config(options, bag)
+    gear_from_mapping(config)  # raises its errors here, not in the report on the bag
+    return Task(
+        bag,
+        config,
+        str(arguments.config_path(options, bag)),
+        tolerances,
+        options.allow_offset,
+        options.strict,
+        options.rotor_topic,
+        options.output_topic,
+        options.poses_topic,
+        calibrations.load(options, config, bag),
+        str(calibrations.find(options, config, bag) or ''),
+        options.debug,
+    )
 
 
 def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[BagReport]:
@@ -104,7 +123,7 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
             if options.scheduler
             else validate_on_this_machine(tasks, options.jobs)
         )
-        with progress('bags') as bars:
+        with progress('bags', quiet=options.quiet) as bars:
             yield from bars.track(reports, total=len(tasks), description='bags')
         return
     play = None
@@ -113,5 +132,5 @@ def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[Bag
 
         play = live_messages
     for task in tasks:
-        with message_progress(task.bag.name) as report_progress:
+        with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
             yield validate_bag(task, report_progress, play)

@@ -52,7 +52,7 @@ def read_bag(
     ratio = gear_from_mapping(parameters).gear_ratio
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, encoder_topic)
-        rotor = find_rotor_topic(bag, rotor_topic)
+        rotor = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
         messages = {topic: TopicMessages() for topic in (rotor, encoder) if topic}
         error = None
         try:
@@ -62,7 +62,8 @@ def read_bag(
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     samples = rotor_input.accept_batch(messages[rotor].data, messages[rotor].received)
     if not len(samples.stamp):
-        raise BagError(f'{path}: no usable rotor states on {rotor}')
+        why = f': {rotor_input.why_rejected}' if rotor_input.rejected else ''
+        raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
     turns, angle = ratio.output_angle(samples.turns, samples.angle, np)
     positions = samples.turns * TURN + samples.angle
@@ -73,6 +74,8 @@ def read_bag(
         settings = EncoderSettings.from_mapping(parameters)
         states = decode_joint_states(messages[encoder].data, settings.output_encoder_joint)
         usable = ~states.malformed & states.present[:, 0]
+        if states.lacking and not states.joint_found.any():
+            raise BagError(f'{path}: {encoder}: {states.lacking}')
         measured = settings.output_angle(states.values[usable, 0])
         readings = states.values[:, 0][np.isfinite(states.values[:, 0])]
         motion = Motion.from_angles(

@@ -21,6 +21,7 @@ from gear_kinematics.lost_motion.encoder_step import UNITS, step_of
 from gear_kinematics.lost_motion.motion import Motion
 from gear_kinematics.lost_motion.recording import Loading, Recording
 from gear_kinematics.state.transmission_error import TransmissionError
+from gear_kinematics.wire.nearest import among
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 Array = NDArray[np.float64]
@@ -197,7 +198,7 @@ def _find(
     given = {role: name for role in _NAMES if (name := getattr(columns, role))}
     for name in given.values():
         if name not in header:
-            raise CsvError(f'{path}: no column {name!r}; there are {", ".join(header)}')
+            raise CsvError(f'{path}: no column {name!r}{among(name, header, most=len(header))}')
     plain = {_plain(name): name for name in reversed(header)}
     found = {
         role: name

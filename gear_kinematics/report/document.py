@@ -287,6 +287,11 @@ class Document:
         """The figure of the only section, or of the last of several, which compares them."""
         return self.sections[-1].figure
 
+    def of_failed(self) -> Self:
+        """Return the document without what passed, or makes no judgement."""
+        sections = tuple(s for s in self.sections if s.verdict not in {None, Verdict.PASS})
+        return replace(self, sections=sections, summary=None, totals='')
+
 
 def printable(text: str) -> str:
     """Escape characters that are unsafe in terminals, logs and XML files.

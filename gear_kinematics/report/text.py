@@ -30,10 +30,16 @@ _VERDICT_STYLES = {
 _TONE_STYLES = {Tone.PLAIN: '', Tone.CHOSEN: 'bold', Tone.NOTABLE: 'yellow', Tone.BAD: 'bold red'}
 
 
-def render(document: Document, console: Console) -> None:
-    """Print a report: tables on a terminal that is wide enough, one fact per line elsewhere."""
+def render(document: Document, console: Console, *, brief: bool = False) -> None:
+    """Print a report: tables on a terminal that is wide enough, one fact per line elsewhere.
+
+    Args:
+        document: the report.
+        console: to print it on.
+        brief: whether a section that passed is a single line elsewhere.
+    """
     if not (console.is_terminal and console.width >= _NARROWEST):
-        _print_lines(lines(document), console)
+        _print_lines(lines(document, brief=brief), console)
         return
     for section in document.sections:
         _render_section(section, console)
@@ -45,10 +51,14 @@ def render(document: Document, console: Console) -> None:
             console.print(_rows(document.summary))
 
 
-def lines(document: Document) -> Iterator[str]:
-    """Yield one fact per line, each with the section it belongs to."""
+def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
+    """Yield one fact per line, each with the section it belongs to; see `render`."""
     for section in document.sections:
-        yield from section_lines(section)
+        if brief and section.verdict == Verdict.PASS:
+            findings = ''.join(f'; {finding.text}' for finding in section.findings)
+            yield f'{section.name}: verdict: {OUTCOME[section.verdict]}{findings}'
+        else:
+            yield from section_lines(section)
     if document.totals and len(document.sections) > 1:
         yield f'summary: {document.totals}'
 

@@ -17,7 +17,6 @@ from tempfile import TemporaryDirectory
 from typing import Any, Self
 
 import rclpy
-import yaml
 from geometry_msgs.msg import PoseArray
 from rclpy.context import Context
 from rclpy.node import Node
@@ -33,6 +32,7 @@ from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.process import make_executor
+from gear_kinematics.state.parameters import as_file
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -309,7 +309,7 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
         given = dict(parameters)
         if given['calibration']:  # a relative path would be relative to the file of the parameters
             given['calibration'] = str(Path(given['calibration']).absolute())
-        config.write_text(yaml.safe_dump({'/**': {'ros__parameters': given}}), 'utf-8')
+        config.write_text(as_file(given), 'utf-8')
         # The topic of diagnostics has an absolute name.
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
                      '-r', '/diagnostics:=diagnostics']  # fmt: skip

@@ -25,6 +25,7 @@ from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.node_parameters import declare, fault_of
+from gear_kinematics.ros.unheard import UnheardTopic
 from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state import parameters
 from gear_kinematics.state.calibrated_output import CalibratedOutput
@@ -113,6 +114,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
             ),
         )
+        self._unheard = UnheardTopic(self, topics.ROTOR_STATE, 'rotor_joint')
         joint = self._value('rotor_joint')
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
@@ -227,7 +229,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
-            self._warn(f'{topics.ROTOR_STATE} rejected: {rejection}')
+            self._warn_of(topics.ROTOR_STATE, rejection)
             return
         for topic, message in self._messages.encode(sample, self._listened_to):
             self._publish(self._outputs[topic], message)
@@ -247,7 +249,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
-            self._warn(f'{topics.OUTPUT_ENCODER} rejected: {rejection}')
+            self._warn_of(topics.OUTPUT_ENCODER, rejection)
 
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
         if self._calibrated:
@@ -266,6 +268,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
+
+    def _warn_of(self, topic: str, rejection: RejectedInputError) -> None:
+        if time.monotonic() >= self._next_warning:
+            detail = f': {rejection.detail}' if rejection.detail else ''
+            self._warn(f'{topic} rejected: {rejection}{detail}')
 
     def _warn(self, text: str) -> None:
         if time.monotonic() >= self._next_warning:
@@ -299,6 +306,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             if not driver.subscription.get_publisher_count():
                 driver.unheard = True
         self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
+        self._unheard.look(self._monitor.drivers, time.monotonic())
         self._look_at_graph()
         timeout, now = self._value('input_timeout'), time.monotonic()
         window, limit = (self._value(f'transmission_error_{name}') for name in ('window', 'limit'))

@@ -4,6 +4,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, Literal
 
 import numpy as np
@@ -38,6 +39,8 @@ class ComputeResult:
     """Rotor messages without an output, by cause."""
     mostly_rejected: bool
     """Whether more rotor messages were rejected than accepted."""
+    missing_joint: str
+    """Which joints there are, if some rotor messages lack the rotor's; otherwise empty."""
     zero_stamps: int
     """Rotor messages without a stamp, whose outputs have their time of reception."""
     copied: int
@@ -58,6 +61,7 @@ def compute(
     poses_topic: str = _TOPICS.poses,
     calibration: Calibration | None = None,
     topics: Collection[str] | None = None,
+    files: Mapping[str, bytes] = MappingProxyType({}),
     storage: Literal['mcap', 'sqlite3'] = 'mcap',
     compression: Literal['none', 'zstd'] = 'none',
     progress: ReportProgress | None = None,
@@ -76,6 +80,7 @@ def compute(
         poses_topic: name of the node's body_poses in the bag.
         calibration: of the gear, to compute CORRECTED_TOPICS beside the topic of the output.
         topics: other topics to copy; None copies all.
+        files: contents of further files of the target, by name.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
         progress: called after each batch; the total is known if all topics are read.
@@ -104,6 +109,8 @@ def compute(
 
     computed = copied = 0
     with BagWriter(target, storage=storage, compression=compression) as writer:
+        for name, content in files.items():
+            writer.add_file(name, content)
         written = [writer.copy_topic(source, topic) for topic in kept]
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
@@ -136,6 +143,7 @@ def compute(
         computed,
         dict(rotor_input.rejected),
         rotor_input.mostly_rejected,
+        rotor_input.missing_joint,
         rotor_input.zero_stamps,
         copied,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
@@ -159,6 +167,5 @@ def _check_topics(
 def _nothing_computed(source: Bag, topic: str, rotor_input: RotorInput) -> str:
     if not rotor_input.received:
         return f'{source.path}: no messages on {topic}'
-    causes = ', '.join(f'{cause} {count}' for cause, count in rotor_input.rejected.items())
-    joint = rotor_input.settings.rotor_joint
-    return f'{source.path}: no valid state of the joint {joint!r} on {topic}: {causes}'
+    joint, why = rotor_input.settings.rotor_joint, rotor_input.why_rejected
+    return f'{source.path}: no valid state of the joint {joint!r} on {topic}: {why}'

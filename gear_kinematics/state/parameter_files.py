@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.state.yaml_file import Loader, read_yaml
+from gear_kinematics.wire.nearest import nearest
 
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
@@ -70,7 +71,8 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
     name = f'/{node.lstrip("/")}' if '/' in node else _full_name(path, node, blocks)
     applying = [parameters for pattern, parameters in blocks if _applies(pattern, name)]
     if not applying:
-        there = ', '.join(pattern for pattern, _ in blocks)
+        patterns = [pattern for pattern, _ in blocks]
+        there = f'{", ".join(patterns)}{nearest(name, patterns)}'
         raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
     given: dict[str, Any] = {}
     for parameters in applying:

@@ -11,6 +11,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import yaml
+
 from gear_kinematics.kinematics import Branch, GearRatio
 from gear_kinematics.state.parameter_files import ConfigError, given_parameters
 from gear_kinematics.state.share import share_directory
@@ -162,7 +164,10 @@ def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any
 
 
 def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[str]:
-    """A fault for each name that is no parameter of a node with these branches."""
+    """A fault for each name that is no parameter of a node with these branches.
+
+    After the faults, if any, comes the list of the parameters that there are.
+    """
     known = [*PARAMETERS, *branch_parameters(branches)]
     faults = []
     for name in names:
@@ -174,6 +179,8 @@ def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[st
         else:
             hint = nearest(name, known)
         faults.append(f'unknown parameter `{name}`{hint}')
+    if faults:
+        faults.append(f'there are: {", ".join(known)}')
     return faults
 
 
@@ -205,6 +212,11 @@ def load(path: Path, node: str = NODE) -> dict[str, Any]:
     if calibration := given.get('calibration'):
         given['calibration'] = str(path.parent / calibration)
     return {name: given.get(name, default) for name, (_, default) in known.items()}
+
+
+def as_file(parameters: Mapping[str, Any]) -> str:
+    """Write a parameter file for every node, from which `load` reads the same parameters."""
+    return yaml.safe_dump({'/**': {'ros__parameters': dict(parameters)}}, sort_keys=False)
 
 
 def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]) -> list[str]:

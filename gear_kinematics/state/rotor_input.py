@@ -104,6 +104,8 @@ class RotorInput:
         self.unnormalised_stamps = 0
         """Stamps with 10⁹ or more nanoseconds, which are carried over to the seconds."""
         self.resets = 0
+        self.missing_joint = ''
+        """Joints of the first message that lacks the rotor's, if any: see `wire.joint_reader`."""
         self.last: RotorSample | None = None
         self._settings = settings
         self._reader = JointReader(settings.rotor_joint)
@@ -126,6 +128,7 @@ class RotorInput:
             self._turns.single_turn = settings.single_turn
             self._turns.reset()
             self._reader = JointReader(settings.rotor_joint)
+            self.missing_joint = ''
         self._settings = settings
 
     @property
@@ -142,6 +145,12 @@ class RotorInput:
     def mostly_rejected(self) -> bool:
         """Whether more messages were rejected than accepted."""
         return 2 * self.rejected.total() > self.received
+
+    @property
+    def why_rejected(self) -> str:
+        """The causes with their counts, and which joints there are if that is one of them."""
+        causes = ', '.join(f'{cause} {count}' for cause, count in self.rejected.items())
+        return f'{causes}: {self.missing_joint}' if self.missing_joint else causes
 
     @property
     def stretch(self) -> int:
@@ -165,6 +174,8 @@ class RotorInput:
             return self._take(stamp or self._clock(now), position, velocity, effort)
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
+            if not self.missing_joint:
+                self.missing_joint = rejection.detail
             raise
 
     def home(self, rotor_angle: float) -> float:
@@ -197,6 +208,7 @@ class RotorInput:
             if count := int(np.count_nonzero(faulty & usable)):
                 self.rejected[cause] += count
             usable &= ~faulty
+        self.missing_joint = self.missing_joint or states.lacking
         self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
         rows = np.flatnonzero(usable)
         stamps, values = states.stamp[rows], states.values[rows]

@@ -132,14 +132,15 @@ def read_trajectory(
     """
     rotor = TopicMessages()
     with Bag(path) as bag:
-        topic = find_rotor_topic(bag, rotor_topic)
+        topic = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
         bag.read({topic: rotor}, progress)
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     samples = rotor_input.accept_batch(rotor.data, rotor.received)
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
     if len(used) < 2:  # noqa: PLR2004, what a motion takes
-        raise BagError(f'{path}: {topic} has fewer than two rotor states of different times')
+        why = f' ({rotor_input.why_rejected})' if rotor_input.rejected else ''
+        raise BagError(f'{path}: {topic} has fewer than two rotor states of different times{why}')
     stamps, turns, angle, velocity = (column[used] for column in samples[:4])
     time = (stamps - stamps[0]) / SECOND
     positions = (turns - turns[0]) * TURN + angle

@@ -14,6 +14,7 @@ from gear_kinematics.bag.roles import (
     find_corrected_topics,
     find_topics,
 )
+from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.calibration_file import Calibration
@@ -57,7 +58,8 @@ def validate_bag(
 
     Args:
         task: the bag, and how to validate it.
-        progress: called after each batch; the total counts all topics of the bag.
+        progress: called after each batch; the total counts all topics of the bag, or with `play`
+            the rotor's alone.
         play: `live_messages`, to validate the outputs of a live node instead of recorded ones.
 
     Raises:
@@ -71,25 +73,32 @@ def validate_bag(
                 'output': task.output_topic,
                 'poses': task.poses_topic,
             }
-            topics = find_topics(bag, given, outputs=not play, poses=poses)
+            joint = task.parameters['rotor_joint']
+            topics = find_topics(bag, given, outputs=not play, poses=poses, joint=joint)
             if play:
-                calibration = {'calibration': task.calibration_file}
-                messages = play(bag, {**task.parameters, **calibration}, rotor_topic=topics.rotor)
+                total = count_due(bag, [topics.rotor]) if progress else None
+                messages = play(
+                    bag,
+                    {**task.parameters, 'calibration': task.calibration_file},
+                    rotor_topic=topics.rotor,
+                    progress=lambda sent, _: progress and progress(sent, total),
+                )
                 corrected = corrected_beside() if task.calibration else {}
                 # Nothing is lost by a recorder here.
                 task = replace(task, strict=True)
-                return validate_messages(task, messages, progress, corrected=corrected)
+                return validate_messages(task, messages, corrected=corrected)
             corrected = find_corrected_topics(bag, topics.output)
             messages = bag.messages((*topics, *corrected.values()))
             return validate_messages(
                 task, messages, progress, topics, bag.message_count, corrected
             )
     except BagError as error:
-        return _unusable(task, str(error))
+        return unusable(task.bag, str(error), task.config)
     except Exception as error:
-        if play:
+        if play and not isinstance(error, RuntimeError):  # of the live node
             raise
-        return _unusable(task, f'{task.bag}: {unexpected(error, debug=task.debug)}')
+        cause = str(error) if play else unexpected(error, debug=task.debug)
+        return unusable(task.bag, f'{task.bag}: {cause}', task.config)
 
 
 def validate_messages(
@@ -116,10 +125,12 @@ def validate_messages(
     except BagError as error:
         damage = str(error)
     report = validator.report(str(task.bag), error=damage)
+    findings = []
+    if report.mechanism and not topics.poses:
+        findings.append(f'no poses are recorded: {topics.output} alone is compared')
     if validator.judges_correction:
-        finding = f'the corrected output is compared with that of {task.calibration_file}'
-        report = replace(report, findings=(finding, *report.findings))
-    return replace(report, config=task.config)
+        findings.append(f'the corrected output is compared with that of {task.calibration_file}')
+    return replace(report, config=task.config, findings=(*findings, *report.findings))
 
 
 def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagReport]:
@@ -144,11 +155,12 @@ def _absolute(task: Task) -> Task:
 
 
 def _lost(task: Task, cause: str) -> BagReport:
-    return _unusable(task, f'{task.bag}: {cause}')
+    return unusable(task.bag, f'{task.bag}: {cause}', task.config)
 
 
-def _unusable(task: Task, error: str) -> BagReport:
-    return BagReport(str(task.bag), Verdict.UNUSABLE, config=task.config, error=error)
+def unusable(bag: Path, error: str, config: str = '') -> BagReport:
+    """Return the report on a bag that cannot be validated, and why; `config` is its file."""
+    return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)
 
 
 _WORK = fleet.Work(validate_bag, _lost, _absolute)

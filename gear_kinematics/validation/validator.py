@@ -57,7 +57,7 @@ class Validator:
 
         Args:
             parameters: of the node, as `parameters.load` returns them.
-            topics: names of the topics.
+            topics: names of the topics; that of poses that are not recorded is empty.
             tolerances: greatest accepted errors.
             allow_offset: whether to accept a constant offset of the output angle, as after homing.
             strict: whether to judge all missing and extra messages, even if the recorder may have
@@ -91,7 +91,7 @@ class Validator:
         self.output = OutputState(joint, gear, *common)
         self.poses = None
         outputs: tuple[OutputTopic, ...] = (self.output,)
-        if isinstance(gear, Mechanism):
+        if isinstance(gear, Mechanism) and topics.poses:
             self.poses = BodyPoses(prefix + _FRAME, gear, *common)
             outputs = self.output, self.poses
         names = topics[: 1 + len(outputs)]
@@ -106,8 +106,8 @@ class Validator:
                 absences = Completeness(1, strict=strict)
                 self._groups.append(_Group((topics.rotor, name), (output,), absences))
         self._series = SeriesRecorder()
-        self._checks = [make(parameters) for make in checks.CHECKS]
         self._findings: list[str] = []
+        self._checks = [make(parameters) for make in checks.CHECKS]
 
     def feed(
         self,
@@ -144,7 +144,7 @@ class Validator:
             if output.matcher.messages or name in self._topics
         )
         if error is None and not rotor.valid:
-            error = 'no usable rotor states in it'
+            error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
         judgements = [found for check in self._checks for found in check.judge(rotor)]
@@ -319,6 +319,8 @@ class Validator:
                 yield found
         if self.poses:
             yield from self.poses.findings()
+        if self._input.mostly_rejected and self._input.missing_joint:
+            yield f'{self._topics.rotor}: {self._input.missing_joint}'
         if self._unseen:
             yield from self._unseen.findings()
         if self._unjudged:

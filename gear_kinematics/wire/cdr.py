@@ -55,13 +55,19 @@ def joint_index(layout: Layout, joint: bytes) -> int | None:
         joint: its name; b'' for the only joint. If no joint has a name, as in messages of many
             micro-ROS drivers, their indices are their names: b'0', b'1', ...
     """
+    names = joint_names(layout)
+    if joint:
+        return names.index(joint) if joint in names else None
+    return 0 if len(names) == 1 else None
+
+
+def joint_names(layout: Layout) -> list[bytes]:
+    """Names of the joints in a JointState, as `joint_index` looks them up."""
     _, *names = layout.texts
     if not any(names):
         _, positions = layout.arrays[0]
         names = [b'%d' % index for index in range(len(names) or positions)]
-    if joint:
-        return names.index(joint) if joint in names else None
-    return 0 if len(names) == 1 else None
+    return names
 
 
 def joint_state_layout(data: bytes) -> Layout:

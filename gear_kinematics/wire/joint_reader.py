@@ -2,8 +2,9 @@
 
 import math
 import struct
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from functools import partial
 from operator import itemgetter
 from typing import Any, Self
 
@@ -15,8 +16,10 @@ from gear_kinematics.wire.cdr import (
     STAMP_OFFSET,
     MalformedMessageError,
     joint_index,
+    joint_names,
     joint_state_layout,
 )
+from gear_kinematics.wire.nearest import among, listed
 
 MALFORMED = 'not a JointState'
 STAMP_OUT_OF_RANGE = 'stamp out of range'
@@ -33,6 +36,48 @@ _MAX_KEPT = 65_536  # bytes of a message whose layout is kept; drivers send far 
 
 class RejectedInputError(ValueError):
     """A message without an output; the text is one of the causes above, which are counted."""
+
+    def __init__(self, cause: str, describe: Callable[[], str] = str) -> None:
+        """Note the cause.
+
+        Args:
+            cause: the text.
+            describe: returns what else there is to say.
+        """
+        super().__init__(cause)
+        self._describe = describe
+
+    @property
+    def detail(self) -> str:
+        """Which joints there are, if one is missing; '' otherwise."""
+        return self._describe()
+
+
+def missing_joint(joint: str, data: bytes) -> str:
+    """Describe the joints of a message that lacks one, with the name that is nearest.
+
+    Args:
+        joint: the missing one; '' for the only one.
+        data: a serialised sensor_msgs/JointState.
+    """
+    names = joints_of(data)
+    if not joint:
+        return (
+            f'not a single joint in it; there are: {listed(names)}' if names else 'no joint in it'
+        )
+    return f'no joint {joint!r} in it{among(joint, names)}'
+
+
+def joints_of(data: bytes) -> list[str]:
+    """Names of the joints in a serialised sensor_msgs/JointState, safe to print.
+
+    Raises:
+        MalformedMessageError: if the bytes are anything else.
+    """
+    names = (
+        name.decode(errors='backslashreplace') for name in joint_names(joint_state_layout(data))
+    )
+    return [name if name.isprintable() else ascii(name)[1:-1] for name in names]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +131,9 @@ class JointReader:
         if stamp > LATEST:
             raise RejectedInputError(STAMP_OUT_OF_RANGE)
         if position is None:
+            if self._fault == JOINT_MISSING:
+                joint = self._joint.decode(errors='backslashreplace')
+                raise RejectedInputError(JOINT_MISSING, partial(missing_joint, joint, data))
             raise RejectedInputError(self._fault)
         if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
             finite = math.isfinite(position)

@@ -1,10 +1,44 @@
-"""Suggestions for unknown names."""
+"""What messages on unknown names say: the nearest known name, and all of them."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from difflib import get_close_matches
+
+_SHOWN = 10  # names
+_LONGEST = 100  # characters of a name
+_COMPARED = 1000  # names; a bag can have tens of thousands
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """End of a message on an unknown name: a question about the nearest known one, or ''."""
-    matches = get_close_matches(name, known, n=1)
+    names = list(known)[:_COMPARED]
+    matches = get_close_matches(name, names, n=1)
+    if not matches:
+        folded = {other.casefold(): other for other in names}
+        matches = [folded[other] for other in get_close_matches(name.casefold(), folded, n=1)]
     return f'; did you mean `{matches[0]}`?' if matches else ''
+
+
+def listed(names: Collection[str], first: Collection[str] = (), most: int = _SHOWN) -> str:
+    """List names in one line, only the first of many.
+
+    Args:
+        names: the names.
+        first: those to list before the others.
+        most: number of names to list.
+    """
+    shown, more = sorted(names, key=lambda name: (name not in first, name)), len(names) - most
+    text = ', '.join(f'{name:.{_LONGEST}}' for name in shown[:most])
+    return f'{text} and {more} more' if more > 0 else text
+
+
+def among(name: str, known: Collection[str], most: int = _SHOWN) -> str:
+    """End of a message on an unknown name: the nearest known one, and which there are.
+
+    Args:
+        name: the unknown name.
+        known: the names that there are.
+        most: number of names to list.
+    """
+    there = f'there are: {listed(known, most=most)}' if known else 'there are none'
+    hint = nearest(name, sorted(known))
+    return f'{hint} {there}' if hint else f'; {there}'

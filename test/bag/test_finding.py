@@ -1,6 +1,7 @@
 """Finding bags by files, directories and globs."""
 
 import re
+from pathlib import Path
 
 import pytest
 
@@ -69,13 +70,44 @@ def test_bags_are_found_once_and_in_order(absolute, patterns, found, tree):
     given = [start + pattern for pattern in patterns]
     if found is None:
         with pytest.raises(BagError, match=f'^{re.escape(given[0])}: no bag there$'):
-            find_bags(given)
+            find_bags(given[:1])
         return
-    assert [str(path) for path in find_bags(given)] == [start + name for name in found]
+    assert find_bags(given) == ([Path(start + name) for name in found], {})
 
 
-@pytest.mark.parametrize('pattern', ['missing', 'missing.mcap', 'empty', 'empty/*', '**/*.txt'])
+@pytest.mark.parametrize('pattern', ['empty', 'empty/*', '**/*.txt', 'nowhere/missing'])
 @pytest.mark.usefixtures('tree')
-def test_a_pattern_that_nothing_fits_is_named(pattern):
+def test_a_pattern_that_nothing_fits_is_named_and_does_not_stop_the_others(pattern):
+    bags, faults = find_bags([pattern, 'fleet/one'])
+    assert bags == [Path('fleet/one')]
+    assert faults == {Path(pattern): f'{pattern}: no bag there'}
     with pytest.raises(BagError, match=f'^{re.escape(pattern)}: no bag there$'):
-        find_bags(['fleet', pattern])
+        find_bags([pattern])
+
+
+@pytest.mark.usefixtures('tree')
+def test_a_misspelt_bag_is_told_with_those_beside_it():
+    for name, hint in (
+        ('fleet/deep/tree.mcap', 'did you mean `fleet/deep/three.mcap`? there are: '),
+        ('fleet/twelve', 'there are: fleet/deep, fleet/one'),
+    ):
+        with pytest.raises(BagError, match=f'^{re.escape(name)}: no bag there; ') as caught:
+            find_bags([name])
+        assert hint in str(caught.value)
+
+
+@pytest.mark.parametrize('patterns', [['fleet'], ['fleet/*'], ['fleet/deep', 'fleet/one']])
+@pytest.mark.usefixtures('tree')
+def test_an_unreadable_folder_does_not_stop_the_others(patterns, monkeypatch):
+    """Tests may run as root, who may read everything."""
+    iterdir = Path.iterdir
+
+    def refused(path):
+        if path.name == 'deep':
+            raise PermissionError(13, 'Permission denied', str(path))
+        return iterdir(path)
+
+    monkeypatch.setattr(Path, 'iterdir', refused)
+    bags, faults = find_bags(patterns)
+    assert bags == [Path('fleet/one')]
+    assert faults == {Path('fleet/deep'): 'fleet/deep: Permission denied'}

@@ -170,7 +170,7 @@ def test_bag_without_an_output_encoder_is_refused_in_one_line(tmp_path, capsys):
     path = write_recording(tmp_path / 'bag', Samples(stamps, np.linspace(0.0, 9.0, 200)))
     assert main(['calibrate', str(path), '-o', str(tmp_path / 'c.yaml')]) == 2
     assert capsys.readouterr().err.endswith(
-        'no output_encoder; name its topic with --encoder-topic\n'
+        'no output_encoder; name its topic with --encoder-topic; there are: /rotor_state\n'
     )
 
 

@@ -10,6 +10,7 @@ from calibrations import calibration
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
+from gear_kinematics.state.parameters import load
 
 SERVO = BAGS / 'servo_point_to_point'
 CORRECTED = ('/corrected_state', '/corrected_interval')
@@ -67,7 +68,16 @@ def test_calibration_that_the_config_names_is_used(computed, file, tmp_path, cap
     assert set(CORRECTED) < set(topics_of(computed, capsys, '--config', config))
 
 
+def test_computed_bag_has_its_config_and_calibration_beside_it(computed, file, capsys):
+    assert (computed / 'calibration.yaml').read_bytes() == file.read_bytes()
+    assert load(computed / 'actuator.yaml')['calibration'] == str(computed / 'calibration.yaml')
+    capsys.readouterr()
+    assert set(CORRECTED) < set(topics_of(computed, capsys))
+
+
 def test_without_a_calibration_the_rest_is_validated_and_the_report_says_so(computed, capsys):
+    for name in ('actuator.yaml', 'calibration.yaml'):
+        (computed / name).unlink()
     capsys.readouterr()
     assert main(['validate', str(computed)]) == 0
     shown = capsys.readouterr().out

@@ -173,7 +173,7 @@ def test_several_recordings_are_compared(recording, motion, capsys, monkeypatch)
         ),
         (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot must be one of'),
         (['{recording}', '--json', '-', '--html', '-'], 'only one report can go to stdout'),
-        (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are rotor, output"),
+        (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are: output, rotor"),
     ],
 )
 def test_unusable_arguments_get_one_line(recording, motion, arguments, complaint, capsys):

@@ -208,7 +208,7 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
             ['plot', 'scheme', 'a.png', '--angle', 'nan'],
             'the rotor angle must be finite, not nan',
         ),
-        (['plot', 'scheme', 'a.png', '--branch', 'c'], "no branch 'c'; there are a, b"),
+        (['plot', 'scheme', 'a.png', '--branch', 'c'], "no branch 'c'; there are: a, b"),
         (['plot', 'scheme', 'a.png', '--module', '0'], '--module must be between 1e-06 and 0.1'),
         (['plot', 'scheme', 'a.png', '--config', 'none.yaml'], 'none.yaml'),
         (['plot', 'scheme', 'a.png', '--bag', 'none'], 'none: no such file or folder'),

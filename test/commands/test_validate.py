@@ -24,6 +24,7 @@ from terminals import ENVIRONMENT, Terminal
 
 from gear_kinematics.bag import Bag, BagWriter
 from gear_kinematics.commands.cli import main
+from gear_kinematics.state.parameters import load
 
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 TYPES = {'/rotor_state': JOINT_STATE, '/output_state': JOINT_STATE, '/body_poses': POSE_ARRAY}
@@ -121,7 +122,7 @@ def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
 @pytest.mark.slow
 def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_only(tmp_path):
     rewrite(tmp_path / 'late', late={'/body_poses': 40})
-    done = gearkin('validate', 'late', cwd=tmp_path)
+    done = gearkin('validate', '-v', 'late', cwd=tmp_path)
     assert done.returncode == 0
     left_out = '40 before every topic was recorded'
     assert f'late: finding: not judged, as caused by the recorder: /body_poses {left_out}\n' in (
@@ -150,7 +151,7 @@ def test_the_worst_verdict_of_many_counts_and_their_order_is_kept(options, bags)
 
 
 def test_all_shipped_bags_pass_each_with_its_own_config():
-    done = gearkin('validate', 'bags', cwd=BAGS.parent)
+    done = gearkin('validate', '-v', 'bags', cwd=BAGS.parent)
     assert (done.returncode, done.stderr) == (0, '')
     configs = dict(re.findall(r'^bags/(\S+): config: (.+)$', done.stdout, re.MULTILINE))
     assert configs == {
@@ -164,7 +165,7 @@ def test_all_shipped_bags_pass_each_with_its_own_config():
 @pytest.mark.slow
 def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
     file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
-    done = gearkin('validate', file)
+    done = gearkin('validate', '-v', file)
     assert done.returncode == 0, done.stdout
     assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"}\n' in done.stdout
     done = gearkin('validate', file, '--config', CONFIG)
@@ -534,7 +535,7 @@ def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
     assert done.stdout == (
         f'{out}: {SAMPLES} outputs for {SAMPLES} rotor states, 0 other messages copied\n'
     )
-    done = gearkin('validate', out, *EXACT)
+    done = gearkin('validate', '-v', out, *EXACT)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     namespace = '/arm' if name == 'namespaced' else ''
@@ -558,7 +559,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_computed_and_validated(
     assert gearkin('compute', bags / 'rotor_only', out, '--config', other_gear).returncode == 0
     with Bag(out) as bag:
         assert set(bag.topics) == {'/rotor_state', '/output_state'}
-    done = gearkin('validate', out, '--config', other_gear, *EXACT)
+    done = gearkin('validate', '-v', out, '--config', other_gear, *EXACT)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     assert found['gear ratio'] == '1457/26'
@@ -624,8 +625,9 @@ def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
 def test_compute_uses_the_config_beside_the_bag(tmp_path):
     out = tmp_path / 'out'
     assert gearkin('compute', SINGLE_TURN, out).returncode == 0
-    assert gearkin('validate', out, '--config', SINGLE_TURN / 'actuator.yaml').returncode == 0
-    assert gearkin('validate', out).returncode == 1
+    assert gearkin('validate', out).returncode == 0
+    assert gearkin('validate', out, '--config', CONFIG).returncode == 1
+    assert load(out / 'actuator.yaml') == load(SINGLE_TURN / 'actuator.yaml')
 
 
 @pytest.mark.slow
@@ -681,7 +683,7 @@ def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(bags):
     """The recorded outputs are wrong; the file of a bag that is none is told on the way."""
     bag = bags / 'wrong'
     bad = bags / 'garbage.mcap'
-    done = gearkin('validate', '--live', bag, bad)
+    done = gearkin('validate', '-v', '--live', bag, bad)
     assert done.returncode == 2
     assert done.stderr == f'gearkin: {bad}: not a bag of a known kind\n'
     assert f'{bag}: verdict: passed\n' in done.stdout
@@ -691,7 +693,7 @@ def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(bags):
 @pytest.mark.live
 @pytest.mark.slow
 def test_a_shipped_bag_validates_live():
-    done = gearkin('validate', '--live', SINGLE_TURN)
+    done = gearkin('validate', '-v', '--live', SINGLE_TURN)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     assert found['/output_state: compared'] == found['/body_poses: compared'] == '2500'
@@ -700,7 +702,7 @@ def test_a_shipped_bag_validates_live():
 @pytest.mark.live
 @pytest.mark.slow
 def test_a_gear_with_only_a_ratio_validates_live(other_gear, bags):
-    done = gearkin('validate', '--live', bags / 'rotor_only', '--config', other_gear)
+    done = gearkin('validate', '-v', '--live', bags / 'rotor_only', '--config', other_gear)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     assert found['/output_state: compared'] == str(SAMPLES)
@@ -713,7 +715,7 @@ def test_the_corrected_output_validates_live(tmp_path):
     path = tmp_path / 'calibration.yaml'
     path.write_text(calibration().text(), 'utf-8')
     bag = BAGS / 'servo_point_to_point'
-    done = gearkin('validate', '--live', bag, '--calibration', path)
+    done = gearkin('validate', '-v', '--live', bag, '--calibration', path)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     compared = found['/output_state: compared']

@@ -188,7 +188,7 @@ def test_unusable_files_get_one_clear_line(tmp_path, actuator, content, complain
 
 def test_column_that_is_not_there_is_named(tmp_path, actuator):
     path = write_csv(tmp_path / 'r.csv', angle=[1.0], torque=[2.0])
-    with pytest.raises(CsvError, match="no column 'phi'; there are angle, torque"):
+    with pytest.raises(CsvError, match="no column 'phi'; there are: angle, torque"):
         read(path, actuator, angle='phi')
 
 

@@ -289,6 +289,38 @@ def test_rejects_are_warned_about_at_most_once_a_second(start):
     assert min(b - a for a, b in pairwise(times)) > 0.95
 
 
+def test_missing_joint_is_warned_about_with_the_joints_that_there_are(start):
+    live = start(*PATIENT)
+    live.peer.send(rotor_state(START, ['wheel', 'rotor_1'], [1.0, 2.0]))
+    live.peer.wait_until(lambda: live.lines('WARN'), 'a warning')
+    [warning] = live.lines('WARN')
+    assert warning.text == (
+        "rotor_state rejected: joint missing: no joint 'rotor' in it; did you mean `rotor_1`? "
+        'there are: rotor_1, wheel'
+    )
+
+
+def test_topic_without_a_publisher_is_warned_about_with_those_that_there_are(start):
+    live = start(connect=False, rotor_state='motor/joint_states')
+    peer = live.peer
+
+    def warned():
+        peer.send(rotor_state(peer.stamp(), ['wheel', 'motor_1'], [0.0, 1.0]))
+        return live.lines('WARN')
+
+    [warning] = peer.wait_until(warned, 'a warning')
+    [*_, begun] = live.lines('INFO')
+    assert 4.9 < warning.time - begun.time < 20.0
+    topic = f'{peer.namespace}/motor/joint_states'
+    # Others run at the same time.
+    assert warning.text.startswith(f'{peer.namespace}/rotor_state has no publisher; there are: ')
+    assert f'{topic} (joints motor_1, wheel)' in warning.text
+    assert f'{peer.namespace}/output_state' not in warning.text
+    arguments = f'-r rotor_state:={topic} -p rotor_joint:=motor_1'
+    assert warning.text.endswith(f'did you mean `--ros-args {arguments}`?')
+    peer.wait_until(lambda: not peer.matches()[0], 'the end of its listening')
+
+
 @pytest.mark.parametrize('field', ['velocity', 'effort'])
 @pytest.mark.parametrize('values', [[], [5.0], [5.0, math.nan], [5.0, math.inf]])
 def test_unusable_velocity_or_effort_leaves_only_that_field_empty(shared, field, values):
@@ -947,8 +979,9 @@ def test_unknown_parameter_of_a_file_is_refused_at_the_start(tmp_path):
     config = tmp_path / 'my.yaml'
     config.write_text('/**:\n  ros__parameters:\n    rotor_jiont: m1\n')
     [line] = refusal(tmp_path, '--ros-args', '--params-file', str(config))
-    assert line == (
-        'gear_state_publisher: unknown parameter `rotor_jiont`; did you mean `rotor_joint`?'
+    assert line.startswith(
+        'gear_state_publisher: unknown parameter `rotor_jiont`; did you mean `rotor_joint`?; '
+        'there are: ring_teeth, '
     )
 
 

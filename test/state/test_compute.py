@@ -337,7 +337,10 @@ def test_a_config_that_fits_no_mechanism_is_refused(changed, words, tmp_path):
 
 @pytest.mark.parametrize(
     ('count', 'joint', 'words'),
-    [(0, 'rotor', ['no messages']), (3, 'gripper', ["'rotor'", 'joint missing 3'])],
+    [
+        (0, 'rotor', ['no messages']),
+        (3, 'gripper', ["'rotor'", 'joint missing 3: no joint', 'are: gripper']),
+    ],
 )
 def test_a_bag_that_gives_no_output_is_refused(count, joint, words, tmp_path):
     source = joint_states(tmp_path / 'source', count, joint)

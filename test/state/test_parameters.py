@@ -206,12 +206,13 @@ def test_every_fault_is_listed_at_once(tmp_path):
 )
 def test_unknown_parameter_is_refused_with_the_nearest_name(tmp_path, name, hint):
     text = fault(tmp_path, **{name: 1.0})
-    assert text.endswith(f': unknown parameter `{name}`{hint}')
+    assert f': unknown parameter `{name}`{hint}; there are: ring_teeth, ' in text
+    assert text.endswith(', a.cam_phase, a.axial_position, b.cam_phase, b.axial_position')
 
 
 def test_parameter_of_a_branch_that_is_left_out_is_refused(tmp_path):
     text = fault(tmp_path, branches=['a'], **{'a.cam_phase': 0.5, 'b.cam_phase': 0.5})
-    assert text.endswith(': unknown parameter `b.cam_phase`; `b` is not in `branches`')
+    assert ': unknown parameter `b.cam_phase`; `b` is not in `branches`; there are: ' in text
 
 
 def test_every_unknown_parameter_is_listed_at_once(tmp_path):
@@ -329,7 +330,8 @@ def test_file_that_has_nothing_for_the_node_is_refused(tmp_path, node):
         load(path, node)
     name = node if node.startswith('/') else f'/{node}'
     text = f'{path}: no parameters of {name} in it, only of {LEFT}, {RIGHT}'
-    assert str(caught.value) == text
+    hint = f'; did you mean `{LEFT}`?' if node == '/gear_state_publisher' else ''
+    assert str(caught.value) == text + hint
 
 
 def test_one_of_several_files_has_something_for_the_node(tmp_path):
@@ -344,6 +346,7 @@ def test_one_of_several_files_has_something_for_the_node(tmp_path):
     assert str(caught.value) == (
         f'{files[0]}: no parameters of {RIGHT} in it, only of /other; '
         f'{files[1]}: no parameters of {RIGHT} in it, only of {LEFT}; '
+        f'did you mean `{LEFT}`?; '
         f'{files[2]}: no parameters of {RIGHT} in it, only of /**/x, /y'
     )
 

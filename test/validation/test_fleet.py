@@ -269,7 +269,7 @@ def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(place, tm
 def test_the_bags_of_a_killed_worker_are_done_by_another(tmp_path, monkeypatch):
     copies(tmp_path / 'bags', 6)
     monkeypatch.chdir(tmp_path)  # the workers are elsewhere
-    bags = find_bags(['bags'])
+    bags = find_bags(['bags']).bags
     bags.insert(8, Path('blocked') / 'driver_faults')
     with (
         BlockedBag(BAGS / 'driver_faults', tmp_path / bags[8]) as blocked,

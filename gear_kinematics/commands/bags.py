@@ -1,0 +1,101 @@
+"""Arguments about recordings that several commands have in common."""
+
+import argparse
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from gear_kinematics.commands.arguments import positive
+from gear_kinematics.commands.output import message_progress
+from gear_kinematics.state.trajectory import Trajectory, read_trajectory
+
+
+def add_rotor(parser: argparse._ActionsContainer) -> None:
+    """Add the options for the rotor's topic and joint; `load_config` applies the latter."""
+    parser.add_argument(
+        '--rotor-topic',
+        metavar='NAME',
+        help='of the joint states (default: found by type, name and joint)',
+    )
+    parser.add_argument(
+        '--joint', metavar='NAME', help='of the rotor (default: the parameter rotor_joint)'
+    )
+
+
+def add_outputs(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the names of the node's topics in a bag."""
+    for topic in ('output', 'poses'):
+        text = '(default: found by type and name)'
+        parser.add_argument(f'--{topic}-topic', metavar='NAME', help=text)
+
+
+def add_encoders(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the topics of both encoders in a bag."""
+    topics = parser.add_argument_group('topics of a bag')
+    add_rotor(topics)
+    topics.add_argument(
+        '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
+    )
+    topics.add_argument(
+        '--max-gap',
+        type=positive,
+        metavar='S',
+        help='between interpolated rotor states (default: transmission_error_max_gap)',
+    )
+
+
+def add_recording(
+    parser: argparse.ArgumentParser, motions: argparse._ActionsContainer, *, lasting: bool = True
+) -> None:
+    """Add the options for a motion of the rotor from a bag, one of alternative motions."""
+    motions.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
+    add_rotor(parser)
+    parser.add_argument('--start-offset', type=float, metavar='S', help='start in the recording')
+    if lasting:
+        parser.add_argument('--duration', type=positive, metavar='S', help='(default: all of it)')
+
+
+def recording(
+    options: argparse.Namespace, config: Mapping[str, Any], *bag_only_options: str
+) -> Trajectory | None:
+    """Read the rotor's motion from the bag, from the offset on; None without a bag.
+
+    Args:
+        options: parsed arguments.
+        config: the parameters of the node.
+        bag_only_options: names of further options that need a bag.
+
+    Raises:
+        ValueError: if such options are given without a bag.
+    """
+    if not options.bag:
+        for name in ('rotor_topic', 'joint', 'start_offset', *bag_only_options):
+            if getattr(options, name) is not None:
+                raise ValueError(f'--{name.replace("_", "-")} needs --bag')
+        return None
+    start = options.start_offset or 0.0
+    duration = getattr(options, 'duration', None) or math.inf
+    with (
+        naming(options.bag),
+        message_progress(options.bag.name, quiet=options.quiet) as report_progress,
+    ):
+        whole = read_trajectory(options.bag, config, options.rotor_topic, report_progress)
+        return whole.between(start, start + duration)
+
+
+@contextmanager
+def naming(bag: Path) -> Iterator[None]:
+    """Name the bag in errors about it that do not.
+
+    Raises:
+        ValueError, RuntimeError: with the bag at the begin of the text.
+    """
+    try:
+        yield
+    except (ValueError, RuntimeError) as error:
+        if str(bag) in str(error):
+            raise
+        kind = RuntimeError if isinstance(error, RuntimeError) else ValueError
+        raise kind(f'{bag}: {error}') from error
