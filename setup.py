@@ -63,6 +63,8 @@ setup(
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin animate` to an .mp4, where the system has no ffmpeg
         'video': ['imageio-ffmpeg'],
+        # `gearkin completion`
+        'completion': ['shtab'],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

@@ -18,10 +18,12 @@ from gear_kinematics.commands import (
     ExitCode,
     animate,
     calibrate,
+    completion,
     compute,
     demo,
     describe,
     index,
+    info,
     lost_motion,
     plot,
     preload,
@@ -35,6 +37,7 @@ from gear_kinematics.state.share import version
 from gear_kinematics.wire.nearest import among
 
 COMMANDS: dict[str, Command] = {
+    'info': info,
     'validate': validate,
     'compute': compute,
     'replay': replay,
@@ -47,6 +50,7 @@ COMMANDS: dict[str, Command] = {
     'plot': plot,
     'animate': animate,
     'urdf': urdf,
+    'completion': completion,
 }
 
 
@@ -106,6 +110,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def make_parser() -> argparse.ArgumentParser:
     """Build the parser of the program, with those of its subcommands."""
     parser = _Parser(prog='gearkin', description=__doc__)
+    parser.set_defaults(program=parser)
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
     for name, command in COMMANDS.items():

@@ -7,6 +7,7 @@ EXTRAS = {
     'plotly': 'html',
     'distributed': 'dask',
     'imageio_ffmpeg': 'video',
+    'shtab': 'completion',
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'

@@ -266,6 +266,7 @@ def test_imports_within_bag_point_one_way(imports):
         ('writing',),
         ('__init__',),
         ('schedule', 'finding', 'roles', 'fleet'),
+        ('summary',),
     )
     files = {f'bag/{name}.py' for layer in layers for name in layer}
     assert files == {path for path in imports if path.startswith('bag/')}
