@@ -12,7 +12,7 @@ from gear_kinematics.bag.errors import BagError, DamagedBagError
 from gear_kinematics.bag.reading import Bag, ReportProgress, in_batches
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, find_topics, joints_on
 from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET
-from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY, TOPICS
+from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_STATE, POSE_ARRAY, TOPICS
 
 GAP = 5.0
 """Periods that count as a gap, in median periods."""
@@ -111,7 +111,9 @@ def _parts(bag: Bag, rotor_topic: str | None, joint: str) -> tuple[Mapping[str, 
         unclear = str(error).removeprefix(f'{bag.path}: ')
     with suppress(BagError):
         found = find_topics(bag, {'rotor': rotor_topic}, joint=joint)
-        parts = {found.output: 'output', found.poses: 'poses', found.rotor: 'rotor'}
+        # Any other joint states would be taken for the output.
+        if found.poses or found.output.endswith(f'/{OUTPUT_STATE}'):
+            parts = {found.output: 'output', found.poses: 'poses', found.rotor: 'rotor'}
     with suppress(BagError):
         parts[find_encoder_topic(bag) or ''] = 'encoder'
     return parts, unclear

@@ -1,0 +1,82 @@
+"""What is in a recording."""
+
+from pathlib import Path
+
+import pytest
+from live import rotor_bytes
+
+from gear_kinematics.bag import Bag, BagError, BagWriter
+from gear_kinematics.bag.summary import summarise
+
+BAGS = Path(__file__).resolve().parents[2] / 'bags'
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+
+
+def write(path, *topics, names=('m1', 'm2'), lost=()) -> Path:
+    """Write 100 joint states at 100 Hz on each topic, without those that are lost."""
+    with BagWriter(path) as writer:
+        for topic in topics:
+            writer.add_topic(topic, JOINT_STATE)
+        for k in range(100):
+            if k in lost:
+                continue
+            data = rotor_bytes(10**18 + 10**7 * k, names, [0.1 * k] * len(names))
+            for topic in topics:
+                writer.write(topic, 10**18 + 10**7 * k, data)
+    return path
+
+
+def summary(path, *arguments):
+    with Bag(path) as bag:
+        return summarise(bag, *arguments)
+
+
+def test_parts_rates_and_joints_of_a_shipped_bag():
+    found = summary(BAGS / 'constant_speed_3000rpm')
+    assert found.messages == 9000
+    assert found.duration == pytest.approx(2.999, abs=0.01)
+    assert (found.unclear, found.damage) == ('', '')
+    assert [(topic.part, topic.name, topic.joints) for topic in found.topics] == [
+        ('rotor', '/rotor_state', ('rotor',)),
+        ('output', '/output_state', ('output_shaft',)),
+        ('poses', '/body_poses', ()),
+    ]
+    assert all(topic.rate == pytest.approx(1000.0, rel=1e-3) for topic in found.topics)
+
+
+def test_gaps_are_counted(tmp_path):
+    """At 100 Hz, from the 19th to the 30th message are 11 periods."""
+    (topic,) = summary(write(tmp_path / 'bag', '/motor', lost=range(20, 30))).topics
+    assert (topic.part, topic.messages, topic.gaps) == ('rotor', 90, 1)
+    assert topic.rate == pytest.approx(100.0)
+    assert topic.longest_gap == pytest.approx(0.11)
+
+
+def test_several_topics_are_told_apart_by_the_joint(tmp_path):
+    path = write(tmp_path / 'bag', '/a', '/b')
+    unclear = summary(path)
+    assert unclear.unclear == (
+        'which topic is rotor_state? /a (joints m1, m2), /b (joints m1, m2); '
+        'name it with --rotor-topic'
+    )
+    assert [topic.part for topic in unclear.topics] == ['', '']
+    assert [topic.part for topic in summary(path, '/b').topics] == ['rotor', '']
+    with pytest.raises(BagError, match='no topic /c '):
+        summary(path, '/c')
+    with BagWriter(tmp_path / 'two') as writer:
+        for topic, joint in (('/a', 'm1'), ('/b', 'wheel')):
+            writer.add_topic(topic, JOINT_STATE)
+            writer.write(topic, 1, rotor_bytes(10**18, [joint], [0.0]))
+    found = summary(tmp_path / 'two', None, 'wheel')
+    assert [(topic.part, topic.name) for topic in found.topics] == [('rotor', '/b'), ('', '/a')]
+    assert [topic.rate for topic in found.topics] == [None, None]
+
+
+def test_what_is_before_the_damage_is_summarised(tmp_path):
+    (file,) = (BAGS / 'constant_speed_3000rpm').glob('*.mcap')
+    data = file.read_bytes()
+    path = tmp_path / 'cut.mcap'
+    path.write_bytes(data[: len(data) // 2])
+    found = summary(path)
+    assert 0 < found.messages < 9000
+    assert found.damage.startswith(str(path))

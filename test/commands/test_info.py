@@ -1,0 +1,127 @@
+"""gearkin info and gearkin completion as a user runs them."""
+
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+from blocked_bags import BAGS, gearkin
+from terminals import ENVIRONMENT, Terminal
+
+from gear_kinematics.commands.cli import COMMANDS, main
+
+CONSTANT = BAGS / 'constant_speed_3000rpm'
+
+
+def test_a_bag_is_a_line(capsys):
+    assert main(['info', str(CONSTANT)]) == 0
+    told = capsys.readouterr()
+    assert told.out == (
+        f'{CONSTANT}: 3.00 s, 9000 messages; rotor /rotor_state (joint rotor) 1000 Hz; '
+        'output /output_state (joint output_shaft) 1000 Hz; poses /body_poses 1000 Hz; no gaps\n'
+    )
+    assert told.err == ''
+
+
+def test_every_bag_is_a_line_even_if_others_are_unreadable(tmp_path, monkeypatch, capsys):
+    for name in ('driver_faults', 'single_turn_encoder'):
+        shutil.copytree(BAGS / name, tmp_path / name)
+    (tmp_path / 'garbage.mcap').write_bytes(b'garbage' * 9)
+    monkeypatch.chdir(tmp_path)
+    assert main(['info', '.', 'nowhere']) == 2
+    told = capsys.readouterr()
+    assert [line.partition(':')[0] for line in told.out.splitlines()] == [
+        'driver_faults',
+        'single_turn_encoder',
+    ]
+    assert '2 gaps on /rotor_state, up to 0.302 s' in told.out
+    nowhere, garbage = told.err.splitlines()
+    assert nowhere.startswith('gearkin: nowhere: no bag there; there are: ')
+    assert garbage == 'gearkin: garbage.mcap: not a bag of a known kind'
+    assert main(['info', '-q', '.']) == 2
+    assert capsys.readouterr() == ('', f'{garbage}\n')
+
+
+def test_every_topic_is_listed_on_demand(capsys):
+    assert main(['info', '-v', str(CONSTANT)]) == 0
+    line, *facts = capsys.readouterr().out.splitlines()
+    assert line.startswith(f'{CONSTANT}: 3.00 s')
+    assert f'{CONSTANT}: /output_state: type: JointState' in facts
+    assert f'{CONSTANT}: /output_state: rate: 1000 Hz' in facts
+    with Terminal() as terminal:
+        gearkin('info', '-v', CONSTANT, stdout=terminal.other, env=ENVIRONMENT)
+        shown = re.sub(r'\x1b\[[\d;]*m', '', terminal.text())
+    assert re.search(r'^/body_poses +poses +3000 +1000 Hz', shown, re.MULTILINE)
+
+
+def test_real_recordings_are_described(shared_path, capsys):
+    """Bags of others: servos of Feetech in ROS 2, and joints of a PR2 in ROS 1."""
+    folder = shared_path('data/bags')
+    assert main(['info', str(folder)]) == 0
+    servos, pr2 = capsys.readouterr().out.splitlines()
+    assert '; which topic is rotor_state? /servo/in/state (joints q0, q1, ' in servos
+    assert '; rotor /joint_states (joints bl_caster_l_wheel_joint, ' in pr2
+    assert ' and 41 more) 100.1 Hz; ' in pr2
+    bag = str(folder / 'feetech_servos')
+    assert main(['info', bag, '--rotor-topic', '/servo/out/state']) == 0
+    assert '; rotor /servo/out/state (joints q0, ' in capsys.readouterr().out
+
+
+# Completion.
+
+ASKED = """
+source "$1"
+shift
+COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)) COMP_LINE="$*" COMP_POINT=${#COMP_LINE}
+_shtab_gearkin
+printf '%s\\n' "${COMPREPLY[@]}"
+"""
+
+
+@pytest.fixture(scope='module')
+def script(tmp_path_factory):
+    pytest.importorskip('shtab')
+    path = tmp_path_factory.mktemp('completion') / 'gearkin'
+    done = gearkin('completion', 'bash')
+    assert (done.returncode, done.stderr) == (0, '')
+    path.write_text(done.stdout)
+    return path
+
+
+@pytest.mark.parametrize(
+    ('words', 'expected'),
+    [
+        ('gearkin va', {'validate'}),
+        ('gearkin validate --rotor', {'--rotor-topic'}),
+        ('gearkin plot s', {'scheme', 'slides'}),
+        ('gearkin plot scheme --deg', {'--degrees'}),
+        ('gearkin compute --storage m', {'mcap'}),
+        ('gearkin info READ', {'README.md'}),
+        ('gearkin validate --config set', {'setup.py', 'setup.cfg'}),
+    ],
+)
+def test_bash_completes_commands_options_choices_and_files(script, words, expected):
+    done = subprocess.run(
+        ['bash', '-c', ASKED, 'bash', script, *words.split()],
+        cwd=BAGS.parent,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert set(done.stdout.split()) == expected
+
+
+@pytest.mark.parametrize('shell', ['zsh', 'tcsh'])
+def test_other_shells_know_every_command(shell, capsys):
+    pytest.importorskip('shtab')
+    assert main(['completion', shell]) == 0
+    text = capsys.readouterr().out
+    assert all(command in text for command in COMMANDS)
+
+
+def test_without_shtab_its_extra_is_named(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, 'shtab', None)
+    assert main(['completion', 'bash']) == 2
+    error = "gearkin: shtab is not installed: pip install 'gear_kinematics[completion]'\n"
+    assert capsys.readouterr() == ('', error)
