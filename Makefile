@@ -87,6 +87,6 @@ $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml
 		echo 'Python has no ensurepip: apt install $(notdir $(PYTHON))-venv' >&2; exit 1; }
 	test -x $(BIN)/pip || $(PYTHON) -m venv --clear $(VENV)
 	@echo 'installing $< into $(VENV)'
-	@$(PIP_INSTALL) --no-compile --require-hashes -r $< 2> $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
+	@$(BIN)/python requirements/install.py $< $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
 	$(PIP_INSTALL) --no-deps --no-build-isolation -e .
 	@touch $@
