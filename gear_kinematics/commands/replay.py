@@ -87,6 +87,8 @@ def _topics(bag: Bag, options: argparse.Namespace) -> dict[str, str]:
             raise ValueError('--topics excludes --rotor-topic and --joint')
         if options.published and len(options.topics) > 1:
             raise ValueError(f'--as names one topic, not {len(options.topics)}')
+        for topic in options.topics:
+            bag.type_of(topic)
         return {topic: options.published or topic for topic in options.topics}
     topic = find_rotor_topic(bag, options.rotor_topic, options.joint or '')
     if options.joint and options.joint not in (joints := joints_on(bag, topic)):

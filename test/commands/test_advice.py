@@ -1,0 +1,233 @@
+"""What gearkin advises: what is missing, which names there are, and which bag it is about."""
+
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+from blocked_bags import BAGS
+from gear_recordings import Samples, write_recording
+from live import rotor_bytes
+
+from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.commands.cli import main
+
+SERVO = BAGS / 'servo_point_to_point'
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+ROS = "rclpy is not installed: source a ROS 2 installation, or pip install 'gear_kinematics[ros]'"
+
+
+def plain(package: str, extra: str) -> str:
+    return f"{package} is not installed: pip install 'gear_kinematics[{extra}]'"
+
+
+# Packages that are missing.
+
+MISSING = [
+    ('rclpy', ROS, ['demo']),
+    ('rclpy', ROS, ['replay', SERVO]),
+    ('rclpy', ROS, ['validate', '--live', SERVO]),
+    ('plotly', plain('plotly', 'html'), ['validate', SERVO, '--html', 'a.html']),
+    ('plotly', plain('plotly', 'html'), ['lost-motion', SERVO, '--html', 'a.html']),
+    ('plotly', plain('plotly', 'html'), ['calibrate', SERVO, '--html', 'a.html']),
+    ('matplotlib', plain('matplotlib', 'plot'), ['validate', SERVO, '--plot', 'a.png']),
+    ('matplotlib', plain('matplotlib', 'plot'), ['lost-motion', SERVO, '--plot', 'a.png']),
+    ('matplotlib', plain('matplotlib', 'plot'), ['plot', 'output', 'a.png', '--bag', SERVO]),
+    ('matplotlib', plain('matplotlib', 'plot'), ['animate', 'a.gif', '--bag', SERVO]),
+    ('distributed', plain('distributed', 'dask'), ['validate', SERVO, '--scheduler', 'tcp://x:1']),
+    (
+        'distributed',
+        plain('distributed', 'dask'),
+        ['lost-motion', SERVO, '--scheduler', 'tcp://x:1'],
+    ),
+]
+
+
+@pytest.mark.parametrize(
+    ('package', 'error', 'arguments'), MISSING, ids=lambda value: ' '.join(map(str, value))[:40]
+)
+def test_a_missing_package_is_told_before_any_work(
+    package, error, arguments, tmp_path, monkeypatch, capsys
+):
+    for name in [name for name in sys.modules if name.split('.')[0] == package]:
+        monkeypatch.delitem(sys.modules, name)
+    for name in [name for name in sys.modules if name.startswith('gear_kinematics.ros.')]:
+        if name.endswith(('.live', '.replay', '.demo')):
+            monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.setattr(Bag, 'messages', None)  # no work
+    monkeypatch.chdir(tmp_path)
+    assert main(list(map(str, arguments))) == 2
+    assert capsys.readouterr() == ('', f'gearkin: {error}\n')
+    assert list(tmp_path.iterdir()) == []
+
+
+# Names.
+
+
+@pytest.fixture
+def motor(tmp_path, monkeypatch):
+    """A bag of a driver of two motors, in which nothing has the default name."""
+    monkeypatch.chdir(tmp_path)
+    with BagWriter('motor') as writer:
+        writer.add_topic('/motor/states', JOINT_STATE)
+        writer.add_topic('/output_encoder', JOINT_STATE)
+        for k in range(100):
+            stamp = 10**18 + 10**7 * k
+            data = rotor_bytes(stamp, ['left', 'wheel_1'], [0.0, 0.5 * k], [0.0, 50.0], [0.1, 0.2])
+            writer.write('/motor/states', stamp, data)
+            writer.write('/output_encoder', stamp, rotor_bytes(stamp, ['out'], [-0.5 / 19 * k]))
+    return Path('motor')
+
+
+READING = [
+    ['compute', 'motor', 'out'],
+    ['replay', 'motor', '--no-wait'],
+    ['lost-motion', 'motor'],
+    ['calibrate', 'motor'],
+    ['plot', 'output', 'a.png', '--bag', 'motor'],
+    ['animate', 'a.gif', '--bag', 'motor'],
+    ['validate', 'motor', '--output-topic', '/output_encoder'],
+]
+names = pytest.mark.parametrize('command', READING, ids=lambda command: ' '.join(command[:2]))
+
+
+@names
+def test_every_command_tells_the_joints_and_the_bag(command, motor, capsys):
+    assert main([*command, '--joint', 'wheel']) == 2
+    error, *more = capsys.readouterr().err.splitlines()
+    assert more == []
+    assert error.startswith('gearkin: motor: ')
+    assert "no joint 'wheel' in it; did you mean `wheel_1`? there are: left, wheel_1" in error
+    assert {path.name for path in motor.absolute().parent.iterdir()} == {'motor'}
+
+
+@names
+def test_every_command_tells_the_topics_and_the_bag(command, motor, capsys):
+    words = command[:2] if command[0] == 'validate' else command
+    assert main([*words, '--rotor-topic', '/motor/state']) == 2
+    error, *more = capsys.readouterr().err.splitlines()
+    assert more == []
+    assert error == (
+        'gearkin: motor: no topic /motor/state of type sensor_msgs/msg/JointState in it; '
+        'did you mean `/motor/states`? there are: /motor/states, /output_encoder'
+    )
+    assert motor.exists()
+
+
+@pytest.mark.parametrize(
+    'command',
+    [command for command in READING if command[0] in {'compute', 'plot'}],
+    ids=lambda command: ' '.join(command[:2]),
+)
+def test_the_joint_that_is_given_is_read(command, motor, capsys):
+    assert main([*command, '--joint', 'wheel_1']) == 0
+    assert capsys.readouterr().err == ''
+    assert motor.exists()
+
+
+@pytest.mark.parametrize('command', ['calibrate', 'lost-motion'])
+def test_a_missing_joint_of_the_output_is_told_with_those_that_there_are(command, motor, capsys):
+    Path('my.yaml').write_text('/**: {ros__parameters: {output_encoder_joint: outer}}')
+    words = [command, str(motor), '--joint', 'wheel_1', '--config', 'my.yaml']
+    assert main(words) == 2
+    assert capsys.readouterr().err == (
+        "gearkin: motor: /output_encoder: no joint 'outer' in it; did you mean `out`? "
+        'there are: out\n'
+    )
+
+
+def test_the_joint_chooses_among_topics(tmp_path, capsys):
+    with BagWriter(tmp_path / 'two') as writer:
+        for topic, joint in (('/left', 'm1'), ('/right', 'm2')):
+            writer.add_topic(topic, JOINT_STATE)
+            for k in range(3):
+                writer.write(topic, k + 1, rotor_bytes(10**18 + k, [joint], [1.0 * k]))
+    words = ['compute', str(tmp_path / 'two'), str(tmp_path / 'out')]
+    assert main(words) == 2
+    choice = 'which topic is rotor_state? /left (joint m1), /right (joint m2); name it with'
+    assert choice in capsys.readouterr().err
+    assert main([*words, '--joint', 'm2']) == 0
+    with Bag(tmp_path / 'out') as bag:
+        assert sum(topic == '/output_state' for topic, *_ in bag.messages(bag.topics)) == 3
+    capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'error'),
+    [
+        (['valdate', 'a'], "'valdate'; did you mean `validate`? there are: animate, calibrate, "),
+        (['plot', 'sheme', 'a'], "'sheme'; did you mean `scheme`? there are: output, roses, "),
+        (['compute', 'a', 'b', '--storage', 'mcp'], "'mcp'; did you mean `mcap`? there are: mcap"),
+        (['replay', 'a', '--lopp'], '--lopp; did you mean `--loop`? there are: --as, --clock, '),
+        (['plot', 'scheme', 'a', '--brnch'], '--brnch; did you mean `--branch`? there are: --an'),
+        (['replay', 'a', 'b'], 'unrecognized arguments: b; see gearkin replay --help'),
+    ],
+)
+def test_misspelt_words_are_told_with_those_that_there_are(arguments, error, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    assert ended.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert error in line
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'error'),
+    [
+        (['plot', 'scheme', 'a.png', '--branch', 'A'], "no branch 'A'; did you mean `a`? there a"),
+        (['urdf', '--config', 'my.yaml'], 'did you mean `module`?; there are: ring_teeth, '),
+        (['urdf', '--config', 'two.yaml', '--node', '/lift/x'], 'only of /left/x, /right/x; did '),
+        (['compute', 'moto', 'out'], 'moto: no such file or folder; did you mean `motor`? there '),
+        (['validate', 'moto'], 'moto: no bag there; did you mean `motor`? there are: motor'),
+        (['replay', 'motor', '--topics', '/motor/state'], 'did you mean `/motor/states`? there '),
+        (['replay', 'motor', '--topics', '/a', '/b', '--as', 'c'], '--as names one topic, not 2'),
+        (['replay', 'motor', '--topics', '/a', '--joint', 'c'], '--topics excludes --rotor-topic'),
+        (['plot', 'scheme', 'a.png', '--joint', 'm'], '--joint needs --bag'),
+    ],
+)
+def test_unknown_names_are_told_with_those_that_there_are(arguments, error, motor, capsys):
+    Path('my.yaml').write_text('/**: {ros__parameters: {modul: 1.0}}')
+    Path('two.yaml').write_text(
+        '/left/x: {ros__parameters: {module: 0.1}}\n/right/x: {ros__parameters: {module: 0.1}}'
+    )
+    assert main(arguments) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert error in line
+    assert motor.exists()
+
+
+# What cannot be read, among others.
+
+
+def test_files_beside_a_bag_that_cannot_be_used_do_not_stop_the_others(
+    tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    for name in ('broken', 'sound', 'uncalibrated'):
+        shutil.copytree(BAGS / 'single_turn_encoder', name)
+    Path('broken/actuator.yaml').write_text('{')
+    Path('uncalibrated/calibration.yaml').write_text('schema: none')
+    assert main(['validate', 'broken', 'sound', 'uncalibrated', 'nowhere']) == 2
+    told = capsys.readouterr()
+    assert 'sound: verdict: passed\n' in told.out
+    assert told.out.endswith('summary: 4 bags: 1 passed, 0 failed, 3 unusable\n')
+    broken, uncalibrated, nowhere = told.err.splitlines()
+    assert broken.startswith('gearkin: broken/actuator.yaml: not YAML')
+    assert uncalibrated.startswith('gearkin: uncalibrated/calibration.yaml: ')
+    assert nowhere.startswith('gearkin: nowhere: no bag there')
+
+
+def test_the_error_about_a_stretch_of_a_bag_names_it(motor, capsys):
+    words = ['plot', 'output', 'a.png', '--bag', str(motor), '--joint', 'wheel_1']
+    assert main([*words, '--start-offset', '9']) == 2
+    error = 'gearkin: motor: no rotor states from 9 s to inf s; they are from 0 s to 0.99 s\n'
+    assert capsys.readouterr().err == error
+
+
+def test_a_bag_without_rotor_states_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    write_recording(Path('empty'), Samples([], []))
+    assert main(['validate', 'empty', '--output-topic', '/rotor_state']) == 2
+    (error,) = capsys.readouterr().err.splitlines()
+    assert error.startswith('gearkin: empty: ')

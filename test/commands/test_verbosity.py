@@ -1,0 +1,92 @@
+"""How much gearkin prints: a line on what passed, less with --quiet, all with --verbose."""
+
+import json
+
+import pytest
+from blocked_bags import BAGS, gearkin
+from gear_recordings import Samples, write_recording
+from terminals import ENVIRONMENT, Terminal
+
+from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.commands.cli import main
+
+SINGLE_TURN = BAGS / 'single_turn_encoder'
+CONFIG = BAGS.parent / 'config' / 'actuator.yaml'
+
+
+def without_poses(path):
+    with Bag(SINGLE_TURN) as bag, BagWriter(path) as writer:
+        for topic in ('/rotor_state', '/output_state'):
+            writer.copy_topic(bag, topic)
+        writer.write_all(list(bag.messages(['/rotor_state', '/output_state'])))
+    writer.path.joinpath('actuator.yaml').write_bytes((SINGLE_TURN / 'actuator.yaml').read_bytes())
+    return path
+
+
+def test_a_bag_that_passed_is_a_line_in_a_pipe(capsys):
+    assert main(['validate', str(SINGLE_TURN)]) == 0
+    assert capsys.readouterr().out == f'{SINGLE_TURN}: verdict: passed\n'
+    assert main(['validate', str(SINGLE_TURN), '--verbose']) == 0
+    first, *facts = capsys.readouterr().out.splitlines()
+    assert first == f'{SINGLE_TURN}: verdict: passed'
+    assert f'{SINGLE_TURN}: /output_state: compared: 2500' in facts
+
+
+def test_a_bag_that_failed_is_described_in_full(capsys):
+    assert main(['validate', str(SINGLE_TURN), '--config', str(CONFIG)]) == 1
+    out = capsys.readouterr().out
+    assert f'{SINGLE_TURN}: verdict: failed\n' in out
+    assert f'{SINGLE_TURN}: /output_state: compared: 2500\n' in out
+
+
+def test_quiet_shows_only_what_failed(tmp_path, capsys):
+    report = tmp_path / 'report.json'
+    assert main(['validate', '-q', str(SINGLE_TURN), '--json', str(report)]) == 0
+    assert capsys.readouterr() == ('', '')
+    assert json.loads(report.read_text())['verdict'] == 'pass'
+    other = BAGS / 'driver_faults'
+    words = ['validate', '-q', str(SINGLE_TURN), str(other), '--config', str(CONFIG)]
+    assert main(words) == 1
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f'{SINGLE_TURN}: verdict: failed'
+    assert all(line.startswith(f'{SINGLE_TURN}: ') for line in lines)
+
+
+@pytest.mark.parametrize(
+    'words',
+    [
+        ['compute', str(BAGS / 'driver_faults'), 'out'],
+        ['animate', 'a.gif', '--duration', '0.1', '--width', '100'],
+        ['describe', '--json', 'a.json'],
+    ],
+    ids=lambda words: words[0],
+)
+def test_quiet_commands_do_their_work_and_say_nothing(words, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with Terminal() as shown, Terminal() as progress:
+        done = gearkin(*words, '-q', stdout=shown.other, stderr=progress.other, env=ENVIRONMENT)
+        assert (shown.text(), progress.text()) == ('', '')
+    assert done.returncode == 0
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def test_without_poses_the_output_alone_is_validated_and_that_is_said(tmp_path, capsys):
+    path = without_poses(tmp_path / 'bag')
+    assert main(['validate', str(path)]) == 0
+    said = 'no poses are recorded: /output_state alone is compared'
+    assert capsys.readouterr().out == f'{path}: verdict: passed; {said}\n'
+    assert main(['validate', str(path), '--json', '-']) == 0
+    (bag,) = json.loads(capsys.readouterr().out)['bags']
+    assert [topic['topic'] for topic in bag['topics']] == ['/output_state']
+    assert bag['topics'][0]['compared'] == 2500
+    assert main(['validate', str(path), '--config', str(CONFIG)]) == 1
+    assert said in capsys.readouterr().out
+    assert main(['validate', str(path), '--poses-topic', '/body_poses']) == 2
+    assert 'no topic /body_poses of type geometry_msgs/msg/PoseArray' in capsys.readouterr().err
+
+
+def test_without_outputs_a_bag_stays_unusable(tmp_path, capsys):
+    stamps = [10**18 + 10**7 * k for k in range(20)]
+    path = write_recording(tmp_path / 'bag', Samples(stamps, [0.1 * k for k in range(20)]))
+    assert main(['validate', str(path)]) == 2
+    assert 'no topic output_state of type' in capsys.readouterr().err
