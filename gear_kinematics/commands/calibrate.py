@@ -1,7 +1,7 @@
 """`gearkin calibrate`: a calibration file from recordings of both encoders."""
 
 import argparse
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from gear_kinematics.calibration.reading import read_bag, read_csv
 from gear_kinematics.calibration.recording import Recording
 from gear_kinematics.calibration.to_file import to_calibration
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import Reporter, message_progress, write
+from gear_kinematics.commands.output import Reporter, complain, message_progress, write
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.lost_motion.csv_files import is_csv
 from gear_kinematics.state.calibration_file import Calibration
@@ -55,7 +55,9 @@ def run(options: argparse.Namespace) -> ExitCode:
     if options.check:
         return _check(options, config, reporter)
     gear = gear_from_mapping(config)
-    recordings = [_read(path, options, config) for path in options.recordings]
+    recordings = list(_read(options, config))
+    if len(recordings) < len(options.recordings):
+        return ExitCode.UNUSABLE
     result = fit(
         recordings,
         gear.gear_ratio,
@@ -71,12 +73,24 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Reporter) -> ExitCode:
     calibration = Calibration.load(options.check)
     config['gear_ratio'] = str(calibration.gear_ratio)
-    judgements = [judge(_read(path, options, config), calibration) for path in options.recordings]
-    reporter.write(judgement.document(options.check, judgements))
+    judgements = [judge(recording, calibration) for recording in _read(options, config)]
+    if judgements:
+        reporter.write(judgement.document(options.check, judgements))
+    if len(judgements) < len(options.recordings):
+        return ExitCode.UNUSABLE
     return ExitCode.DONE if all(one.holds for one in judgements) else ExitCode.FAILED
 
 
-def _read(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) -> Recording:
+def _read(options: argparse.Namespace, config: Mapping[str, Any]) -> Iterator[Recording]:
+    """Read the recordings, and complain about those that cannot be read."""
+    for path in options.recordings:
+        try:
+            yield _read_one(path, options, config)
+        except (ValueError, OSError) as error:
+            complain(error)
+
+
+def _read_one(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) -> Recording:
     if is_csv(path):
         ratio = gear_from_mapping(config).gear_ratio
         return read_csv(path, arguments.columns(options), float(ratio))

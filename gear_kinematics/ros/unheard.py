@@ -2,8 +2,10 @@
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 from difflib import get_close_matches
 
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from rclpy.subscription import Subscription
@@ -76,9 +78,10 @@ class UnheardTopic:
         ]
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         for topic in sorted(topics)[:_MOST]:
-            self._listening[topic] = self._node.create_subscription(
-                JointState, topic, self._note(topic), qos, raw=True
-            )
+            with suppress(rclpy_implementation.RCLError):  # a security policy may forbid it
+                self._listening[topic] = self._node.create_subscription(
+                    JointState, topic, self._note(topic), qos, raw=True
+                )
 
     def _note(self, topic: str) -> Callable[[bytes], None]:
         def note(data: bytes) -> None:

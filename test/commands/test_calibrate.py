@@ -190,3 +190,23 @@ def test_unusable_files_get_one_line(content, complaint, tmp_path, capsys):
     error = capsys.readouterr().err
     assert complaint in error
     assert error.count('\n') == 1
+
+
+def test_recordings_that_cannot_be_read_are_all_told_and_do_not_stop_the_check(
+    recording, tmp_path, capsys
+):
+    target = tmp_path / 'calibration.yaml'
+    bad = [tmp_path / 'a.csv', tmp_path / 'b.csv']
+    for path in bad:
+        path.write_text('rotor,output\n1,nan\n')
+    words = ['calibrate', str(bad[0]), str(recording), str(bad[1])]
+    errors = ''.join(f'gearkin: {path}: no usable rows\n' for path in bad)
+    assert main([*words, '-o', str(target)]) == 2
+    assert capsys.readouterr() == ('', errors)
+    assert not target.exists()
+    assert main(['calibrate', str(recording), '-o', str(target)]) == 0
+    capsys.readouterr()
+    assert main([*words, '--check', str(target)]) == 2
+    told = capsys.readouterr()
+    assert told.err == errors
+    assert 'of the measured angles are within the 95 % interval' in told.out

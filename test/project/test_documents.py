@@ -28,7 +28,7 @@ def commands(text: str) -> list[list[str]]:
         words[1:]
         for line in lines
         if re.match(r'( {4})?gearkin [a-z]', line)
-        for words in [shlex.split(line.partition(' | ')[0], comments=True)]
+        for words in [shlex.split(re.split(' [|>] ', line)[0], comments=True)]
         if words[1] in COMMANDS
     ]
 
