@@ -106,8 +106,8 @@ class UnheardTopic:
             return text
         arguments = f'-r {self._name}:={meant[0]}'
         joints = self._joints.get(meant[0], [])
-        if joints and joint not in joints:
-            # A single joint needs no name that is near.
+        if joints and joint not in joints and (joint or len(joints) > 1):
+            # However far the nearest name is.
             (nearest,) = get_close_matches(joint, joints, n=1, cutoff=0.0)
             arguments += f' -p {self._parameter}:={nearest}'
         return f'{text}; did you mean `--ros-args {arguments}`?'

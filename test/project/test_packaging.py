@@ -37,7 +37,7 @@ ROSDEP_KEYS = {
     'yaml': 'python3-yaml',
 }
 # Extras, which rosdep does not know, and what Python itself has from 3.14 on.
-WITHOUT_KEY = {'compression', 'distributed', 'plotly'}
+WITHOUT_KEY = {'compression', 'distributed', 'imageio_ffmpeg', 'plotly', 'shtab'}
 PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 
 

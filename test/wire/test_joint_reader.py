@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 from wire import micro_ros_bytes
 
+from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import MalformedMessageError
 from gear_kinematics.wire.joint_reader import GREATEST, JointReader, RejectedInputError
 
@@ -176,3 +177,38 @@ def test_stamp_that_cannot_be_normalised_is_out_of_range(nanoseconds):
     data = FULL[:4] + struct.pack('<iI', 2**31 - 1, nanoseconds) + FULL[12:]
     with pytest.raises(RejectedInputError, match='stamp out of range'):
         JointReader('rotor').read(data)
+
+
+@pytest.mark.parametrize(
+    ('joint', 'names', 'detail'),
+    [
+        (
+            'rotor',
+            ['wheel', 'rotor_1'],
+            "no joint 'rotor' in it; did you mean `rotor_1`? there are: rotor_1, wheel",
+        ),
+        ('rotor', ['wheel'], "no joint 'rotor' in it; there are: wheel"),
+        ('rotor', [], "no joint 'rotor' in it; there are none"),
+        ('', ['b', 'a'], 'not a single joint in it; there are: a, b'),
+        ('', [], 'no joint in it'),
+        ('m', ['\x1b[2J'], r"no joint 'm' in it; there are: \x1b[2J"),
+    ],
+)
+def test_missing_joint_is_told_with_those_that_there_are(joint, names, detail):
+    data = rotor_bytes(SECOND, names, len(names) * [1.0])
+    with pytest.raises(RejectedInputError) as rejected:
+        JointReader(joint).read(data)
+    assert (str(rejected.value), rejected.value.detail) == ('joint missing', detail)
+    assert decode_joint_states([data], joint).lacking == detail
+
+
+def test_joints_without_names_are_told_by_their_index():
+    with pytest.raises(RejectedInputError) as rejected:
+        JointReader('m').read(rotor_bytes(SECOND, [], [1.0, 2.0]))
+    assert rejected.value.detail == "no joint 'm' in it; there are: 0, 1"
+
+
+def test_other_rejections_have_no_detail():
+    with pytest.raises(RejectedInputError) as rejected:
+        JointReader('m').read(rotor_bytes(SECOND, ['m'], [math.nan]))
+    assert rejected.value.detail == ''
