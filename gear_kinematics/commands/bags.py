@@ -12,16 +12,20 @@ from gear_kinematics.commands.output import message_progress
 from gear_kinematics.state.trajectory import Trajectory, read_trajectory
 
 
-def add_rotor(parser: argparse._ActionsContainer) -> None:
-    """Add the options for the rotor's topic and joint; `load_config` applies the latter."""
+def add_rotor(parser: argparse._ActionsContainer, *, configured: bool = True) -> None:
+    """Add the options for the rotor's topic and joint; `load_config` applies the latter.
+
+    Args:
+        parser: to add them to.
+        configured: whether the command takes parameters of the node, too.
+    """
     parser.add_argument(
         '--rotor-topic',
         metavar='NAME',
         help='of the joint states (default: found by type, name and joint)',
     )
-    parser.add_argument(
-        '--joint', metavar='NAME', help='of the rotor (default: the parameter rotor_joint)'
-    )
+    text = ' (default: the parameter rotor_joint)' if configured else ', to find its topic'
+    parser.add_argument('--joint', metavar='NAME', help=f'of the rotor{text}')
 
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:

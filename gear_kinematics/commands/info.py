@@ -21,7 +21,7 @@ _JOINTS = 4  # in the line
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
-    bags.add_rotor(parser)
+    bags.add_rotor(parser, configured=False)
     parser.add_argument(
         '-v', '--verbose', action='store_true', help='also list every topic with its type'
     )

@@ -19,7 +19,7 @@ HELP = "publish a bag's rotor topic with the timing of the recording"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('bag', type=Path, metavar='BAG')
-    bags.add_rotor(parser)
+    bags.add_rotor(parser, configured=False)
     parser.add_argument('--rate', type=float, default=1.0, help='playback speed (default: 1)')
     parser.add_argument('--loop', action='store_true', help='repeat until stopped')
     for option, default, text in (
