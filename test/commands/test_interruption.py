@@ -9,6 +9,8 @@ from live import Listener
 from sensor_msgs.msg import JointState
 from terminals import ENVIRONMENT, Terminal
 
+pytestmark = pytest.mark.slow
+
 SERVO = BAGS / 'servo_point_to_point'
 COUNTS = re.compile(r' (\d+)/(\d+|\?) ')
 
@@ -27,7 +29,6 @@ def counts(terminal) -> list[tuple[str, str]]:
 @pytest.mark.parametrize(
     'arguments',
     [
-        ['validate'],
         ['info'],
         ['lost-motion'],
         ['calibrate', '--encoder-topic', '/output_state'],
@@ -52,7 +53,6 @@ def test_ctrl_c_while_reading_gives_130(arguments, tmp_path):
     ('arguments', 'total'),
     [
         (['replay', SERVO, '--no-wait'], '3000'),
-        (['replay', SERVO, '--no-wait', '--start-offset', '4'], None),
         (['replay', SERVO, '--no-wait', '--loop'], '?'),
         (['validate', '--live', SERVO], '3000'),
         (['demo'], '3000'),
@@ -69,9 +69,7 @@ def test_live_commands_show_a_total_and_end_with_130(arguments, total):
             process.send_signal(signal.SIGINT)
             code, _ = ended(process)
     assert code == 130
-    (shown,) = {total for _, total in counts(terminal)}
-    # The recording is 6 s long, at 500 Hz.
-    assert shown == total if total else 900 < int(shown) < 1100
+    assert {shown for _, shown in counts(terminal)} == {total}
 
 
 @pytest.mark.live

@@ -56,7 +56,6 @@ def test_quiet_shows_only_what_failed(tmp_path, capsys):
     'words',
     [
         ['compute', str(BAGS / 'driver_faults'), 'out'],
-        ['animate', 'a.gif', '--duration', '0.1', '--width', '100'],
         ['describe', '--json', 'a.json'],
     ],
     ids=lambda words: words[0],
