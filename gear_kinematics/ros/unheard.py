@@ -20,6 +20,8 @@ _PATIENCE = 5.0
 """Time without a publisher after which it is told, s."""
 _LISTENING = 1.5
 """Part of it in which other topics are listened to, s: more than a period of `look`."""
+_LEAST = 0.9
+"""Time for their messages, s, of topics that appear later, too."""
 _MOST = 20  # topics
 
 
@@ -39,6 +41,7 @@ class UnheardTopic:
         self._topic = node.resolve_topic_name(name)
         self._parameter = parameter
         self._since = math.nan
+        self._begun = math.nan
         self._told = False
         self._listening: dict[str, Subscription] = {}
         self._joints: dict[str, list[str]] = {}
@@ -61,7 +64,8 @@ class UnheardTopic:
             return
         if not self._listening:
             self._listen()
-        if age >= _PATIENCE and self._listening:
+            self._begun = now
+        elif age >= _PATIENCE and now - self._begun >= _LEAST:
             self._node.get_logger().warning(self._text())
             self._told = True
             self._end()
@@ -99,7 +103,7 @@ class UnheardTopic:
         topics = [f'{topic} ({self._described(topic)})' for topic in self._listening]
         text = f'{self._topic} has no publisher; there are: {listed(topics)}'
         having = [topic for topic in self._listening if joint in self._joints.get(topic, ())]
-        meant = having or list(self._listening)
+        meant = having or [topic for topic in self._listening if self._joints.get(topic)]
         if len(meant) > 1:
             meant = get_close_matches(self._topic, meant, n=1)
         if not meant:
