@@ -90,8 +90,8 @@ def recording(
 
 
 @contextmanager
-def naming(bag: Path) -> Iterator[None]:
-    """Name the bag in errors about it that do not.
+def naming(bag: Path, *others: Path) -> Iterator[None]:
+    """Name the bag in errors that name neither it nor other files.
 
     Raises:
         ValueError, RuntimeError: with the bag at the begin of the text.
@@ -99,7 +99,7 @@ def naming(bag: Path) -> Iterator[None]:
     try:
         yield
     except (ValueError, RuntimeError) as error:
-        if str(bag) in str(error):
+        if any(str(path) in str(error) for path in (bag, *others)):
             raise
         kind = RuntimeError if isinstance(error, RuntimeError) else ValueError
         raise kind(f'{bag}: {error}') from error

@@ -38,7 +38,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     config = arguments.load_config(options, options.bag)
     calibration = calibrations.load(options, config, options.bag)
     with (
-        bags.naming(options.bag),
+        bags.naming(options.bag, options.out),
         Bag(options.bag) as bag,
         message_progress(options.bag.name, quiet=options.quiet) as progress,
     ):

@@ -10,7 +10,7 @@ from gear_kinematics.bag.finding import is_recording
 from gear_kinematics.report.mark import is_report
 from gear_kinematics.state.calibration_file import is_calibration
 
-_INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check')
+_INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check', 'measured')
 """Options and arguments that name files to read."""
 _REPORT = 'report', is_report
 _KINDS: Mapping[str, tuple[str, Callable[[Path], bool]]] = {

@@ -588,7 +588,7 @@ def test_positions_of_two_gears_are_combined_and_compared(tmp_path, capsys):
         angle = creep(GEAR._replace(play=play), torque)
         write_csv(tmp_path / f'{name}.csv', angle=angle, torque=torque)
     paths = [str(path) for path in sorted(tmp_path.glob('*.csv'), reverse=True)]
-    assert main(['lost-motion', *paths, '--positions', '--json']) == 0
+    assert main(['lost-motion', *paths, '--positions', '--json', '-']) == 0
     document = json.loads(capsys.readouterr().out)
     gears = {item['gear'] for item in document['positions']}
     assert gears == {'old.csv', 'new.csv'}

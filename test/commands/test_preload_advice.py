@@ -53,7 +53,7 @@ def test_ramps_at_several_turns_tell_the_least_one_without_play(advice):
 
 
 def test_index_gives_the_pins_for_it(advice, capsys):
-    assert main(['index', '--measured', str(advice), '--load', str(LOAD), '--json']) == 0
+    assert main(['index', '--measured', str(advice), '--load', str(LOAD), '--json', '-']) == 0
     found = json.loads(capsys.readouterr().out)
     least = json.loads(advice.read_text('utf-8'))['preload']['least']
     # The upper end of the interval suffices with a probability of 97.5 %.
@@ -69,7 +69,7 @@ def test_index_gives_the_pins_for_it(advice, capsys):
 def test_index_for_another_load_needs_less(advice, capsys):
     turns = []
     for load in ([], ['--load', '1'], ['--load', '2']):
-        assert main(['index', '--measured', str(advice), *load, '--json']) == 0
+        assert main(['index', '--measured', str(advice), *load, '--json', '-']) == 0
         turns.append(json.loads(capsys.readouterr().out)['measured']['least'])
     assert turns[0]['low'] <= GEAR.end <= turns[0]['high']
     assert turns[1]['low'] <= GEAR.least(1.0) <= turns[1]['high']
