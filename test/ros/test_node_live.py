@@ -1019,9 +1019,10 @@ def test_files_of_other_nodes_only_are_refused_at_the_start(tmp_path, arguments,
         file.write_text(f'/{name}:\n  ros__parameters: {{ring_teeth: 90}}\n')
     options = [part for file in files for part in ('--params-file', str(file))]
     [line] = refusal(tmp_path, '--ros-args', *options, *arguments)
+    hint = '; did you mean `/left/gear_state`?' if node.startswith('/left') else ''
     assert line == (
         f'gear_state_publisher: {files[0]}: no parameters of {node} in it, only of '
-        f'/left/gear_state; {files[1]}: no parameters of {node} in it, only of /other'
+        f'/left/gear_state{hint}; {files[1]}: no parameters of {node} in it, only of /other'
     )
 
 
