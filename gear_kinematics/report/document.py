@@ -134,6 +134,12 @@ class Finding:
 
     kind: Literal['error', 'finding']
     text: str
+    time: float | None = None
+    """The moment that it is about, on the x axis of the figure."""
+
+
+_LANE = 0.14
+"""Height of a lane / height of other panels."""
 
 
 class Pen(StrEnum):
@@ -192,6 +198,9 @@ class Panel:
     """Positions on the x axis with their texts, instead of numbers."""
     equal: bool = False
     """Whether both axes have the same scale, as in a drawing."""
+    lanes: bool = False
+    """Whether the lines are lanes of events, named by the levels: y has no meaning, and NaN ends
+    an event."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -202,6 +211,11 @@ class Figure:
     stacked: bool = False
     columns: int | None = None
     """Most panels side by side; None: all of them."""
+
+    @property
+    def heights(self) -> list[float]:
+        """Heights of stacked panels, in relation to each other."""
+        return [_LANE * (1 + len(p.lines)) if p.lanes else 1.0 for p in self.panels]
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -237,6 +251,8 @@ class MovingMechanism:
     """Angle of the rotor, (n,), degrees."""
     output: Array
     """Angle of the output shaft, (n,), degrees."""
+    start: int = 0
+    """Index of the sample that is shown first."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,7 +280,23 @@ class Section:
     mechanism: MovingMechanism | None = None
     drawing: str = ''
     """SVG."""
+    picture_first: bool = False
+    """Whether a page begins with the figure, below the first finding, and folds the tables."""
+    key: Table | None = None
+    """What a page shows above such a figure."""
     cases: tuple[Case, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """How a report was made."""
+
+    version: str
+    date: str
+    command: str
+    """As typed in a shell."""
+    configs: tuple[tuple[str, str], ...] = ()
+    """Parameter files with their SHA-256."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -281,6 +313,7 @@ class Document:
     """A row for each section; shown if there are several."""
     totals: str = ''
     """Summary of the sections in one line."""
+    origin: Origin | None = None
 
     @property
     def figure(self) -> Figure | None:

@@ -20,8 +20,8 @@ from gear_kinematics.report.document import (
 
 _GAP = 0.12
 """Gap between panels side by side / width of the figure."""
-_STACK_GAP = 0.05
-"""Gap between stacked panels / height of the figure."""
+_STACK_GAP = 0.2
+"""Gap between stacked panels / height of a panel with its gap."""
 _ROW_GAP, _TICK_GAP = 0.2, 0.3
 """Gap between rows of panels / height of the figure, without and with upright texts of ticks."""
 _TICK_ROOM = 50
@@ -40,37 +40,43 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
     """Return the data and the layout of a figure.
 
     Args:
-        figure: the figure; if it is stacked, its lines have the same x.
+        figure: the figure.
         mechanism: moves with the x axis of the figure.
 
     Returns:
-        `data` and `layout` of plotly; `time`, the x of all lines, if the panels are stacked;
+        `data` and `layout` of plotly; `time`, the x of all stacked lines without one of their own;
         `turned`, the angles of rotor and output in degrees, if there is a mechanism.
     """
     panels = figure.panels
-    several = any(len({line.name for line in panel.lines}) > 1 for panel in panels)
-    below = _TICK_GAP if any(map(tick_angle, panels)) else 0.18
-    legend = {'showlegend': several, 'legend': {'orientation': 'h', 'y': -below}}
-    layout: dict[str, Any] = {'shapes': [], 'annotations': [], **legend}
+    layout: dict[str, Any] = {'shapes': [], 'annotations': [], **_legend(figure)}
     plots: dict[str, Any] = {'data': [], 'layout': layout}
+    time = None
     if figure.stacked:
-        plots['time'] = _rounded(panels[0].lines[0].x)
+        time = mechanism.time if mechanism else panels[0].lines[0].x
+        plots['time'] = _rounded(time)
     else:
         layout['hovermode'] = 'closest'
     named: set[str] = set()
     for k, panel in enumerate(panels, 1):
+        # Where there is only one line, the axis names it.
+        told = not panel.lanes and len({line.name for line in panel.lines}) > 1
         x = 'x' if figure.stacked else f'x{k}'
         scale = SymmetricLog.of(panel) if panel.scale == 'symlog' else None
         layout |= _axes(figure, panel, k, scale)
         for line in panel.lines:
             trace = _stacked(line, panel, scale) if figure.stacked else _aside(line, x)
+            if time is not None and not np.array_equal(line.x, time, equal_nan=True):
+                trace['x'] = _rounded(line.x)
             trace['yaxis'] = f'y{k}'
-            trace |= {'legendgroup': line.name, 'showlegend': line.name not in named}
-            plots['data'].append(_styled(trace, line))
-            named.add(line.name)
+            shown = told and line.name not in named
+            trace |= {'legendgroup': line.name, 'showlegend': shown}
+            plots['data'].append(_styled(trace, line, panel))
+            if shown:
+                named.add(line.name)
         layout['shapes'] += [_mark(place, x, k) for place, _ in panel.marks]
         layout['shapes'] += [
-            _level(scale(y) if scale else y, text, x, k) for y, text in panel.levels
+            _level(scale(y) if scale else y, text, x, k, 'faint' if panel.lanes else 'fail')
+            for y, text in panel.levels
         ]
         layout['annotations'] += [
             _note(math.log10(place) if panel.scale == 'log' else place, text, x, k)
@@ -86,6 +92,19 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
         cursor = _line('x', (0, 0), 'paper', (0, 1), meta='text', line={'dash': 'solid'})
         layout['shapes'].append(cursor)
     return plots
+
+
+def _legend(figure: Figure) -> dict[str, Any]:
+    """Return the place of the legend, off the curves: above stacked panels, or below others."""
+    panels = figure.panels
+    several = any(len({line.name for line in panel.lines}) > 1 for panel in panels)
+    below = _TICK_GAP if any(map(tick_angle, panels)) else 0.18
+    place = (
+        {'y': 1.0, 'yanchor': 'bottom', 'x': 1.0, 'xanchor': 'right'}
+        if figure.stacked
+        else {'y': -below}
+    )
+    return {'showlegend': several, 'legend': {'orientation': 'h', **place}}
 
 
 def _axes(
@@ -106,16 +125,21 @@ def _axes(
         y['range'] = [math.log10(panel.low), math.log10(2.0 * top)]
     if panel.equal:
         y['scaleanchor'] = 'x' if k == 1 else f'x{k}'
+    if panel.lanes:
+        y |= {'showticklabels': False, 'showgrid': False, 'zeroline': False}
+        y['range'] = list(lane_range(panel))
     if panel.ticks:
         values, texts = zip(*panel.ticks, strict=True)
         x |= {'tickvals': values, 'ticktext': [escape(text) for text in texts]}
         x |= {'tickangle': -tick_angle(panel), 'range': tick_range(panel), 'zeroline': False}
     if figure.stacked:
-        height = (1.0 + _STACK_GAP) / count
-        top = 1.0 - (k - 1) * height
+        heights = figure.heights
+        whole = sum(heights) - _STACK_GAP  # there is no gap below the last one
+        top = 1.0 - sum(heights[: k - 1]) / whole
+        bottom = top - (heights[k - 1] - _STACK_GAP) / whole
         return {
             'xaxis': x | {'anchor': f'y{count}'},
-            f'yaxis{k}': y | {'domain': [max(0.0, top - height + _STACK_GAP), top]},
+            f'yaxis{k}': y | {'domain': [max(0.0, bottom), top]},
         }
     rows, columns = figure.shape
     row, column = divmod(k - 1, columns)
@@ -135,12 +159,19 @@ def tick_range(panel: Panel) -> tuple[float, float]:
     return panel.ticks[0][0] - 0.5, panel.ticks[-1][0] + 0.5
 
 
+def lane_range(panel: Panel) -> tuple[float, float]:
+    """Ends of the y axis of lanes, so that the name of each has room below it."""
+    return -len(panel.lines) - 0.1, 0.6
+
+
 def tick_angle(panel: Panel) -> float:
     """Degrees by which the texts of ticks are turned, to find room side by side."""
     return 90.0 if sum(len(text) for _, text in panel.ticks) > _TICK_ROOM else 0.0
 
 
 def _stacked(line: Line, panel: Panel, scale: 'SymmetricLog | None') -> dict[str, Any]:
+    if panel.lanes:
+        return {'y': _rounded(line.y), 'hovertemplate': f'{escape(line.name)}<extra></extra>'}
     unit = panel.y_label.partition('[')[2].rstrip(']')
     if not scale:
         return {'y': _rounded(line.y), 'hovertemplate': f'%{{y:.8~g}} {unit}'}
@@ -155,7 +186,7 @@ def _aside(line: Line, x: str) -> dict[str, Any]:
     return {'x': _rounded(line.x, 6), 'y': _rounded(line.y, 6), 'xaxis': x}
 
 
-def _styled(trace: dict[str, Any], line: Line) -> dict[str, Any]:
+def _styled(trace: dict[str, Any], line: Line, panel: Panel) -> dict[str, Any]:
     trace |= {'name': line.name, 'meta': line.pen}
     if line.error is not None:
         trace['error_y'] = {'type': 'data', 'array': _rounded(line.error, 4), 'thickness': 1}
@@ -165,6 +196,8 @@ def _styled(trace: dict[str, Any], line: Line) -> dict[str, Any]:
         trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > FEW else 8}}
     if line.pen == Pen.MODEL:
         trace['line'] = {'dash': 'dash'}
+    if panel.lanes:  # an instant is a line without length
+        trace |= {'mode': 'lines+markers', 'line': {'width': 4}, 'marker': {'size': 5}}
     return trace
 
 
@@ -224,10 +257,10 @@ def _mark(place: float, x: str, k: int) -> dict[str, Any]:
     return _line(x, (place, place), f'y{k} domain', (0, 1), meta='faint')
 
 
-def _level(height: float, text: str, x: str, k: int) -> dict[str, Any]:
+def _level(height: float, text: str, x: str, k: int, colour: str) -> dict[str, Any]:
     # Inside the plot, where there is always room.
     label = {'text': escape(text), 'textposition': 'start', 'yanchor': 'top'}
-    return _line(f'{x} domain', (0, 1), f'y{k}', (height, height), label=label)
+    return _line(f'{x} domain', (0, 1), f'y{k}', (height, height), label=label, meta=colour)
 
 
 def _line(

@@ -84,7 +84,8 @@ def _controls(mechanism: MovingMechanism) -> str:
     return (
         '<div class="controls"><button type="button" disabled>Play</button>'
         f'<select aria-label="speed">{speeds}</select><output></output>'
-        f'<input type="range" min="0" max="{len(mechanism.time) - 1}" step="1" value="0" '
+        f'<input type="range" min="0" max="{len(mechanism.time) - 1}" step="1" '
+        f'value="{mechanism.start}" '
         'disabled aria-label="time"></div>\n'
     )
 

@@ -8,7 +8,7 @@
     const clock = view.querySelector('output');
     const cursor = `shapes[${layout.shapes.length - 1}]`;
     const end = time.length - 1;
-    let position = 0;
+    let position = slider.valueAsNumber;
     let shown = 0; // requested animation frames, if any
     let played = 0;
 
@@ -64,7 +64,11 @@
       play(document.timeline.currentTime);
     });
     slider.addEventListener('input', () => move(slider.valueAsNumber));
-    figure.on('plotly_hover', ({points}) => move(points[0].pointNumber));
+    // Not every line has a point for each sample.
+    const nearest = moment => time.reduce(
+      (best, at, k) => Math.abs(at - moment) < Math.abs(time[best] - moment) ? k : best, 0);
+    figure.on('plotly_hover', ({points}) => move(nearest(points[0].x)));
+    figure.addEventListener('moment', ({detail}) => move(nearest(detail)));
     button.disabled = slider.disabled = false;
     return show;
   }

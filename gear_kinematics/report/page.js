@@ -60,4 +60,17 @@
   addEventListener('beforeprint', () => {
     for (const element of figures.keys()) if (!element.data) draw(element);
   });
+
+  // Findings lead to their moment: the time axis shows it with a twentieth of the whole around it.
+  document.addEventListener('click', ({target}) => {
+    const link = target.closest('a[data-time]');
+    if (!link) return;
+    const element = document.getElementById(link.hash.slice(1));
+    if (!element.data) draw(element);
+    const {time} = figures.get(element);
+    const moment = Number(link.dataset.time);
+    const around = (time[time.length - 1] - time[0]) / 40 || 1;
+    Plotly.relayout(element, {'xaxis.range': [moment - around, moment + around]});
+    element.dispatchEvent(new CustomEvent('moment', {detail: moment}));
+  });
 })();

@@ -51,14 +51,11 @@ class CorrectedTopic(JointStateTopic):
         self._note_strangers(rows, stamp)
         turns = samples['turns'] + (self._unseen.of(samples['stretch']) if self._unseen else 0.0)
         rotor_angle = TURN * turns + samples['angle']
-        recorded = self._states.values[rows].T
-        compared = [
-            (~np.isnan(least), np.maximum(np.maximum(least - value, value - most), 0.0))
-            for value, (least, most) in zip(
-                recorded, self._expected(samples | {'turns': turns}), strict=False
-            )
-        ]
-        self._add_errors(rows, stamp, rotor_angle, compared)
+        least, most = np.stack(self._expected(samples | {'turns': turns}), axis=-1)
+        recorded = self._states.values[rows, : least.shape[-1]]
+        # Any value between them is as expected.
+        nearest = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
+        self._add_errors(rows, stamp, rotor_angle, recorded, nearest)
 
     def _expected(self, samples: Columns) -> Sequence[tuple[Array, Array]]:
         """The least and the greatest value of each field; NaN where it is absent."""
@@ -100,3 +97,12 @@ CORRECTED: Mapping[str, type[CorrectedTopic]] = {
     CORRECTED_INTERVAL: CorrectedInterval,
 }
 """What compares each of CORRECTED_TOPICS."""
+
+
+def why_unjudged(calibration: Calibration | None, *, single_turn: bool) -> str:
+    """Return why the corrected output cannot be judged; an empty text if it can."""
+    if not calibration:
+        return '--calibration names its calibration'
+    if single_turn and calibration.period > 1:
+        return 'a recording does not tell when a single-turn encoder was referenced'
+    return ''

@@ -5,14 +5,18 @@ message is looked up only where a run ends. Memory is bounded by a window of sam
 """
 
 from collections import Counter
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.validation.diagnosis import UnseenTurns
-from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
-from gear_kinematics.validation.report import FieldReport, TopicReport
+from gear_kinematics.validation.field_errors import FieldErrors
+from gear_kinematics.validation.occurrences import Occurrences
+from gear_kinematics.validation.recorder import NO_INPUT, Completeness, Missing, RecordedInputs
+from gear_kinematics.validation.report import TopicReport
+from gear_kinematics.validation.series import RecordedField, SeriesRecorder
 
 Array = NDArray[Any]
 Columns = dict[str, Array]
@@ -55,11 +59,9 @@ class Matcher:
     def __init__(self) -> None:
         self.messages = 0
         self.compared = 0
-        self.extra = 0
+        self.extra = Occurrences()
         self.duplicates = 0
-        self.out_of_order = 0
-        self.first_extra: int | None = None
-        self.first_out_of_order: int | None = None
+        self.out_of_order = Occurrences()
         self.matched = np.zeros(0, bool)
         """Whether each sample of the window has its message."""
         self._next = 0
@@ -77,10 +79,7 @@ class Matcher:
         before = stamps[0] - 1 if self._last_stamp is None else self._last_stamp
         steps = np.diff(stamps, prepend=before)
         self.duplicates += int(np.count_nonzero(steps == 0))
-        disordered = np.flatnonzero((steps < 0) & (steps >= -_RESTART))
-        self.out_of_order += len(disordered)
-        if len(disordered) and self.first_out_of_order is None:
-            self.first_out_of_order = int(stamps[disordered[0]])
+        self.out_of_order.add(stamps[(steps < 0) & (steps >= -_RESTART)])
         self._last_stamp = int(stamps[-1])
 
     def match(self, stamps: Array, window: Array) -> Array:
@@ -103,12 +102,6 @@ class Matcher:
                 k += 1
         self.compared += int(np.count_nonzero(index >= 0))
         return index
-
-    def give_up(self, stamps: Array) -> None:
-        """Count messages as extra, by their stamps."""
-        self.extra += len(stamps)
-        if len(stamps) and self.first_extra is None:
-            self.first_extra = int(stamps[0])
 
     def drop(self, count: int) -> None:
         """Drop the oldest samples of the window."""
@@ -157,12 +150,17 @@ class Faults:
 class OutputTopic:
     """One output topic: matches its messages, holds back late ones and collects their faults."""
 
-    def __init__(self, unseen: UnseenTurns | None) -> None:
+    def __init__(self, unseen: UnseenTurns | None, *errors: FieldErrors) -> None:
         """Start without messages.
 
         Args:
             unseen: unseen turns, if the rotor has a single-turn encoder.
+            errors: of the fields.
         """
+        self.errors = errors
+        self.series = SeriesRecorder(
+            {field.name: RecordedField(field.tolerance, field.parts) for field in errors}
+        )
         self.matcher = Matcher()
         self.compared: dict[str, Array] = {}
         """Columns of the last compared batch, for checks and plots."""
@@ -197,16 +195,13 @@ class OutputTopic:
         self._late = [messages[row] for row in waiting], [received[row] for row in waiting]
         lacking = inputs.lack(times[given_up], stamps[given_up])
         self._unrecorded += int(np.count_nonzero(lacking))
-        self.matcher.give_up(stamps[given_up[~lacking]])
+        self.matcher.extra.add(stamps[given_up[~lacking]])
         self._compare(usable[found], window.rows(index[found]))
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         raise NotImplementedError
 
     def _compare(self, rows: Array, samples: Columns) -> None:
-        raise NotImplementedError
-
-    def _fields(self) -> tuple[FieldReport, ...]:
         raise NotImplementedError
 
     def report(self, topic: str, missing: Missing) -> TopicReport:
@@ -221,14 +216,23 @@ class OutputTopic:
             topic,
             messages=matcher.messages,
             compared=matcher.compared,
-            missing=missing.count,
-            extra=matcher.extra,
+            missing=missing.inputs.count,
+            extra=matcher.extra.count,
             duplicates=matcher.duplicates,
-            out_of_order=matcher.out_of_order,
-            fields=self._fields(),
-            first_missing=missing.first,
-            first_extra=matcher.first_extra,
-            first_out_of_order=matcher.first_out_of_order,
+            out_of_order=matcher.out_of_order.count,
+            fields=tuple(errors.report() for errors in self.errors),
+            first_missing=missing.inputs.first,
+            first_extra=matcher.extra.first,
+            first_out_of_order=matcher.out_of_order.first,
             faults=self._faults.sentences(),
             left_out=dict(missing.left_out + Counter({NO_INPUT: self._unrecorded})),
         )
+
+
+class Group(NamedTuple):
+    """Outputs that are recorded from the same time on."""
+
+    names: Sequence[str]
+    """Of the rotor's topic and those of the outputs."""
+    outputs: Sequence[OutputTopic]
+    absences: Completeness

@@ -1,8 +1,6 @@
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
-import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -11,8 +9,9 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Gear, Mechanism, MotionState
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder, UnseenTurns
+from gear_kinematics.validation.field_errors import FieldErrors
 from gear_kinematics.validation.matching import Columns, Faults, OutputTopic
-from gear_kinematics.validation.report import FieldReport
+from gear_kinematics.validation.series import FieldSamples
 from gear_kinematics.wire.batches import (
     FIELDS,
     PoseArrays,
@@ -24,8 +23,6 @@ Array = NDArray[Any]
 
 Solver = Callable[..., MotionState]
 
-_NONE = np.zeros(0, np.int64)
-
 
 class Tolerances(NamedTuple):
     """Greatest accepted errors."""
@@ -34,64 +31,6 @@ class Tolerances(NamedTuple):
     """rad for angles, rad/s for the velocity, N·m for the effort."""
     position: float = 1e-9
     """m."""
-
-
-class FieldErrors:
-    """Statistics of the errors of one field, collected batch by batch."""
-
-    def __init__(self, name: str, unit: str, tolerance: float) -> None:
-        self._report = FieldReport(name, unit, tolerance)
-        self._squares = 0.0
-
-    @property
-    def passed(self) -> bool:
-        """Whether every sample so far is within the tolerance."""
-        return self._report.passed
-
-    @property
-    def worst(self) -> float:
-        """The greatest error so far."""
-        return self._report.max_error
-
-    def update(
-        self, error: Array, stamp: Array, rotor_angle: Array, absent: Array = _NONE
-    ) -> None:
-        """Add absolute errors (n,), and the stamps of samples that lack the field, (m,)."""
-        report = self._report
-        finite = np.isfinite(error)
-        self._report = report = replace(
-            report,
-            compared=report.compared + len(error),
-            non_finite=report.non_finite + int(np.count_nonzero(~finite)),
-            first_non_finite=_first(report.first_non_finite, stamp[~finite]),
-            absent=report.absent + len(absent),
-            first_absent=_first(report.first_absent, absent),
-        )
-        if not finite.all():
-            error, stamp, rotor_angle = error[finite], stamp[finite], rotor_angle[finite]
-        self._squares += float(error @ error)
-        if not len(error):
-            return
-        worst = int(np.argmax(error))
-        if error[worst] <= report.max_error:
-            return
-        self._report = replace(
-            report,
-            max_error=float(error[worst]),
-            worst_stamp=int(stamp[worst]),
-            worst_rotor_angle=float(rotor_angle[worst]),
-        )
-
-    def report(self) -> FieldReport:
-        """Report on everything so far."""
-        finite = self._report.compared - self._report.non_finite
-        return replace(
-            self._report, rms_error=math.sqrt(self._squares / finite) if finite else 0.0
-        )
-
-
-def _first(known: int | None, stamps: Array) -> int | None:
-    return int(stamps[0]) if known is None and len(stamps) else known
 
 
 class JointStateTopic(OutputTopic):
@@ -108,18 +47,15 @@ class JointStateTopic(OutputTopic):
         solver: Solver,
         unseen: UnseenTurns | None,
     ) -> None:
-        super().__init__(unseen)
+        super().__init__(
+            unseen,
+            *(FieldErrors(name, unit, tolerances.angle) for name, unit in self.units.items()),
+        )
         self._gear = gear
         self._solver = solver
         self.joint = joint
         self.offset = 0.0
         """Known offset of the recorded angle, rad."""
-        self._errors = tuple(
-            FieldErrors(name, unit, tolerances.angle) for name, unit in self.units.items()
-        )
-
-    def _fields(self) -> tuple[FieldReport, ...]:
-        return tuple(errors.report() for errors in self._errors)
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._states = decode_joint_states(messages, self.joint)
@@ -134,17 +70,22 @@ class JointStateTopic(OutputTopic):
         rows: Array,
         stamp: Array,
         rotor_angle: Array,
-        compared: Iterable[tuple[Array, Array]],
+        recorded: Array,
+        expected: Array,
     ) -> None:
-        """Add the errors of the fields: for each whether it is wanted, and its error, (n,)."""
-        for column, (errors, (wanted, error)) in enumerate(
-            zip(self._errors, compared, strict=True)
-        ):
-            there = self._states.present[rows, column]
-            both = wanted & there
+        """Add what was recorded and expected of the fields, (n, fields); NaN is not expected."""
+        signed = recorded - expected
+        fields = []
+        for column, errors in enumerate(self.errors):
+            wanted, there = ~np.isnan(expected[:, column]), self._states.present[rows, column]
+            both, error = wanted & there, signed[:, column]
             errors.update(
-                error[both], stamp[both], rotor_angle[both], absent=stamp[wanted != there]
+                np.abs(error[both]), stamp[both], rotor_angle[both], absent=stamp[wanted != there]
             )
+            part = slice(column, column + 1)
+            samples = _samples(recorded[:, part], expected[:, part], error)
+            fields.append(samples._replace(error=np.where(both, samples.error, np.nan)))
+        self.series.update(stamp, rotor_angle, *fields)
 
     def _ideal_angle(self, turns: Array, angle: Array) -> Array:
         """The ideal output angle at rotor angles of 2π turns + angle, (n,), rad."""
@@ -158,6 +99,10 @@ STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
 """Units of the fields of a JointState by their names."""
 
 
+def _samples(recorded: Array, expected: Array, error: Array) -> FieldSamples:
+    return FieldSamples(recorded, expected, np.where(np.isfinite(error), error, np.inf))
+
+
 class OutputState(JointStateTopic):
     """output_state."""
 
@@ -167,7 +112,7 @@ class OutputState(JointStateTopic):
         """Take the arguments of `JointStateTopic`."""
         super().__init__(*arguments)
         self.fit = AngleFit()
-        self.position = self._errors[0]
+        self.position = self.errors[0]
 
     def _compare(self, rows: Array, samples: Columns) -> None:
         stamp, stretch = samples['stamp'], samples['stretch']
@@ -184,17 +129,15 @@ class OutputState(JointStateTopic):
         velocity = self._gear.gear_ratio.output_rate(samples['velocity'])
         effort = float(self._gear.gear_ratio) * samples['effort']
         needed = np.stack([angle, velocity, effort], axis=-1)
-        signed = recorded - needed
-        self._add_errors(
-            rows, stamp, rotor_angle, zip(~np.isnan(needed.T), np.abs(signed.T), strict=True)
-        )
-        usable = np.isfinite(signed[:, 0])
-        self.fit.update(rotor_angle[usable], recorded[usable, 0], signed[usable, 0])
+        self._add_errors(rows, stamp, rotor_angle, recorded, needed)
+        error = recorded[:, 0] - needed[:, 0]
+        usable = np.isfinite(error)
+        self.fit.update(rotor_angle[usable], recorded[usable, 0], error[usable])
         self.compared = {
             'stamp': stamp[usable],
             'rotor_angle': rotor_angle[usable],
             'output_angle': recorded[usable, 0],
-            'error': signed[usable, 0],
+            'error': error[usable],
         }
 
 
@@ -209,15 +152,16 @@ class BodyPoses(OutputTopic):
         solver: Solver,
         unseen: UnseenTurns | None,
     ) -> None:
-        super().__init__(unseen)
+        branches = [branch.name for branch in mechanism.branches]
+        self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
+        coordinates = [f'{body} {axis}' for body in self._bodies for axis in 'xyz']
+        self._position = FieldErrors('position', 'm', tolerances.position, coordinates)
+        self._orientation = FieldErrors('orientation', 'rad', tolerances.angle, self._bodies)
+        super().__init__(unseen, self._position, self._orientation)
         self._mechanism = mechanism
         self._solver = solver
         self.frame_id = frame_id
-        branches = [branch.name for branch in mechanism.branches]
-        self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
         self._axial = np.array([b.axial_position for b in mechanism.branches] * 2)
-        self._position = FieldErrors('position', 'm', tolerances.position)
-        self._orientation = FieldErrors('orientation', 'rad', tolerances.angle)
         self._order = PoseOrder(self._bodies, tolerances.position)
         self._turned_round = Faults()
         # Learned from this topic alone, which is less certain than from output_state.
@@ -228,12 +172,13 @@ class BodyPoses(OutputTopic):
         """Greatest position error, m."""
         return self._position.worst
 
-    def findings(self) -> tuple[str, ...]:
-        """Describe the order of the poses and the signs of quaternions, in sentences."""
-        return (*self._order.findings(self.matcher.compared), *self._turned_round.sentences())
+    def order(self) -> Iterator[str]:
+        """Describe poses in another order, in sentences."""
+        return self._order.findings(self.matcher.compared)
 
-    def _fields(self) -> tuple[FieldReport, ...]:
-        return self._position.report(), self._orientation.report()
+    def turned_round(self) -> tuple[str, ...]:
+        """Describe quaternions with the other sign, in sentences."""
+        return self._turned_round.sentences()
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))
@@ -255,7 +200,8 @@ class BodyPoses(OutputTopic):
         position = np.hypot(planar, poses[..., 2] - self._axial).max(axis=1)
         self._position.update(position, stamp, rotor_angle)
         axial = np.broadcast_to(self._axial[:, np.newaxis], (*centres.shape[:2], 1))
-        self._order.update(poses[..., :3], np.append(centres, axial, axis=-1), position, stamp)
+        expected = np.append(centres, axial, axis=-1)
+        self._order.update(poses[..., :3], expected, position, stamp)
         # A quaternion and its negative are the same rotation.
         half = 0.5 * state.output_turn_angle[:, np.newaxis]
         sine, cosine = np.sin(half), np.cos(half)
@@ -271,6 +217,19 @@ class BodyPoses(OutputTopic):
             stamp[(poses[..., 6] < 0.0).any(axis=1)],
         )
         self.compared = {'stamp': stamp, 'error': position}
+        angle = state.output_turn_angle[:, np.newaxis]
+        recorded = 2.0 * np.arctan2(poses[..., 5], poses[..., 6])
+        shape = len(rows), 3 * len(self._bodies)
+        self.series.update(
+            stamp,
+            rotor_angle,
+            _samples(poses[..., :3].reshape(shape), expected.reshape(shape), position),
+            _samples(
+                recorded - TURN * np.round((recorded - angle) / TURN),
+                np.broadcast_to(angle, recorded.shape),
+                orientation,
+            ),
+        )
 
     def _unseen_turns(self, poses: Array, samples: Columns) -> Array | float:
         if not self._unseen:

@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.validation.occurrences import Occurrences
+
 Array = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
@@ -49,16 +51,16 @@ class Missing:
     """The missing outputs of one topic."""
 
     def __init__(self) -> None:
-        self.count = 0
-        self.first: int | None = None
-        """Stamp of the first input without its output."""
+        self.inputs = Occurrences()
+        """The stamps of inputs without their output."""
         self.left_out: Counter[str] = Counter()
         """Numbers of missing outputs that are not judged, by cause."""
         self.ended_early: float | None = None
         """s from the last input with an output to the last input, if that is too long."""
+        self._unjudged = Occurrences()
         self._last_answered: int | None = None  # received, ns
-        self._tail = 0
-        self._tail_first: tuple[int, int] | None = None  # received, stamp; ns
+        self._tail = Occurrences()
+        self._tail_received: int | None = None  # ns, of its first
 
     def update(self, received: Array, stamp: Array, answered: Flags, cause: str = '') -> None:
         """Process the next inputs.
@@ -72,15 +74,15 @@ class Missing:
         with_output = np.flatnonzero(answered)
         if cause:
             self.left_out[cause] += len(answered) - len(with_output)
+            self._unjudged.add(stamp[~answered])
         else:
             end = int(with_output[-1]) + 1 if len(with_output) else 0
             if end:  # those after the last output are missing only if another one follows
                 self._count_tail()
-            inner = np.flatnonzero(~answered[:end])
-            self._count(len(inner), int(stamp[inner[0]]) if len(inner) else None)
-            if not self._tail and end < len(stamp):
-                self._tail_first = int(received[end]), int(stamp[end])
-            self._tail += len(stamp) - end
+            self.inputs.add(stamp[:end][~answered[:end]])
+            if not self._tail.count and end < len(stamp):
+                self._tail_received = int(received[end])
+            self._tail.add(stamp[end:])
         if len(with_output):
             self._last_answered = int(received[with_output[-1]])
 
@@ -93,26 +95,20 @@ class Missing:
         """
         if self._last_answered is None or last_received is None:
             self._count_tail()
-            self._count(self.left_out.total(), self.first)
+            self.inputs.take_over(self._unjudged)
             self.left_out.clear()
             return
-        late = self._tail_first is not None and last_received - self._tail_first[0] > _END
+        late = self._tail_received is not None and last_received - self._tail_received > _END
         if late:
             self.ended_early = (last_received - self._last_answered) * 1e-9
         if late or strict:
             self._count_tail()
         else:
-            self.left_out[AFTER] += self._tail
-
-    def _count(self, count: int, first: int | None) -> None:
-        self.count += count
-        if count and self.first is None:
-            self.first = first
+            self.left_out[AFTER] += self._tail.count
 
     def _count_tail(self) -> None:
-        if self._tail_first:
-            self._count(self._tail, self._tail_first[1])
-        self._tail, self._tail_first = 0, None
+        self.inputs.take_over(self._tail)
+        self._tail, self._tail_received = Occurrences(), None
 
 
 class Completeness:

@@ -129,18 +129,42 @@ class InputReport:
 
 
 @dataclass(frozen=True, slots=True)
-class Series:
-    """A thinned-out record over time for plots; all lists have the same length."""
+class Curve:
+    """A field over the time of its series; the lists are as long."""
 
+    field: str
+    """Name of the field."""
+    part: str
+    """What of the field: the coordinate of a pose that is farthest off, such as `oldham_b x`."""
+    recorded: list[float]
+    expected: list[float]
+    error: list[float]
+    """The worst of each interval: recorded minus expected, or the magnitude of a vector."""
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A thinned-out record of a topic over time for plots; all lists have the same length."""
+
+    topic: str
     time: list[float]
-    """s, since the first sample."""
+    """s, since the first sample of the input."""
     rotor_angle: list[float]
-    output_angle: list[float]
-    """As recorded."""
-    angle_error: list[float]
-    """Recorded minus recomputed output angle, the worst of each interval."""
-    position_error: list[float]
-    """m, the worst of all bodies and of each interval."""
+    curves: tuple[Curve, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Lane:
+    """When something happened on a topic."""
+
+    topic: str
+    event: str
+    """Such as `missing`."""
+    count: int
+    spans: list[tuple[float, float]]
+    """First and last time, s, since the first sample of the input; neighbours are joined."""
+    fails: bool = True
+    """Whether the bag fails because of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +186,12 @@ class BagReport:
     topics: tuple[TopicReport, ...] = ()
     findings: tuple[str, ...] = ()
     """Sentences about a constant offset, another mechanism or the health of the input."""
-    series: Series | None = None
+    causes: tuple[str, ...] = ()
+    """Those findings that explain why the bag fails."""
+    series: tuple[Series, ...] = ()
+    """Of the output topics with anything to compare."""
+    lanes: tuple[Lane, ...] = ()
+    """What happened on the topics, where anything did."""
     mechanism: Mechanism | None = None
     """The mechanism for which the outputs were recomputed."""
     module: float = 0.0

@@ -1,10 +1,10 @@
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,13 +21,16 @@ from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
     CorrectedTopic,
     RecomputedCorrection,
+    why_unjudged,
 )
 from gear_kinematics.validation.diagnosis import UnseenTurns, diagnose
-from gear_kinematics.validation.matching import WINDOW, OutputTopic, Window
+from gear_kinematics.validation.input_health import InputHealth
+from gear_kinematics.validation.lanes import lanes
+from gear_kinematics.validation.matching import WINDOW, Group, OutputTopic, Window
+from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Solver, Tolerances
 from gear_kinematics.validation.recorder import Completeness, Inputs, Missing, RecordedInputs
 from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.timeline import InputHealth, SeriesRecorder
 from gear_kinematics.wire.cdr import MalformedMessageError, joint_state_layout, pose_array_layout
 
 Array = NDArray[Any]
@@ -80,6 +83,7 @@ class Validator:
         self._gear = gear = gear_from_mapping(parameters)
         self._input = RotorInput(InputSettings.from_mapping(parameters))
         self._health = InputHealth(parameters['max_rotor_speed'])
+        self._rejected = Occurrences()
         self._window = Window()
         self._inputs = RecordedInputs(strict=strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
@@ -95,17 +99,16 @@ class Validator:
             self.poses = BodyPoses(prefix + _FRAME, gear, *common)
             outputs = self.output, self.poses
         names = topics[: 1 + len(outputs)]
-        self._groups = [_Group(names, outputs, Completeness(len(outputs), strict=strict))]
+        self._groups = [Group(names, outputs, Completeness(len(outputs), strict=strict))]
         self._unjudged = 0  # messages of the corrected output
-        self._why_unjudged = _why_unjudged(calibration, single_turn=single_turn)
+        self._why_unjudged = why_unjudged(calibration, single_turn=single_turn)
         self._correction = None
         if calibration and corrected and not self._why_unjudged:
             self._correction = RecomputedCorrection(calibration)
             for topic, name in corrected.items():
                 output = CORRECTED[topic](joint, gear, *common)
                 absences = Completeness(1, strict=strict)
-                self._groups.append(_Group((topics.rotor, name), (output,), absences))
-        self._series = SeriesRecorder()
+                self._groups.append(Group((topics.rotor, name), (output,), absences))
         self._findings: list[str] = []
         self._checks = [make(parameters) for make in checks.CHECKS]
 
@@ -137,6 +140,7 @@ class Validator:
         """
         self._close()
         rotor = self._health.report(self._input, self._topics.rotor)
+        start = rotor.first_stamp or 0
         topics = tuple(
             output.report(name, missing)
             for name, output, missing in self._judged()
@@ -148,8 +152,11 @@ class Validator:
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
         judgements = [found for check in self._checks for found in check.judge(rotor)]
-        failed = any(judgement.fails for judgement in judgements)
+        failed = [judgement.text for judgement in judgements if judgement.fails]
         passed = all(topic.passed for topic in topics) and not failed
+        causes, notes = tuple(self._causes()), tuple(self._notes())
+        inputs = self._topics.rotor, self._health.gaps, self._rejected
+        series = (output.series.series(name, start) for name, output, _ in self._judged())
         return BagReport(
             bag=bag,
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
@@ -158,8 +165,10 @@ class Validator:
             messages=rotor.messages + sum(topic.messages for topic in topics),
             rotor=rotor,
             topics=topics,
-            findings=(*self._findings, *self._diagnoses(), *(found.text for found in judgements)),
-            series=self._series.series(),
+            findings=(*self._findings, *causes, *notes, *(found.text for found in judgements)),
+            causes=(*failed, *causes),
+            series=tuple(found for found in series if found),
+            lanes=tuple(lanes(inputs, self._judged(), start)),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters['module'],
         )
@@ -185,7 +194,6 @@ class Validator:
         if not self._correction:
             self._unjudged += sum(len(messages.data) for messages in batch[len(self._topics) :])
         poses = self.poses.compared if self.poses else {}
-        self._series.update(self.output.compared, poses)
         for check in self._checks:
             check.update(self.output.compared, poses)
         done = np.all([output.matcher.matched for _, output, _ in self._judged()], axis=0)
@@ -196,6 +204,7 @@ class Validator:
         """Add the rotor's samples to the window."""
         samples = self._input.accept_batch(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
+        self._rejected.add(samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
         self._window.append(
             stamp=samples.stamp,
@@ -312,19 +321,16 @@ class Validator:
     def _empty_batch(self) -> _Batch:
         return tuple(TopicMessages() for _ in self._names)
 
-    def _diagnoses(self) -> Iterable[str]:
+    def _causes(self) -> Iterator[str]:
+        """Yield what explains the errors and the missing messages."""
         if not self.output.position.passed:
             found = diagnose(self._gear, self.output.fit, self._tolerances.angle)
             if found:
                 yield found
         if self.poses:
-            yield from self.poses.findings()
+            yield from self.poses.order()
         if self._input.mostly_rejected and self._input.missing_joint:
             yield f'{self._topics.rotor}: {self._input.missing_joint}'
-        if self._unseen:
-            yield from self._unseen.findings()
-        if self._unjudged:
-            yield f'the corrected output is not judged: {self._why_unjudged}'
         for topic, _, missing in self._judged():
             if missing.ended_early is not None:
                 yield (
@@ -332,19 +338,11 @@ class Validator:
                     'the node may have ended'
                 )
 
-
-class _Group(NamedTuple):
-    """Outputs that are recorded from the same time on."""
-
-    names: Sequence[str]
-    """Of the rotor's topic and those of the outputs."""
-    outputs: Sequence[OutputTopic]
-    absences: Completeness
-
-
-def _why_unjudged(calibration: Calibration | None, *, single_turn: bool) -> str:
-    if not calibration:
-        return '--calibration names its calibration'
-    if single_turn and calibration.period > 1:
-        return 'a recording does not tell when a single-turn encoder was referenced'
-    return ''
+    def _notes(self) -> Iterator[str]:
+        """Yield what fails nothing."""
+        if self.poses:
+            yield from self.poses.turned_round()
+        if self._unseen:
+            yield from self._unseen.findings()
+        if self._unjudged:
+            yield f'the corrected output is not judged: {self._why_unjudged}'

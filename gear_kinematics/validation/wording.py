@@ -1,7 +1,12 @@
 """Formulates faults and findings of a validation in sentences."""
 
+import re
+
 from gear_kinematics.report.document import Cell, Finding, number, printable
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
+
+_STAMP = re.compile(r'\bstamp (\d{1,19})\b')
+"""How every sentence names the moment that it is about."""
 
 
 def findings(report: BagReport) -> list[Finding]:
@@ -25,9 +30,18 @@ def findings(report: BagReport) -> list[Finding]:
     ]
     if left_out:
         left_out = [f'not judged, as caused by the recorder: {", ".join(left_out)}']
-    sentences = (*faults, *map(printable, report.findings), *left_out)
+    # The cause says more than its effects.
+    notes = [finding for finding in report.findings if finding not in report.causes]
+    sentences = (*map(printable, report.causes), *faults, *map(printable, notes), *left_out)
     damage = [] if report.error is None else [Finding('error', printable(report.error))]
-    return [*damage, *(Finding('finding', sentence) for sentence in sentences)]
+    return [*damage, *(_finding(sentence, report) for sentence in sentences)]
+
+
+def _finding(sentence: str, report: BagReport) -> Finding:
+    """Return a sentence with the moment that it names."""
+    named = _STAMP.search(sentence)
+    time = seconds(int(named[1]), report) if named else None
+    return Finding('finding', sentence, time)
 
 
 def topic_faults(topic: TopicReport, report: BagReport) -> list[str]:
@@ -85,10 +99,16 @@ def _stamp(stamp: int, report: BagReport) -> str:
     )
 
 
+def seconds(stamp: int, report: BagReport) -> float | None:
+    """Return the time of a stamp in ns since the first stamp of the input, s, if there is one."""
+    first = report.rotor.first_stamp if report.rotor else None
+    return None if first is None else (stamp - first) / 1e9
+
+
 def moment(stamp: int | None, report: BagReport) -> tuple[Cell, Cell]:
     """Write a stamp in ns, and its distance from the first stamp of the input in s."""
-    first = report.rotor.first_stamp if report.rotor else None
-    offset = '' if stamp is None or first is None else f'{(stamp - first) / 1e9:+.6f}'
+    time = None if stamp is None else seconds(stamp, report)
+    offset = '' if time is None else f'{time:+.6f}'
     return Cell('' if stamp is None else str(stamp), unit='ns'), Cell(offset, unit='s')
 
 

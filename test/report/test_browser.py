@@ -13,7 +13,7 @@ from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.html import to_html
 from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.report import Series
+from gear_kinematics.validation.report import Curve, Series
 
 pytestmark = pytest.mark.slow
 
@@ -45,9 +45,10 @@ def browser():
 
 @pytest.fixture(scope='module')
 def tab(browser, tmp_path_factory):
-    series = Series(TIMES, ANGLES, [0.0] * 41, [0.0] * 41, [0.0] * 41)
+    curve = Curve('position', '', *[[0.0] * 41] * 3)
+    series = Series('/output_state', TIMES, ANGLES, (curve,))
     reports = [
-        replace(samples.PASSING, series=series, mechanism=mechanism, module=module)
+        replace(samples.PASSING, series=(series,), mechanism=mechanism, module=module)
         for mechanism, module in MECHANISMS
     ]
     path = tmp_path_factory.mktemp('page') / 'report.html'
@@ -130,7 +131,7 @@ def test_slider_moves_the_cursor_of_the_plots(report):
         assert cursor['x'] + cursor['width'] / 2 == pytest.approx(
             x_of(plot(section), sample), abs=PIXEL
         )
-        assert cursor['height'] > 4 * plot(section)['height']
+        assert cursor['height'] > 3 * plot(section)['height']
 
 
 def test_cursor_in_the_plots_moves_the_mechanism(tab, report):
@@ -196,7 +197,7 @@ def test_narrow_pages_need_no_scrolling_sideways(tab, report):
     size = tab.viewport_size
     tab.set_viewport_size({'width': 360, 'height': 640})
     try:
-        expect(report[1].locator('.main-svg').first).to_have_js_property('clientWidth', 312)
+        expect(report[1].locator('.main-svg').first).to_have_js_property('clientWidth', 328)
         width = tab.evaluate('document.documentElement.clientWidth')
         expect(tab.locator('html')).to_have_js_property('scrollWidth', width)
     finally:

@@ -17,9 +17,10 @@ from plotly.offline import get_plotlyjs
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report import html as page
+from gear_kinematics.report.document import Origin
 from gear_kinematics.report.interactive import SymmetricLog, interactive
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.report import Series
+from gear_kinematics.validation.report import Curve, Series
 
 
 def to_html(reports):
@@ -47,10 +48,10 @@ def without_plotly(page):
 
 def test_plotly_is_there_once_and_only_where_there_is_something_to_plot(fleet):
     without_plotly(fleet)
-    page = to_html([samples.UNUSABLE, replace(samples.PASSING, series=None)])
+    page = to_html([samples.UNUSABLE, replace(samples.PASSING, series=())])
     assert 'Plotly' not in page
     assert "script-src 'none'" in page
-    empty = replace(samples.PASSING, series=Series([], [], [], [], []))
+    empty = replace(samples.PASSING, series=(Series('/output_state', [], []),))
     assert 'Plotly' not in to_html([empty])
 
 
@@ -81,7 +82,7 @@ def test_names_are_no_markup(fleet):
     tree = parse(without_plotly(fleet))
     assert not list(tree.iter('img'))
     assert not tree.xpath("//@*[starts-with(name(), 'on')]")
-    plotted = sum(report.series is not None for report in samples.ALL)
+    plotted = sum(bool(report.series) for report in samples.ALL)
     kinds = [script.get('type') for script in tree.iter('script')]
     assert kinds == ['application/json'] * plotted + [None, None, None]
     text = tree.text_content()
@@ -101,12 +102,19 @@ def test_figure_of_hostile_names_cannot_leave_its_script():
     assert json.loads(data) == figure(samples.HOSTILE_NAMES)
 
 
-def test_summary_leads_to_every_bag(fleet):
+def test_summary_leads_to_every_bag_and_first_to_those_that_failed(fleet):
     tree = parse(fleet)
     links = tree.xpath("//section[@id='top']//a/@href")
-    assert len(links) == len(samples.ALL)
-    for link, report in zip(links, samples.ALL, strict=True):
+    order = [int(link.removeprefix('#section-')) for link in links]
+    assert sorted(order) == list(range(len(samples.ALL)))
+    verdicts = [samples.ALL[k].verdict.value for k in order]
+    assert verdicts == ['fail'] * 4 + ['unusable'] * 3 + ['pass'] * 2
+    # In the page as in the summary, and else in the order of the bags.
+    assert tree.xpath('//main/section/@id')[1:] == [link[1:] for link in links]
+    assert [k for k in order if samples.ALL[k].verdict == 'fail'] == [1, 4, 6, 7]
+    for link, number in zip(links, order, strict=True):
         (section,) = tree.xpath(f"//section[@id='{link[1:]}']")
+        report = samples.ALL[number]
         if report.bag.isprintable() and report.bag:
             assert report.bag in section.find('h2').text_content()
     assert tree.find('.//header').text_content().split('\n')[0] == (
@@ -119,10 +127,10 @@ def test_single_bag_has_no_summary():
 
 
 def test_tables_show_what_is_bad():
-    tree = parse(to_html([replace(samples.FAILING, series=None)]))
+    tree = parse(to_html([replace(samples.FAILING, series=())]))
     bad = [cell.text for cell in tree.xpath("//td[contains(@class, 'bad')]")]
     assert bad == ['11', '8', '1', '0', '4008', '0.002', '2e8 %', '5', '1']
-    clean = parse(to_html([replace(samples.PASSING, series=None)]))
+    clean = parse(to_html([replace(samples.PASSING, series=())]))
     assert not clean.xpath(
         "//*[self::td or self::dd][contains(@class, 'bad') or contains(@class, 'notable')]"
     )
@@ -131,26 +139,159 @@ def test_tables_show_what_is_bad():
 
 
 def test_damage_faults_and_findings_are_told():
-    tree = parse(to_html([replace(samples.DAMAGED, findings=('It ran slow.',), series=None)]))
-    assert [item.text for item in tree.iter('li')] == [samples.DAMAGED.error, 'It ran slow.']
+    tree = parse(to_html([replace(samples.DAMAGED, findings=('It ran slow.',), series=())]))
+    assert [item.text for item in tree.find_class('first')] == [samples.DAMAGED.error]
+    assert [item.text for item in tree.iter('li')] == ['It ran slow.']
     assert tree.xpath('//ul/@class') == ['remarks unusable']
+
+
+def test_page_begins_with_cause_and_figure_and_ends_with_folded_tables():
+    tree = parse(without_plotly(to_html([samples.FAILING])))
+    assert tree.find('.//h1').text_content() == f'failed {samples.FAILING.bag}'
+    [section] = tree.xpath('//main/section')
+    parts = [(part.tag, part.get('class')) for part in section]
+    assert parts == [
+        ('p', 'first fail'),
+        ('details', None),
+        ('div', 'moving'),
+        ('dl', 'inline'),
+        ('details', None),
+    ]
+    assert section.find_class('first')[0].text == samples.FAILING.causes[0]
+    findings, tables = section.findall('details')
+    assert findings.find('summary').text == '10 more findings'
+    assert len(findings.findall('.//li')) == 10
+    assert tables.find('summary').text == 'Tables'
+    assert not section.xpath('.//table[not(ancestor::details)]')
+    assert not section.xpath('.//details[@open]')
+
+
+def test_few_findings_are_in_view():
+    few = replace(samples.FAILING, topics=samples.FAILING.topics[1:])
+    tree = parse(to_html([few]))
+    assert [e.text for e in tree.iter('summary')] == ['Tables']
+    assert len(tree.xpath("//ul[@class='remarks fail']/li")) == 3
+
+
+def test_findings_lead_to_their_moment():
+    rotor = replace(samples.FAILING.rotor, first_stamp=samples.START)
+    tree = parse(without_plotly(to_html([replace(samples.FAILING, rotor=rotor)])))
+    links = {link.text: link for link in tree.xpath('//a[@data-time]')}
+    times = [(text.split(':')[0], link.get('data-time')) for text, link in links.items()]
+    assert times == [
+        ('/output_state', '1'),
+        ('/output_state', '1'),
+        ('/output_state', '0'),
+        ('/output_state position', '2.5'),
+    ]
+    assert {link.get('href') for link in links.values()} == {'#figure-0'}
+    assert not parse(to_html([samples.UNUSABLE])).xpath('//a')
+
+
+def test_mechanism_stands_where_the_error_was_greatest():
+    rotor = replace(samples.FAILING.rotor, first_stamp=samples.START)
+    tree = parse(without_plotly(to_html([replace(samples.FAILING, rotor=rotor)])))
+    # The worst sample is 2.5 s from the start, and there is one every 10 ms.
+    assert tree.xpath('//input[@type="range"]/@value') == ['250']
+    missing = replace(samples.FAILING, rotor=rotor, topics=(replace(samples.OUTPUT, missing=11),))
+    tree = parse(without_plotly(to_html([missing])))
+    assert tree.xpath('//input[@type="range"]/@value') == ['100']
+    tree = parse(without_plotly(to_html([samples.PASSING])))
+    assert tree.xpath('//input[@type="range"]/@value') == ['0']
+
+
+def test_footer_tells_how_the_page_was_made():
+    made = Origin(
+        '1.2.3', '2026-11-22 12:30:00 UTC', "gearkin validate 'a b'", (('c.yaml', 'ab'),)
+    )
+    of_passing = replace(document([samples.PASSING]), origin=made)
+    footer = parse(without_plotly(page.to_html(of_passing))).find('.//footer')
+    assert [item.text for item in footer.iter('dt', 'dd')] == [
+        'gear_kinematics',
+        '1.2.3',
+        'made',
+        '2026-11-22 12:30:00 UTC',
+        'command',
+        "gearkin validate 'a b'",
+        'SHA-256 of c.yaml',
+        'ab',
+    ]
 
 
 def test_page_is_the_same_every_time(fleet):
     assert to_html(samples.ALL) == fleet
 
 
-def test_figure_has_angles_and_errors_over_the_same_time():
+def panels(plots):
+    """Give the names of the lines of each panel, from top to bottom."""
+    axes = [f'y{k}' for k in range(1, 1 + len({trace['yaxis'] for trace in plots['data']}))]
+    return [[t['name'] for t in plots['data'] if t['yaxis'] == axis] for axis in axes]
+
+
+def test_figure_begins_with_what_failed_recorded_over_expected():
     plots = figure(samples.FAILING)
-    series = samples.FAILING.series
-    assert plots['time'] == pytest.approx(series.time)
-    names = ['rotor angle', 'output angle', 'angle error', 'position error']
-    assert [trace['name'] for trace in plots['data']] == names
-    assert plots['data'][0]['y'] == pytest.approx(series.rotor_angle, rel=1e-7)
-    assert plots['data'][1]['y'] == pytest.approx(series.output_angle, rel=1e-7)
-    assert plots['data'][2]['customdata'] == pytest.approx(series.angle_error, rel=1e-3, abs=0)
-    assert plots['data'][3]['customdata'] == pytest.approx(series.position_error, rel=1e-3, abs=0)
-    domains = [plots['layout'][f'yaxis{k}']['domain'] for k in (1, 2, 3, 4)]
+    output, _ = samples.FAILING.series
+    [position] = output.curves
+    assert plots['time'] == pytest.approx(output.time)
+    assert panels(plots) == [
+        ['expected', 'recorded'],
+        ['error'],
+        ['/rotor_state gaps', '/output_state missing', '/output_state extra'],
+        ['rotor angle'],
+    ]
+    expected, recorded, error = plots['data'][:3]
+    assert expected['y'] == pytest.approx(position.expected, rel=1e-7)
+    assert recorded['y'] == pytest.approx(position.recorded, rel=1e-7)
+    assert error['customdata'] == pytest.approx(position.error, rel=1e-3, abs=0)
+    assert plots['data'][-1]['y'] == pytest.approx(output.rotor_angle, rel=1e-7)
+    shown = [trace['name'] for trace in plots['data'] if trace['showlegend']]
+    assert shown == ['expected', 'recorded']
+
+
+def test_figure_of_a_passed_bag_has_the_output_and_the_errors():
+    plots = figure(samples.PASSING)
+    assert panels(plots) == [['expected', 'recorded'], ['error'], ['error'], ['rotor angle']]
+    position = samples.PASSING.series[1].curves[0]
+    assert plots['data'][3]['customdata'] == pytest.approx(position.error, rel=1e-3, abs=0)
+
+
+def test_figure_has_a_curve_for_every_field_that_failed():
+    names = ('position', 'velocity', 'effort', 'orientation')
+    fields = tuple(replace(samples.POSITION, name=name, max_error=1.0) for name in names)
+    curves = tuple(Curve(name, '', [0.0, 1.0], [0.0, 0.0], [0.0, 1.0]) for name in names)
+    report = replace(
+        samples.FAILING,
+        topics=(replace(samples.OUTPUT, fields=fields),),
+        series=(Series('/output_state', [0.0, 1.0], [0.0, 1.0], curves),),
+        lanes=(),
+    )
+    plots = figure(report)
+    assert panels(plots) == [['expected', 'recorded'], ['error']] * 4 + [['rotor angle']]
+    titles = [note['text'] for note in plots['layout']['annotations']]
+    assert titles == [f'/output_state {name}' for name in names]
+
+
+def test_lanes_come_first_where_no_value_is_wrong():
+    """Events are lines with an end, and have their count beside their name."""
+    missing = replace(samples.FAILING, topics=(replace(samples.OUTPUT, missing=11),))
+    plots = figure(missing)
+    assert panels(plots)[0] == [f'{lane.topic} {lane.event}' for lane in samples.FAILING.lanes]
+    gaps, lost, _ = plots['data'][:3]
+    assert gaps['x'] == pytest.approx([1.76, 1.8, None, 3.09, 3.1, None], nan_ok=True)
+    assert lost['x'] == [1.0, 1.02, None, 2.0, 2.0, None]
+    texts = [shape['label']['text'] for shape in plots['layout']['shapes'] if 'label' in shape]
+    assert texts[:3] == [
+        '/rotor_state gaps: 2',
+        '/output_state missing: 11',
+        '/output_state extra: 8',
+    ]
+
+
+@pytest.mark.parametrize('report', [samples.FAILING, samples.PASSING])
+def test_panels_do_not_overlap(report):
+    layout = figure(report)['layout']
+    count = len(panels(figure(report)))
+    domains = [layout[f'yaxis{k}']['domain'] for k in range(1, count + 1)]
     assert all(0 <= low < high <= 1 for low, high in domains)
     assert all(upper[0] > lower[1] for upper, lower in pairwise(domains))
 
@@ -161,21 +302,21 @@ def test_figure_marks_the_tolerances():
     for shape in passing['layout']['shapes']:
         by_axis.setdefault(shape['yref'], []).append(shape['y0'])
     # Angle errors have a sign, position errors have none.
-    assert len(by_axis['y3']) == 2
-    assert sum(by_axis['y3']) == 0
-    assert len(by_axis['y4']) == 1
+    assert len(by_axis['y2']) == 2
+    assert sum(by_axis['y2']) == 0
+    assert len(by_axis['y3']) == 1
     # An error beyond the tolerance is drawn beyond its line.
     failing = figure(samples.FAILING)
-    line = max(shape['y0'] for shape in failing['layout']['shapes'] if shape['yref'] == 'y3')
+    line = max(shape['y0'] for shape in failing['layout']['shapes'] if shape['yref'] == 'y2')
     assert max(failing['data'][2]['y']) > line
-    assert max(passing['data'][2]['y']) < max(by_axis['y3'])
+    assert max(passing['data'][2]['y']) < max(by_axis['y2'])
 
 
 @pytest.mark.parametrize('report', [samples.PASSING, samples.FAILING, samples.EXACT])
 def test_figure_keeps_every_value_and_tick_in_view(report):
     plots = figure(report)
-    for k in (3, 4):
-        axis, heights = plots['layout'][f'yaxis{k}'], plots['data'][k - 1]['y']
+    for trace in (trace for trace in plots['data'] if trace['name'] == 'error'):
+        axis, heights = plots['layout'][f'yaxis{trace["yaxis"][1:]}'], trace['y']
         low, high = axis['range']
         assert low < min(heights)
         assert max(heights) < high
@@ -187,9 +328,11 @@ def test_figure_keeps_every_value_and_tick_in_view(report):
 def test_values_that_are_no_numbers_leave_holes():
     plots = figure(samples.NOT_FINITE)
     assert plots['time'] == [0.0, None]
-    assert plots['data'][0]['y'] == [0.0, None]
-    assert plots['data'][2]['y'] == [None, None]
-    assert plots['data'][3]['y'] == [0.0, 0.0]
+    expected, recorded, error, *_ = plots['data']
+    assert expected['y'] == [None, 1.0]
+    assert recorded['y'] == [0.0, 1.0]
+    assert error['y'] == [None, None]
+    assert plots['data'][-1]['y'] == [0.0, None]
 
 
 def test_symmetric_log_is_odd_and_rises():
@@ -248,7 +391,9 @@ MECHANISM = Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.p
 def moving(angles, period=0.001, mechanism=MECHANISM):
     count = len(angles)
     time = [period * k for k in range(count)]
-    series = Series(time, angles, [0.0] * count, [0.0] * count, [0.0] * count)
+    zeros = [0.0] * count
+    curve = Curve('position', '', zeros, zeros, zeros)
+    series = (Series('/output_state', time, angles, (curve,)),)
     return replace(samples.PASSING, series=series, mechanism=mechanism)
 
 

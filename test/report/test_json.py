@@ -90,7 +90,7 @@ def test_schema_refuses_what_is_no_report(strict, path, value):
 
 def test_everything_but_what_is_drawn_is_there():
     bag = loads(to_json([samples.FAILING]))['bags'][0]
-    drawn = {'series', 'mechanism', 'module'}
+    drawn = {'series', 'lanes', 'mechanism', 'module'}
     assert bag.keys() == {field.name for field in fields(BagReport)} - drawn
     assert bag['bag'] == 'logs/2026-11-20 Prüfstand 7/läuft.mcap'
     assert bag['rotor']['rejected'] == {'joint missing': 3, 'position not finite': 2}

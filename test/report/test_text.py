@@ -97,7 +97,9 @@ def test_pipe_tells_the_health_of_the_input():
 
 
 def test_every_fault_is_a_sentence_that_names_and_locates_it():
+    cause, note = samples.FAILING.findings
     assert [finding.text for finding in wording.findings(samples.FAILING)] == [
+        cause,
         '/output_state: 11 messages missing, the first at stamp 1700000001123456789',
         '/output_state: 8 messages too many, the first at stamp 1700000001123456790',
         '/output_state: 1 message out of order',
@@ -110,7 +112,7 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
         '/output_state effort: 1 sample with the field in input or output only',
         '/body_poses: no message could be compared',
         '/body_poses: 4008 messages missing',
-        *samples.FAILING.findings,
+        note,
     ]
 
 

@@ -172,7 +172,8 @@ def test_processes_report_what_one_after_the_other_does():
     tasks.append(task(BAGS / 'missing'))
     reports = sorted(validate_on_this_machine(tasks, 2), key=lambda report: report.bag)
     one_by_one = sorted(map(validate_bag, tasks), key=lambda report: report.bag)
-    assert reports == one_by_one
+    # A NaN, where a curve has a gap, equals no other.
+    assert list(map(repr, reports)) == list(map(repr, one_by_one))
     assert [report.verdict for report in reports].count(Verdict.PASS) == len(SHIPPED)
 
 

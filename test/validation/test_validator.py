@@ -20,6 +20,7 @@ from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport, TopicReport
 from gear_kinematics.validation.validator import Validator
+from gear_kinematics.validation.wording import findings
 
 BAGS = Path(__file__).resolve().parents[2] / 'bags'
 ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
@@ -683,16 +684,99 @@ def test_layouts_may_change_in_mid_recording(recorded, config):
 def test_the_series_shows_the_worst_deviation(recorded, config):
     messages = repeated(recorded, 60, 1)
     changed, stamp = change_one(messages, OUTPUT, add('position', 1e-3))
-    series = validate(changed, config).series
-    assert 1000 < len(series.time) <= 5000
-    assert {len(values) for values in (series.rotor_angle, series.position_error)} == {
-        len(series.time)
-    }
-    worst = int(np.argmax(np.abs(series.angle_error)))
-    assert series.angle_error[worst] == pytest.approx(1e-3)
+    report = validate(changed, config)
+    output, poses = report.series
+    assert (output.topic, poses.topic) == (OUTPUT, POSES)
+    assert 1000 <= len(output.time) <= 2000
+    assert [curve.field for curve in output.curves] == ['position', 'velocity', 'effort']
+    for series in report.series:
+        lists = [values for c in series.curves for values in (c.recorded, c.expected, c.error)]
+        assert {len(values) for values in (series.rotor_angle, *lists)} == {len(series.time)}
+        assert series.time == sorted(series.time)
+    position = output.curves[0]
+    worst = int(np.argmax(np.abs(position.error)))
+    assert position.error[worst] == pytest.approx(1e-3)
+    assert position.recorded[worst] - position.expected[worst] == position.error[worst]
+    # Of the sample itself, not of a neighbour in its interval.
     first = replaying.stamp_of(replaying.decode(recorded[0][2], JOINT_STATE))
-    assert series.time[worst] == pytest.approx((stamp - first) / SECOND, abs=0.05)
-    assert series.time == sorted(series.time)
+    assert output.time[worst] == pytest.approx((stamp - first) / SECOND, abs=1e-9)
+    assert output.rotor_angle[worst] == field_of(report, OUTPUT, 'position').worst_rotor_angle
+
+
+@pytest.mark.parametrize(
+    ('field', 'edit', 'part', 'error'),
+    [
+        ('position', move(3, 'y', 2e-4), 'oldham_b y', 2e-4),
+        ('position', move(0, 'z', -3e-4), 'satellite_a z', -3e-4),
+        ('orientation', turn(2, 0.01), 'oldham_a', 0.01),
+    ],
+)
+def test_the_curve_of_poses_is_that_of_what_is_farthest_off(
+    recorded, config, field, edit, part, error
+):
+    changed, _ = change_one(recorded, POSES, edit)
+    [curve] = (c for c in validate(changed, config).series[1].curves if c.field == field)
+    worst = int(np.argmax(curve.error))
+    assert curve.part == part
+    assert curve.recorded[worst] - curve.expected[worst] == pytest.approx(error, rel=1e-6)
+    # The error of an orientation is that of the worst number of the quaternion.
+    assert math.sqrt(0.5) * abs(error) <= curve.error[worst] <= abs(error) * (1.0 + 1e-9)
+
+
+def test_lanes_tell_when_something_happened(config):
+    """The faulty driver, and two messages of output_state missing, one twice, two swapped."""
+    messages = read('driver_faults')
+    places = [k for k, (topic, *_) in enumerate(messages) if topic == OUTPUT]
+    stamps = [replaying.stamp_of(replaying.decode(messages[k][2], JOINT_STATE)) for k in places]
+    a, b = places[700], places[701]
+    messages[a], messages[b] = messages[b], messages[a]
+    del messages[places[1000]]
+    messages.insert(places[900], messages[places[900]])
+    del messages[places[400]]
+    report = validate(messages, config)
+    lanes = {(lane.topic, lane.event): lane for lane in report.lanes}
+    assert {key: lane.count for key, lane in lanes.items()} == {
+        (ROTOR, 'gaps'): 2,
+        (ROTOR, 'rejected'): 49,
+        (OUTPUT, 'missing'): 2,
+        (OUTPUT, 'extra'): 1,
+        (OUTPUT, 'out of order'): 1,
+    }
+    assert {key for key, lane in lanes.items() if not lane.fails} == {
+        (ROTOR, 'gaps'),
+        (ROTOR, 'rejected'),
+    }
+
+    def seconds(number: int) -> float:
+        return (stamps[number] - report.rotor.first_stamp) / SECOND
+
+    missing = lanes[OUTPUT, 'missing'].spans
+    assert missing == [(pytest.approx(seconds(k)),) * 2 for k in (400, 1000)]
+    assert lanes[OUTPUT, 'extra'].spans == [(pytest.approx(seconds(900)),) * 2]
+    assert lanes[OUTPUT, 'out of order'].spans == [(pytest.approx(seconds(700)),) * 2]
+    gaps = [end - start for start, end in lanes[ROTOR, 'gaps'].spans]
+    assert sorted(gaps) == pytest.approx([0.122, 0.302], abs=0.004)
+
+
+def test_lanes_tell_which_values_are_absent_or_not_finite(recorded, config):
+    changed, _ = change_one(recorded, OUTPUT, lambda m: m.velocity.fill(math.nan))
+    changed, stamp = change_one(changed, OUTPUT, lambda m: setattr(m, 'effort', np.zeros(0)))
+    report = validate(changed, config)
+    moment = pytest.approx((stamp - report.rotor.first_stamp) / SECOND)
+    assert [(lane.event, lane.count, lane.spans) for lane in report.lanes] == [
+        ('velocity not finite', 1, [(moment, moment)]),
+        ('effort absent', 1, [(moment, moment)]),
+    ]
+
+
+def test_the_cause_is_told_before_its_effects(recorded, config):
+    changed = change_all(recorded, OUTPUT, lambda m: m.position.__imul__(-1.0))
+    report = validate(changed, config)
+    first, *others = findings(report)
+    assert first.text.startswith('the sign is flipped')
+    assert report.causes == (first.text,)
+    assert any('exceeds the tolerance' in finding.text for finding in others)
+    assert [f.text for f in (first, *others)].count(first.text) == 1
 
 
 def test_progress_is_reported(recorded, config):

@@ -1,0 +1,61 @@
+"""When something happened to messages, in bounded memory."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Stamps = NDArray[np.int64]
+
+_MOST = 400
+"""Spans that are kept; with more, neighbours are merged."""
+
+
+class Occurrences:
+    """Counts what happened, and keeps when: as instants, or as spans of neighbouring ones."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.first: int | None = None
+        """Stamp of the one that was added first, ns."""
+        self.spans = np.zeros((0, 2), np.int64)
+        """First and last stamp of each span, (m, 2), ns, ascending."""
+        self.apart = 0
+        """Spans that are as near as this are merged, ns."""
+
+    def add(self, stamps: Stamps) -> None:
+        """Add instants, (n,), ns."""
+        self.add_spans(stamps, stamps)
+
+    def add_spans(self, starts: Stamps, ends: Stamps) -> None:
+        """Add what lasted from the starts to the ends, (n,), ns."""
+        if not len(starts):
+            return
+        if self.first is None:
+            self.first = int(starts[0])
+        self.count += len(starts)
+        self._merge(np.stack([starts, ends], axis=1))
+
+    def take_over(self, others: 'Occurrences') -> None:
+        """Add those of another object."""
+        if self.first is None:
+            self.first = others.first
+        self.count += others.count
+        self.apart = max(self.apart, others.apart)
+        self._merge(others.spans)
+
+    def _merge(self, added: NDArray[np.int64]) -> None:
+        spans = np.concatenate([self.spans, added])
+        spans = _joined(spans[np.argsort(spans[:, 0], kind='stable')], self.apart)
+        while len(spans) > _MOST:
+            gaps = np.sort(spans[1:, 0] - spans[:-1, 1])
+            self.apart = max(2 * self.apart, int(gaps[len(spans) - _MOST - 1]))
+            spans = _joined(spans, self.apart)
+        self.spans = spans
+
+
+def _joined(spans: NDArray[np.int64], apart: int) -> NDArray[np.int64]:
+    """Join ascending spans, (n, 2), of which the next one begins as near as this."""
+    if not len(spans):
+        return spans
+    reach = np.maximum.accumulate(spans[:, 1])
+    first = np.flatnonzero(np.append(True, spans[1:, 0] - reach[:-1] > apart))
+    return np.stack([spans[first, 0], np.maximum.reduceat(reach, first)], axis=1)
