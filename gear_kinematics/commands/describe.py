@@ -12,7 +12,10 @@ from gear_kinematics.report.document import Cell, Document, Layout, Section, Tab
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
 HELP = 'properties of a gear: ratio, mobility, vernier, interference of the teeth'
-_DIGITS = 6
+_DIGITS = 3
+_GIVEN_DIGITS = 6
+_ANGLES = ((1.0, '°'), (60.0, '′'), (3600.0, '″'))
+"""Units of angles, with what a degree has of them."""
 
 
 class _Fact(NamedTuple):
@@ -23,18 +26,24 @@ class _Fact(NamedTuple):
     unit: str = ''
     label: str = ''
     """Label in tables, if not the key."""
+    given: bool = False
+    """Whether it is a parameter, which is not rounded as results are."""
 
     @property
     def cell(self) -> Cell:
-        """The value in tables: rounded, and angles in degrees."""
+        """The value in tables: rounded, and angles in degrees, or in minutes or seconds of arc."""
         value, unit = self.value, self.unit
         if value is None:
             return Cell('')
         if isinstance(value, list):
             return Cell(', '.join(value))
         if unit == 'rad':
-            value, unit = math.degrees(value), '°'
-        return Cell(number(value, _DIGITS) if isinstance(value, float) else str(value), unit=unit)
+            degrees = math.degrees(value)
+            parts = ((parts, name) for parts, name in _ANGLES if abs(degrees) * parts >= 1.0)
+            scale, unit = next(parts, _ANGLES[-1])
+            value = degrees * scale
+        digits = _GIVEN_DIGITS if self.given else _DIGITS
+        return Cell(number(value, digits) if isinstance(value, float) else str(value), unit=unit)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,7 +76,7 @@ def _facts(mechanism: Mechanism) -> list[_Fact]:
     return [
         _Fact('ring_teeth', zk),
         _Fact('satellite_teeth', mechanism.satellite_teeth),
-        _Fact('eccentricity', mechanism.eccentricity, 'm'),
+        _Fact('eccentricity', mechanism.eccentricity, 'm', given=True),
         _Fact('branches', [branch.name for branch in mechanism.branches]),
         _Fact('gear_ratio', str(mechanism.gear_ratio)),
         _Fact('mobility_by_counting', loop_closure.mobility_by_counting(mechanism)),
@@ -90,7 +99,7 @@ def _tooth_facts(mechanism: Mechanism, module: float) -> list[_Fact]:
     except InterferenceError as error:
         pair, interference = None, str(error)
     return [
-        _Fact('module', module, 'm'),
+        _Fact('module', module, 'm', given=True),
         _Fact('working_pressure_angle', pair and pair.working_pressure_angle, 'rad'),
         _Fact('ring_profile_shift', pair and pair.ring_profile_shift, 'modules'),
         _Fact('addendum', pair and pair.addendum, 'modules'),

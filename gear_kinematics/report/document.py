@@ -34,6 +34,10 @@ class Tone(StrEnum):
     BAD = 'bad'
 
 
+_CLOSE = ('°', '′', '″')
+"""Units without a space before them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Cell:
     """A value of a table, as text."""
@@ -45,7 +49,8 @@ class Cell:
 
     def with_unit(self) -> str:
         """Return the value with its unit."""
-        return f'{self.text} {self.unit}' if self.text and self.unit else self.text
+        space = '' if self.unit in _CLOSE else ' '
+        return f'{self.text}{space}{self.unit}' if self.text and self.unit else self.text
 
     def as_subject(self) -> str:
         """Return the first cell of a row with the unit of all its values."""

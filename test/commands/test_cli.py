@@ -90,6 +90,22 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
     }
 
 
+def test_describe_prints_numbers_for_people(capsys):
+    """Rounded, but for parameters, and small angles in minutes and seconds of arc."""
+    assert main(['describe', '--eccentricity', '0.00110013']) == 0
+    lines = dict(line.split(': ', 1) for line in capsys.readouterr().out.splitlines())
+    shown = {
+        'eccentricity': '0.00110013 m',
+        'ring rolling radius': '0.022 m',
+        'working pressure angle': '31.3°',
+        'vernier step': '4.88″',
+        'contact ratio': '1.86',
+        'vernier combinations': '531360',
+    }
+    assert {name: lines[name] for name in shown} == shown
+    assert lines['tip interference margin'].endswith('′')
+
+
 def test_describe_takes_another_tooth_pair(capsys):
     arguments = ['--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.002']
     assert main(['describe', *arguments]) == 0

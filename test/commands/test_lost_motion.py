@@ -51,7 +51,7 @@ def test_plain_report_tells_figures_with_their_units(recording, capsys):
     assert float(told['hysteresis at zero torque: value'].removesuffix(' arcmin')) == (
         pytest.approx(arcmin, abs=0.1)
     )
-    assert float(told['backlash (play model): in degrees'].removesuffix(' °')) == (
+    assert float(told['backlash (play model): in degrees'].removesuffix('°')) == (
         pytest.approx(math.degrees(GEAR.play), abs=0.002)
     )
     assert told['backlash (play model): from'] == '3 loops to 4 N·m'
