@@ -66,7 +66,9 @@ def run(options: argparse.Namespace) -> ExitCode:
     )
     if result.helps:
         write(options.output, to_calibration(result).text())
-    reporter.write(document(result, options.output))
+    reporter.write(
+        document(result, options.output), [arguments.config_path(options, options.recordings[0])]
+    )
     return ExitCode.DONE if result.helps else ExitCode.FAILED
 
 
@@ -75,7 +77,8 @@ def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Report
     config['gear_ratio'] = str(calibration.gear_ratio)
     judgements = [judge(recording, calibration) for recording in _read(options, config)]
     if judgements:
-        reporter.write(judgement.document(options.check, judgements))
+        configs = [arguments.config_path(options, options.recordings[0])]
+        reporter.write(judgement.document(options.check, judgements), configs)
     if len(judgements) < len(options.recordings):
         return ExitCode.UNUSABLE
     return ExitCode.DONE if all(one.holds for one in judgements) else ExitCode.FAILED

@@ -32,6 +32,7 @@ from gear_kinematics.commands import (
     validate,
 )
 from gear_kinematics.commands.extras import remedy
+from gear_kinematics.commands.origin import command_line
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
 from gear_kinematics.state.share import version
 from gear_kinematics.wire.nearest import among
@@ -90,6 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options, unknown = make_parser().parse_known_args(arguments)
     if unknown:
         options.parser.refuse(unknown)
+    options.command_line = command_line(arguments)
     code = ExitCode.DONE
     try:
         # Overflows show in the results.

@@ -66,7 +66,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         figure=plotting.outlines(described, size),
     )
     data = {fact.key: fact.value for fact in facts}
-    reporter.write(Document('gearkin describe', (section,), data))
+    reporter.write(
+        Document('gearkin describe', (section,), data), [arguments.config_path(options)]
+    )
     return ExitCode.DONE
 
 

@@ -124,7 +124,10 @@ def run(options: argparse.Namespace) -> ExitCode:
         drawing = draw(answer.ring_teeth, setting, notes, mirrored=options.mirrored)
     if options.drawing:
         write(options.drawing, f'{drawing}<!-- {MARK} -->\n')
-    reporter.write(Document('gearkin index', (_section(answer, drawing),), _data(answer)))
+    reporter.write(
+        Document('gearkin index', (_section(answer, drawing),), _data(answer)),
+        [arguments.config_path(options)],
+    )
     return ExitCode.DONE
 
 

@@ -129,7 +129,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         if text:
             complain(text)
     if usable:
-        reporter.write(document(*_compared(usable, options)))
+        configs = (arguments.config_path(options, path) for path in options.recordings)
+        reporter.write(document(*_compared(usable, options)), configs)
     complete = len(usable) == len(outcomes) and not any(damage)
     return ExitCode.DONE if complete else ExitCode.UNUSABLE
 

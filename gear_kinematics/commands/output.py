@@ -4,8 +4,9 @@ import argparse
 import os
 import stat
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
@@ -16,6 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.text import Text
 
 from gear_kinematics.bag import ReportProgress
+from gear_kinematics.commands.origin import origin
 from gear_kinematics.commands.targets import check_targets
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Document, printable
@@ -96,6 +98,7 @@ class Reporter:
         self._targets = {
             form: target for form in _FORMS if (target := getattr(options, form, None))
         }
+        self._options = options
         self._plot: str | None = options.plot
         given = {f'--{form}': target for form, target in self._targets.items()}
         given |= {'--plot': self._plot, **others}
@@ -114,8 +117,14 @@ class Reporter:
         if 'html' in self._targets:
             import_module('plotly')
 
-    def write(self, document: Document) -> None:
-        """Print the document, unless a form of it goes to stdout, and write the files."""
+    def write(self, document: Document, configs: Iterable[Path] = ()) -> None:
+        """Print the document, unless a form of it goes to stdout, and write the files.
+
+        Args:
+            document: the report.
+            configs: the parameter files that were used.
+        """
+        document = replace(document, origin=origin(self._options, configs))
         if not self._silent:
             with closed_pipe_ignored():
                 shown = document.of_failed() if self._quiet else document

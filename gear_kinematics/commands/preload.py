@@ -88,7 +88,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         remarks=(senses,),
         figure=plotting.torque_split(answer.preload, answer.names, answer.max_load),
     )
-    reporter.write(Document('gearkin preload', (section,), _data(answer)))
+    reporter.write(
+        Document('gearkin preload', (section,), _data(answer)), [arguments.config_path(options)]
+    )
     return ExitCode.DONE
 
 

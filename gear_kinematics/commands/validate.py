@@ -93,7 +93,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             complain(
                 report.error if report.bag in report.error else f'{report.bag}: {report.error}'
             )
-    reporter.write(document(reports))
+    reporter.write(document(reports), (Path(task.config) for task in tasks))
     return max(_EXIT_CODES[report.verdict] for report in reports)
 
 

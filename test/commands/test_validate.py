@@ -1,8 +1,11 @@
 """gearkin validate, compute and replay as a user or a CI job runs them."""
 
+import hashlib
+import html
 import json
 import os
 import re
+import shlex
 import shutil
 import signal
 import sqlite3
@@ -325,6 +328,12 @@ def test_every_form_is_written_beside_the_plain_lines(bags, schema, tmp_path):
     assert page.endswith('</html>\n')
     assert page.count('class="motion"') == 2
     assert 'wrong' in page
+    # The footer is evidence: how the page was made, and from which parameters.
+    command = shlex.join(['gearkin', 'validate', 'good', 'wrong', *map(str, options)])
+    assert f'<dd>{html.escape(command)}</dd>' in page
+    digest = hashlib.sha256(CONFIG.read_bytes()).hexdigest()
+    assert f'<dt>SHA-256 of {CONFIG}</dt><dd>{digest}</dd>' in page
+    assert re.search(r'<dt>made</dt><dd>\d{4}-\d\d-\d\d \d\d:\d\d:\d\d UTC</dd>', page)
 
 
 def test_without_plotly_a_page_is_an_error_and_no_file(bags, tmp_path):
