@@ -7,7 +7,7 @@ import numpy as np
 from gear_kinematics.calibration.normal import Array
 from gear_kinematics.calibration.result import Fit
 from gear_kinematics.calibration.terms import OrderTerm
-from gear_kinematics.lost_motion.curves import envelope, peaks
+from gear_kinematics.lost_motion.curves import envelope, marks, peaks
 from gear_kinematics.lost_motion.wording import ARC_MINUTES
 from gear_kinematics.report.document import Line, Panel, Pen
 
@@ -32,15 +32,13 @@ def panels(fit: Fit) -> Iterator[Panel]:
             curve = peaks(spectrum.cycles[shown], spectrum.amplitude[shown] * ARC_MINUTES)
             lines.append(Line(name, pen, *curve))
     if lines:
-        marks = tuple(
-            (float(f.term.cycles), f.term.name) for f in fit.terms if isinstance(f.term, OrderTerm)
-        )
+        orders = [f.term for f in fit.terms if isinstance(f.term, OrderTerm)]
         yield Panel(
             'spectrum',
             'order: cycles in a turn of the rotor',
             'amplitude [arcmin]',
             tuple(lines),
-            marks=marks,
+            marks=tuple(marks((float(order.cycles), order.name) for order in orders)),
             scale='log',
             low=max(float(line.y.max()) for line in lines) / 10.0**_DECADES,
         )

@@ -32,6 +32,8 @@ from gear_kinematics.state.uncertainty import COVERAGE
 SCHEMA = 'gear_kinematics/calibration_report'
 VERSION = 1
 _MILLI = 1e3
+_COLUMNS = 2
+"""Panels side by side."""
 
 
 def document(fit: Fit, target: str) -> Document:
@@ -55,7 +57,8 @@ def document(fit: Fit, target: str) -> Document:
         verdict,
         (Finding('finding', finding),),
         tuple(map(printable, remarks(fit))),
-        Figure(tuple(panels(fit))),
+        Figure(tuple(panels(fit)), columns=_COLUMNS),
+        picture_first=True,
     )
     return Document('gearkin calibrate', (section,), _data(fit), verdict)
 

@@ -1,14 +1,13 @@
 """The panels of a report on lost motion, in arc minutes."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.ramps import HalfLoop, Ramps
 from gear_kinematics.lost_motion.report import LostMotionReport
-from gear_kinematics.lost_motion.transmission import Order
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, arc_minutes, torque
 from gear_kinematics.report.document import Array, Line, Panel, Pen
 
@@ -91,27 +90,33 @@ def _transmission(report: LostMotionReport) -> Iterator[Panel]:
             'order: cycles in a turn of the output',
             'amplitude [arcmin]',
             tuple(spectra),
-            marks=tuple(_marks(found.orders, highest)),
+            marks=tuple(marks(((float(o.cycles), o.name) for o in found.orders), highest)),
             scale='log',
             low=max(float(np.max(line.y)) for line in spectra) / 10.0**_DECADES,
         )
 
 
-def _marks(orders: Sequence[Order], highest: float) -> Iterator[tuple[float, str]]:
-    """Yield marks for the orders up to the highest; neighbouring orders share a mark."""
-    near: list[Order] = []
-    for order in sorted(orders, key=lambda order: order.cycles):
-        if near and order.cycles > _TOGETHER * near[0].cycles:
+def marks(
+    orders: Iterable[tuple[float, str]], highest: float = math.inf
+) -> Iterator[tuple[float, str]]:
+    """Yield marks for orders, each with its name; neighbouring ones share a mark.
+
+    Args:
+        orders: on the x axis of a spectrum.
+        highest: the highest order to mark.
+    """
+    near: list[tuple[float, str]] = []
+    for order in sorted(order for order in orders if order[0] <= highest):
+        if near and order[0] > _TOGETHER * near[0][0]:
             yield _mark(near)
             near = []
-        if order.cycles <= highest:
-            near.append(order)
+        near.append(order)
     if near:
         yield _mark(near)
 
 
-def _mark(orders: Sequence[Order]) -> tuple[float, str]:
-    return float(orders[0].cycles), ', '.join(order.name for order in orders)
+def _mark(orders: Sequence[tuple[float, str]]) -> tuple[float, str]:
+    return orders[0][0], ', '.join(name for _, name in orders)
 
 
 def envelope(x: Array, y: Array) -> tuple[Array, Array]:

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -42,6 +42,15 @@ SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 1
 _FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from')
 _WORDS = ('', 'from')
+_QUANTITIES = (
+    'hysteresis [arcmin]',
+    'backlash [arcmin]',
+    'lost motion [arcmin]',
+    'stiffness [N·m/rad]',
+    'transmission accuracy [arcmin]',
+)
+_COLUMNS = 2
+"""Panels side by side."""
 
 
 def document(
@@ -50,7 +59,7 @@ def document(
     """Return the document on recordings, with a section for each, and then their comparisons."""
     return Document(
         'gearkin lost-motion',
-        (*map(_section, reports), *(comparison.section for comparison in comparisons)),
+        (*map(_section, reports), *(replace(found.section, leads=True) for found in comparisons)),
         {
             'schema': SCHEMA,
             'version': VERSION,
@@ -72,7 +81,9 @@ def _section(report: LostMotionReport) -> Section:
         printable(report.recording.name),
         (_head(report), *_tables(report)),
         remarks=tuple(remarks(report)),
-        figure=Figure(tuple(panels(report))),
+        figure=Figure(tuple(panels(report)), columns=_COLUMNS),
+        picture_first=True,
+        key=_key(report),
     )
 
 
@@ -301,11 +312,15 @@ def _order_table(found: TransmissionFigures) -> Table:
     )
 
 
+def _key(report: LostMotionReport) -> Table:
+    """Return the figures of the summary, which a page shows first."""
+    _, *cells = _summary_row(report)
+    return Table.of_values(Layout.INLINE, *zip(_QUANTITIES, cells, strict=True))
+
+
 def _summary(reports: Sequence[LostMotionReport]) -> Table:
     """Return a row for each recording."""
-    angles = ('hysteresis [arcmin]', 'backlash [arcmin]', 'lost motion [arcmin]')
-    others = ('stiffness [N·m/rad]', 'transmission accuracy [arcmin]')
-    return Table(('recording', *angles, *others), tuple(map(_summary_row, reports)))
+    return Table(('recording', *_QUANTITIES), tuple(map(_summary_row, reports)))
 
 
 def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:

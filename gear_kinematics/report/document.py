@@ -143,7 +143,7 @@ class Finding:
     """The moment that it is about, on the x axis of the figure."""
 
 
-_LANE = 0.14
+_LANE = 0.18
 """Height of a lane / height of other panels."""
 
 
@@ -289,6 +289,8 @@ class Section:
     """Whether a page begins with the figure, below the first finding, and folds the tables."""
     key: Table | None = None
     """What a page shows above such a figure."""
+    leads: bool = False
+    """Whether a page begins with it, as with the comparison of the others."""
     cases: tuple[Case, ...] = ()
 
 

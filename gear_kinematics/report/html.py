@@ -46,16 +46,14 @@ def to_html(document: Document) -> str:
 
 
 def _body(document: Document) -> Iterator[str]:
-    # What failed comes first; `sorted` keeps the order of the others.
-    order = sorted(
-        range(len(document.sections)), key=lambda k: _FIRST.index(document.sections[k].verdict)
-    )
+    order = sorted(range(len(document.sections)), key=lambda k: _rank(document.sections[k]))
     several = len(order) > 1
     yield from _header(document)
     yield '<main>\n'
     if several and document.summary:
-        links = [f'#section-{k}' for k in order]
-        rows = tuple(document.summary.rows[k] for k in order)
+        listed = [k for k in order if k < len(document.summary.rows)]  # not a comparison
+        links = [f'#section-{k}' for k in listed]
+        rows = tuple(document.summary.rows[k] for k in listed)
         yield f'<section id="top">{_rows(replace(document.summary, rows=rows), links)}</section>\n'
     drawings = Drawings()
     for k in order:
@@ -68,6 +66,11 @@ def _body(document: Document) -> Iterator[str]:
             yield '<p><a href="#top">to the summary</a></p>\n'
         yield '</section>\n'
     yield f'</main>\n{_footer(document.origin)}{drawings.shapes()}'
+
+
+def _rank(section: Section) -> tuple[bool, int]:
+    """Return what sorts sections: a comparison is first, and failed before passed."""
+    return not section.leads, _FIRST.index(section.verdict)
 
 
 def _header(document: Document) -> Iterator[str]:
@@ -170,7 +173,7 @@ def _figure(section: Section, name: str) -> Iterator[str]:
         data = data.replace(char, f'\\u{ord(char):04x}')
     rows = figure.shape[0] * _ROW_HEIGHT
     height = max(_HEIGHT, sum(figure.heights) * _STACKED_HEIGHT if figure.stacked else rows)
-    yield f'<div class="figure" id="{name}" style="height: {height:g}rem">'
+    yield f'<div class="figure" id="{name}" style="--height: {height:g}rem">'
     yield '<noscript>Plots need JavaScript.</noscript></div>\n'
     yield f'<script type="application/json" data-figure="{name}">{data}</script>\n'
 

@@ -58,8 +58,6 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
         layout['hovermode'] = 'closest'
     named: set[str] = set()
     for k, panel in enumerate(panels, 1):
-        # Where there is only one line, the axis names it.
-        told = not panel.lanes and len({line.name for line in panel.lines}) > 1
         x = 'x' if figure.stacked else f'x{k}'
         scale = SymmetricLog.of(panel) if panel.scale == 'symlog' else None
         layout |= _axes(figure, panel, k, scale)
@@ -68,7 +66,7 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
             if time is not None and not np.array_equal(line.x, time, equal_nan=True):
                 trace['x'] = _rounded(line.x)
             trace['yaxis'] = f'y{k}'
-            shown = told and line.name not in named
+            shown = _names(panel) and line.name not in named
             trace |= {'legendgroup': line.name, 'showlegend': shown}
             plots['data'].append(_styled(trace, line, panel))
             if shown:
@@ -95,16 +93,15 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
 
 
 def _legend(figure: Figure) -> dict[str, Any]:
-    """Return the place of the legend, off the curves: above stacked panels, or below others."""
-    panels = figure.panels
-    several = any(len({line.name for line in panel.lines}) > 1 for panel in panels)
-    below = _TICK_GAP if any(map(tick_angle, panels)) else 0.18
-    place = (
-        {'y': 1.0, 'yanchor': 'bottom', 'x': 1.0, 'xanchor': 'right'}
-        if figure.stacked
-        else {'y': -below}
-    )
+    """Return the place of the legend, above all curves."""
+    several = any(_names(panel) for panel in figure.panels)
+    place = {'yref': 'container', 'y': 1.0, 'yanchor': 'top', 'x': 1.0, 'xanchor': 'right'}
     return {'showlegend': several, 'legend': {'orientation': 'h', **place}}
+
+
+def _names(panel: Panel) -> bool:
+    """Return whether the legend names the lines; where there is only one, the axis does."""
+    return not panel.lanes and len({line.name for line in panel.lines}) > 1
 
 
 def _axes(
@@ -284,7 +281,7 @@ def _text(
 ) -> dict[str, Any]:
     place = {'xref': xref, 'x': x, 'yref': f'y{k} domain', 'y': y}
     xanchor, yanchor = anchors
-    alignment = {'xanchor': xanchor, 'yanchor': yanchor, 'showarrow': False}
+    alignment = {'xanchor': xanchor, 'yanchor': yanchor, 'align': 'left', 'showarrow': False}
     return {'text': escape(text), **place, **alignment}
 
 

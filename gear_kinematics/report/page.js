@@ -3,10 +3,34 @@
 (() => {
   const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const figures = new Map();
+  const phone = matchMedia('(max-width: 40rem)');
+
+  // On a phone, panels that would be side by side are below each other, and texts have more lines.
+  function fitted(element, {time, layout}) {
+    const panels = Object.keys(layout).filter(name => name.startsWith('yaxis'));
+    element.style.height = '';
+    if (!phone.matches) return layout;
+    const fits = {...layout};
+    const wrapped = text => text?.length > 40 ? text.replace(/(.{20,38}) /g, '$1<br>') : text;
+    fits.annotations = layout.annotations.map(note => ({...note, text: wrapped(note.text)}));
+    for (const name of Object.keys(layout).filter(name => name.startsWith('xaxis'))) {
+      fits[name] = {...layout[name], title: {text: wrapped(layout[name].title.text)}};
+    }
+    if (time || panels.length < 2) return fits;
+    element.style.height = `${20 * panels.length}rem`;
+    panels.forEach((name, k) => {
+      const top = 1 - k / panels.length;
+      fits[name] = {...layout[name], domain: [top - 0.65 / panels.length, top]};
+      const across = name.replace('y', 'x');
+      fits[across] = {...fits[across], domain: [0, 1]};
+    });
+    return fits;
+  }
 
   function draw(element) {
     const figure = figures.get(element);
-    const {time, data, layout} = figure;
+    const {time, data} = figure;
+    const layout = fitted(element, figure);
     const grid = {gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--faint')};
     const themed = {
       ...layout,
@@ -16,7 +40,7 @@
       hoverlabel: {bgcolor: colour('--raised'), font: {color: colour('--text')}},
       hovermode: layout.hovermode ?? 'x unified',
       hoversubplots: 'axis',
-      margin: {l: 90, r: 20, t: 35, b: 50},
+      margin: {l: 90, r: 20, t: phone.matches && layout.showlegend ? 90 : 55, b: phone.matches ? 65 : 50},
       modebar: {bgcolor: 'rgba(0,0,0,0)', color: colour('--faint'), activecolor: colour('--text')},
       showlegend: layout.showlegend ?? false,
       shapes: layout.shapes.map(({meta = 'fail', ...shape}) => ({
@@ -54,10 +78,13 @@
     figures.set(element, JSON.parse(script.textContent));
     seen.observe(element);
   }
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-    for (const element of figures.keys()) if (element.data) draw(element);
-  });
+  for (const query of [matchMedia('(prefers-color-scheme: dark)'), phone]) {
+    query.addEventListener('change', () => {
+      for (const element of figures.keys()) if (element.data) draw(element);
+    });
+  }
   addEventListener('beforeprint', () => {
+    for (const folded of document.querySelectorAll('details')) folded.open = true;
     for (const element of figures.keys()) if (!element.data) draw(element);
   });
 
