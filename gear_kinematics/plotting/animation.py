@@ -1,5 +1,6 @@
 """Animations of the mechanism as GIF or MP4."""
 
+import math
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
@@ -16,6 +17,7 @@ from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, styled
 from gear_kinematics.report.mark import MARK
+from gear_kinematics.shape.outlines import NAMES
 from gear_kinematics.state.trajectory import Trajectory
 
 _WIDTH = 4.0  # inches for any number of pixels, so that lines and text scale with them
@@ -97,25 +99,43 @@ def _moving(
     """Draw the frames one by one."""
     figure.set_layout_engine('none')
     left = figure.add_axes((0.0, 0.0, _HEIGHT, 1.0))
-    right = figure.add_axes((_HEIGHT, 0.25, 1.0 - _HEIGHT, 0.5))
+    right = figure.add_axes((0.725, 0.385, 0.225, 0.225 / _HEIGHT))
     x, y = rose(mechanism)[:, branch].T / mechanism.eccentricity
     right.plot(x, y, color=FAINT, linewidth=0.3)
     middle = 0.5 * (1.0 + _HEIGHT)
-    teeth = f'{mechanism.ring_teeth} and {mechanism.satellite_teeth} teeth'
-    ratio = f'$i$ = {mechanism.gear_ratio}'.replace('-', '−')
+    style = {'va': 'center', 'color': INK, 'fontsize': 7}
+    ratio = str(mechanism.gear_ratio).replace('-', '−')
+    teeth = f'{mechanism.ring_teeth}/{mechanism.satellite_teeth} teeth, $i$ = {ratio}'
     for height, text in (
-        (0.90, teeth),
-        (0.82, ratio),
-        (0.16, 'centres, magnified;'),
-        (0.08, f'path of $O_4$: {mechanism.oldham_petals} petals'),
+        (0.95, teeth),
+        (0.345, f'path of $O_4$: {mechanism.oldham_petals} petals'),
     ):
-        figure.text(middle, height, text, ha='center', va='center', color=INK, fontsize=8)
-    artists = Bodies(left, mechanism, module, branch), Centres(right, mechanism, branch)
-    for number, (turns, angle) in enumerate(zip(frames.turns, frames.angle, strict=True), start=1):
+        figure.text(middle, height, text, ha='center', **style)
+    moments = [figure.text(0.735, height, '', **style) for height in (0.88, 0.82, 0.76)]
+    bodies = Bodies(left, mechanism, module, branch)
+    for row, body in enumerate(bodies.patches):
+        face, edge = COLOURS[body]
+        height = 0.27 - 0.053 * row
+        figure.text(0.735, height, '■', va='center', color=face, fontsize=7)
+        figure.text(0.735, height, '□', va='center', color=edge, fontsize=7)
+        figure.text(0.775, height, NAMES[body], **style)
+    artists = bodies, Centres(right, mechanism, branch)
+    output = frames.state(mechanism).output_angle
+    for number, (time, turns, angle, turned) in enumerate(
+        zip(frames.time, frames.turns, frames.angle, output, strict=True), start=1
+    ):
         for artist in artists:
             artist.show(RotorPosition(int(turns), float(angle)))
+        degrees = (360.0 * turns + math.degrees(angle), math.degrees(turned))
+        texts = (f'$t$ = {time:.3f} s', *map(_angle, ('φ_2', 'φ_5'), degrees))
+        for moment, text in zip(moments, texts, strict=True):
+            moment.set_text(text)
         progress(number)
         yield
+
+
+def _angle(symbol: str, degrees: float) -> str:
+    return f'${symbol}$ = {round(degrees, 1) + 0.0:.1f}°'.replace('-', '−')
 
 
 def _gif(figure: Any, frames: Iterator[None], fps: int) -> bytes:
