@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics.commands.paper_size import add_paper
 from gear_kinematics.commands.targets import add_force
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
@@ -67,6 +68,7 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
     for form in ('json', *(['junit'] if junit else []), 'html'):
         parser.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
     parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+    add_paper(parser)
     add_force(parser)
     add_quiet(parser)
 

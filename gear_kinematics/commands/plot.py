@@ -9,6 +9,7 @@ from typing import Any
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
+from gear_kinematics.commands.paper_size import add_paper, paper
 from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import (
     Gear,
@@ -36,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         figure.add_argument('out', metavar='FILE', help='image file: .png, .svg, .pdf ...')
         arguments.add_mechanism(figure)
         arguments.add_sizes(figure)
+        add_paper(figure)
         add_force(figure)
         arguments.add_quiet(figure)
         motions = figure.add_mutually_exclusive_group()
@@ -81,7 +83,8 @@ def _scheme(
     options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path
 ) -> bytes:
     branch = arguments.branch(options, mechanism)
-    return plotting.scheme(mechanism, config['module'], path, _rotor(options, config), branch)
+    rotor = _rotor(options, config)
+    return plotting.scheme(mechanism, config['module'], path, rotor, branch, paper(options))
 
 
 def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
@@ -95,21 +98,23 @@ def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
 
 
 def _roses(options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path) -> bytes:
-    return plotting.roses(mechanism, path, bags.recording(options, config, 'duration'))
+    moved = bags.recording(options, config, 'duration')
+    return plotting.roses(mechanism, path, moved, paper(options))
 
 
 def _slides(
     options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path
 ) -> bytes:
-    return plotting.slides(
-        mechanism, path, _moved(options, config, turns=1), by_angle=not options.bag
-    )
+    moved = _moved(options, config, turns=1)
+    by_angle = not options.bag
+    return plotting.slides(mechanism, path, moved, paper(options), by_angle=by_angle)
 
 
 def _output(options: argparse.Namespace, config: Config, gear: Gear, path: Path) -> bytes:
     calibration = calibrations.load(options, config, options.bag)
     cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
-    return plotting.output(gear, path, _moved(options, config, turns=cycle), calibration)
+    moved = _moved(options, config, turns=cycle)
+    return plotting.output(gear, path, moved, calibration, paper(options))
 
 
 def _moved(options: argparse.Namespace, config: Config, turns: int) -> Trajectory:

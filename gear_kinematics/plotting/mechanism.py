@@ -11,7 +11,7 @@ import numpy as np
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
-from gear_kinematics.report.image import FAINT, INK, render
+from gear_kinematics.report.image import FAINT, INK, Paper, add_legend, render
 from gear_kinematics.shape.outlines import NAMES, Array, Pose, bodies, poses
 
 COLOURS = {
@@ -28,6 +28,7 @@ _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
 _LABEL = 15.0  # points from the labelled point
 _SHORT = 0.2  # eccentricities; too short for a label
 _MM = 1e3  # in a metre
+_PAPER = Paper()
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 
 
@@ -119,13 +120,19 @@ def outlines(mechanism: Mechanism, module: float) -> Figure:
 
 
 def scheme(
-    mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition, branch: int = 0
+    mechanism: Mechanism,
+    module: float,
+    path: Path,
+    rotor: RotorPosition,
+    branch: int = 0,
+    paper: Paper = _PAPER,
 ) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
     The module of the teeth is in m; `rotor` is the position φ2, `branch` an index.
     """
-    return render(path, (7.4, 4.7), partial(_draw_scheme, mechanism, module, rotor, branch))
+    draw = partial(_draw_scheme, mechanism, module, rotor, branch)
+    return render(path, (7.4, 4.7), draw, paper)
 
 
 def _draw_scheme(
@@ -137,8 +144,7 @@ def _draw_scheme(
     Centres(right, mechanism, branch).show(rotor)
     placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
     _label_centres(right, mechanism, placed)
-    names = [NAMES[body] for body in drawn.patches]
-    figure.legend(drawn.patches.values(), names, loc='outside lower center', ncols=5)
+    add_legend(figure, list(drawn.patches.values()), [NAMES[body] for body in drawn.patches])
     rotor_angle, output_angle = (
         f'{math.degrees(placed[body].angle) + 0.0:.4g}°'.replace('-', '−')
         for body in ('rotor', 'output_shaft')
@@ -147,9 +153,9 @@ def _draw_scheme(
         f'branch {mechanism.branches[branch].name}, '
         f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}\n'
         f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
-        fontsize=9,
+        fontsize='medium',
     )
-    right.set_title(f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm', fontsize=9)
+    right.set_title(f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm', fontsize='medium')
 
 
 def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> None:
@@ -181,7 +187,7 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
             ha='center',
             va='center',
             color=colour,
-            fontsize=11,
+            fontsize='large',
         )
 
 

@@ -66,7 +66,7 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
             if time is not None and not np.array_equal(line.x, time, equal_nan=True):
                 trace['x'] = _rounded(line.x)
             trace['yaxis'] = f'y{k}'
-            shown = _names(panel) and line.name not in named
+            shown = is_named(panel) and line.name not in named
             trace |= {'legendgroup': line.name, 'showlegend': shown}
             plots['data'].append(_styled(trace, line, panel))
             if shown:
@@ -94,12 +94,12 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dic
 
 def _legend(figure: Figure) -> dict[str, Any]:
     """Return the place of the legend, above all curves."""
-    several = any(_names(panel) for panel in figure.panels)
+    several = any(map(is_named, figure.panels))
     place = {'yref': 'container', 'y': 1.0, 'yanchor': 'top', 'x': 1.0, 'xanchor': 'right'}
     return {'showlegend': several, 'legend': {'orientation': 'h', **place}}
 
 
-def _names(panel: Panel) -> bool:
+def is_named(panel: Panel) -> bool:
     """Return whether the legend names the lines; where there is only one, the axis does."""
     return not panel.lanes and len({line.name for line in panel.lines}) > 1
 

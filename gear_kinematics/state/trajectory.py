@@ -79,6 +79,32 @@ class Trajectory(NamedTuple):
         position = self.turns + self.angle / TURN
         return float(np.max(np.abs(np.diff(position)), initial=0.0))
 
+    @property
+    def travel(self) -> Array:
+        """Turns of the rotor since the start, back and forth, (n,)."""
+        with np.errstate(over='ignore', invalid='ignore'):
+            position = self.turns - self.turns[0] + self.angle / TURN
+            return np.append(0.0, np.cumsum(np.abs(np.diff(position))))
+
+    def fastest(self, turns: float) -> tuple[float, float]:
+        """Find the time in which the rotor travels so many turns, around its greatest speed.
+
+        Returns:
+            Start and end, s.
+        """
+        travel = self.travel
+        middle = travel[int(np.argmax(np.abs(self.velocity)))]
+        first = min(max(0.0, middle - 0.5 * turns), max(0.0, travel[-1] - turns))
+        start, end = np.interp([first, first + turns], travel, self.time)
+        return float(start), float(end)
+
+    def part(self, start: float, end: float, count: int) -> Self:
+        """Interpolate between two times, s, at even intervals."""
+        time = np.linspace(start, end, count)
+        position = np.interp(time, self.time, self.turns * TURN + self.angle)
+        turns, angle = split_turns(position)
+        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
+
     def between(self, start: float, end: float) -> Self:
         """Select the samples between two times, s.
 
@@ -104,10 +130,8 @@ class Trajectory(NamedTuple):
             interval = duration / count
         else:
             count = math.floor(duration / interval * (1.0 + _ROUNDING)) + 1
-        time = self.time[0] + interval * np.arange(count)
-        position = np.interp(time, self.time, self.turns * TURN + self.angle)
-        turns, angle = split_turns(position)
-        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
+        first = float(self.time[0])
+        return self.part(first, first + interval * (count - 1), count)
 
 
 def read_trajectory(

@@ -463,7 +463,7 @@ def test_several_recordings_are_drawn_together(worn, tmp_path, capsys):
         tree = html.document_fromstring(
             page.read_bytes(), parser=html.HTMLParser(encoding='utf-8')
         )
-        *_, drawn = (json.loads(s.text) for s in tree.xpath('//script[@type="application/json"]'))
+        drawn, *_ = (json.loads(s.text) for s in tree.xpath('//script[@type="application/json"]'))
         loops = [trace for trace in drawn['data'] if trace['yaxis'] == 'y1']
         assert len(loops) == 4
         bars = [trace for trace in drawn['data'] if 'error_y' in trace]

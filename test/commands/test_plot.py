@@ -338,3 +338,45 @@ def test_tooth_numbers_replace_the_ratio(tmp_path, capsys):
     teeth = ['--ring-teeth', '61', '--satellite-teeth', '58']
     assert main(['describe', '--config', str(config), *teeth]) == 0
     assert 'gear ratio: -58/3' in capsys.readouterr().out
+
+
+def test_figures_take_the_width_of_a_paper(tmp_path):
+    """84 mm at 300 dots per inch are 992 pixels."""
+    path = tmp_path / 'roses.png'
+    assert main(['plot', 'roses', str(path), '--width-mm', '84', '--dpi', '300']) == 0
+    with Image.open(path) as image:
+        assert image.size[0] == 992
+    shaft = ['--branch-stiffness', '1', '--shaft-stiffness', '1', '--degrees', '1']
+    plot = tmp_path / 'split.png'
+    assert main(['preload', *shaft, '--plot', str(plot), '--width-mm', '84', '--dpi', '300']) == 0
+    with Image.open(plot) as image:
+        assert image.size[0] == 992
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        (['describe', '--width-mm', '84'], '--width-mm and --dpi need --plot'),
+        (['describe', '--plot', 'a.png', '--dpi', '9'], '--dpi must be between 30 and 2400'),
+        (['plot', 'roses', 'a.png', '--width-mm', '9'], '--width-mm must be between 30 and 1000'),
+        (
+            ['plot', 'roses', 'a.png', '--width-mm', 'nan'],
+            '--width-mm must be between 30 and 1000',
+        ),
+        (
+            ['plot', 'roses', 'a.png', '--width-mm', '900', '--dpi', '2000'],
+            'an image is at most 20000 pixels wide: reduce --dpi',
+        ),
+    ],
+)
+def test_sizes_that_no_paper_has_are_refused(arguments, cause, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    try:
+        code = main(arguments)
+    except SystemExit as left:  # of argparse
+        code = left.code
+    assert code == 2
+    error = capsys.readouterr().err
+    assert error.count('\n') == 1
+    assert cause in error
+    assert list(tmp_path.iterdir()) == []

@@ -1,6 +1,7 @@
 """The data given to matplotlib, against 50-digit and matrix-method motion."""
 
 import math
+import re
 from fractions import Fraction
 from io import BytesIO
 from itertools import pairwise
@@ -14,6 +15,8 @@ from properties import numbers_of
 
 from gear_kinematics import plotting
 from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
+from gear_kinematics.report.document import Figure, Line, Panel, Pen
+from gear_kinematics.report.image import Paper, to_image
 from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.state.calibration_file import Order
 from gear_kinematics.state.trajectory import Trajectory
@@ -185,6 +188,113 @@ def test_slides_are_those_of_the_matrix_method(actuator, figures, by_angle):
                 x, y = curves[f'{branch}, on the {part}']
                 assert x == pytest.approx(along, abs=1e-9)
                 assert y == pytest.approx(1e3 * getattr(expected, field)[:, k], abs=1e-6)
+
+
+def recorded(angles, period=0.001) -> Trajectory:
+    """A motion through rotor angles, rad, as a driver records it."""
+    angles = np.asarray(angles, float)
+    time = period * np.arange(len(angles))
+    return Trajectory(time, *split_turns(angles), np.gradient(angles, time))
+
+
+def test_slides_of_many_turns_are_a_band_and_a_few_turns_in_detail(actuator, figures):
+    """20 s of strokes; the rotor is fastest, 120 rad/s, in the middle of each, as at 10 s."""
+    time = 0.001 * np.arange(20_001)
+    moved = recorded(60.0 * np.sin(2.0 * time - 20.0))
+    plotting.slides(actuator, PNG, moved, by_angle=False)
+    whole, detail, whole_speeds, detail_speeds = figures[0].axes
+    assert not whole.get_lines()
+    assert [band.get_datalim(whole.transData).y1 for band in whole.collections] == pytest.approx(
+        [1.1] * 4, abs=1e-3
+    )
+    start, end = detail.get_xlim()
+    assert 120.0 * (end - start) == pytest.approx(3 * math.tau, rel=1e-2)
+    assert abs(math.sin(start + end - 20.0)) < 0.01  # around a middle
+    state = matrix_method.solve(actuator, 60.0 * np.sin(2.0 * np.linspace(start, end, 721) - 20.0))
+    curves = {line.get_label(): line.get_ydata() for line in detail.get_lines()}
+    assert curves['b, on the arm'] == pytest.approx(1e3 * state.arm_slide[:, 1], abs=2e-3)
+    assert len(curves) == len(detail_speeds.get_lines()) == 4
+    marked = whole.patches[0].get_bbox()
+    assert (marked.x0, marked.x1) == pytest.approx((start, end))
+    assert whole_speeds.get_xlim() == pytest.approx((0.0, 20.0), abs=0.1)
+
+
+def test_output_of_many_turns_is_a_band_and_a_turn_in_detail(actuator, figures):
+    moved = recorded(300.0 * 0.001 * np.arange(3001))  # 900 rad, 7.5 turns of the output
+    plotting.output(actuator, PNG, moved)
+    whole, detail, _, rate = figures[0].axes
+    assert not whole.get_lines()
+    [line] = detail.get_lines()
+    shown = np.ptp(line.get_ydata())
+    assert shown == pytest.approx(360.0, rel=0.01)
+    assert rate.get_lines()[0].get_ydata() == pytest.approx(-300.0 / 19 * 180.0 / math.pi)
+    [band] = whole.collections
+    assert band.get_datalim(whole.transData).y0 == pytest.approx(-900.0 / 19 * 180.0 / math.pi)
+
+
+def test_legends_are_off_the_curves(actuator, figures):
+    few = Line('few', Pen.FIRST, np.arange(9.0), np.arange(9.0))
+    more = Line('more', Pen.SECOND, np.arange(9.0), -np.arange(9.0))
+    to_image(Figure((Panel('', 'x', 'y', (few, more)), Panel('', 'x', 'y', (few,)))), PNG)
+    plotting.slides(actuator, PNG, Trajectory.at_constant_speed(20.0), by_angle=True)
+    for figure, names in zip(figures, (2, 4), strict=True):
+        [legend] = figure.legends
+        assert len(legend.get_texts()) == names
+        assert not any(axes.get_legend() for axes in figure.axes)
+        box = legend.get_window_extent()
+        assert not any(box.overlaps(axes.get_window_extent()) for axes in figure.axes)
+
+
+def test_lanes_are_named_and_have_no_numbers(figures):
+    lanes = (Line('lost', Pen.FIFTH, np.array([1.0, 2.0, np.nan]), np.zeros(3)),)
+    value = Line('angle', Pen.FIRST, np.arange(4.0), np.arange(4.0))
+    panels = (
+        Panel('', 't', 'rad', (value,)),
+        Panel('', 't', '', lanes, levels=((0.0, 'lost: 7'),), lanes=True),
+    )
+    to_image(Figure(panels, stacked=True), PNG)
+    values, drawn = figures[0].axes
+    assert [text.get_text() for text in drawn.texts] == ['lost: 7']
+    assert not len(drawn.get_yticks())
+    assert drawn.get_window_extent().height < 0.5 * values.get_window_extent().height
+    assert not figures[0].legends
+
+
+@pytest.mark.parametrize(('width', 'dpi'), [(84.0, 300), (170.0, 100)])
+def test_figures_have_the_width_and_resolution_of_a_paper(actuator, figures, width, dpi):
+    turn = Trajectory.at_constant_speed(20.0)
+    picture = plotting.slides(actuator, PNG, turn, Paper(width, dpi), by_angle=True)
+    with Image.open(BytesIO(picture)) as image:
+        assert image.size[0] == pytest.approx(width / 25.4 * dpi, abs=1)
+        pixels = np.asarray(image.convert('L'))
+    edges = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])
+    assert edges.min() == 255  # nothing is cut off
+    sizes = {text.get_fontsize() for text in figures[0].legends[0].get_texts()}
+    assert sizes == {7.0 if width < 100.0 else 9.0}
+
+
+def test_panels_are_below_each_other_where_paper_is_narrow(figures):
+    line = Line('line', Pen.FIRST, np.arange(3.0), np.arange(3.0))
+    three = Figure(tuple(Panel(f'{k}', 'x', 'y', (line,)) for k in range(3)))
+    for width, columns in ((80.0, 1), (170.0, 2), (None, 3)):
+        to_image(three, PNG, Paper(width))
+        lefts = {round(axes.get_position().x0, 2) for axes in figures[-1].axes}
+        assert len(lefts) == columns
+
+
+@pytest.mark.parametrize(
+    'given', [(20.0, 150), (2000.0, 150), (84.0, 20), (84.0, 5000), (900.0, 2000), (math.nan, 9)]
+)
+def test_sizes_beyond_any_paper_are_refused(given):
+    with pytest.raises(ValueError, match=r'--(width-mm|dpi)'):
+        Paper(*given)
+
+
+def test_text_is_text_in_svg(actuator):
+    picture = plotting.roses(actuator, Path('roses.svg')).decode()
+    assert re.findall(r'<text[^>]*>([^<]*petals)</text>', picture) == [
+        'branch a: 40 petals', 'branch b: 40 petals'
+    ]  # fmt: skip
 
 
 LONG = 'far_end_of_the_left_elbow'  # 25 letters

@@ -7,7 +7,7 @@ import pytest
 from gear_recordings import Samples, write_recording
 
 from gear_kinematics.bag import BagError, BagWriter
-from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.kinematics import matrix_method, split_turns
 from gear_kinematics.state import parameters
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.state.trajectory import MOST_TURNS, Trajectory, read_trajectory
@@ -132,3 +132,20 @@ def test_parts_are_between_two_times():
     assert positions(part) == pytest.approx(part.time)
     with pytest.raises(ValueError, match='no rotor states from 5 s to inf s'):
         samples.between(5.0, math.inf)
+
+
+def test_fastest_part_is_as_long_as_wanted():
+    """Slow, fast and slow again: 10, 40 and 10 rad/s for a second each."""
+    time = np.linspace(0.0, 3.0, 3001)
+    angle = np.interp(time, [0.0, 1.0, 2.0, 3.0], [0.0, 10.0, 50.0, 60.0])
+    speed = np.where((time > 1.0) & (time < 2.0), 40.0, 10.0)
+    moved = Trajectory(time, *split_turns(angle), speed)
+    assert moved.travel[-1] == pytest.approx(60.0 / math.tau)
+    start, end = moved.fastest(2.0)
+    assert 40.0 * (end - max(start, 1.0)) + 10.0 * max(1.0 - start, 0.0) == pytest.approx(
+        2.0 * math.tau, abs=0.05
+    )
+    assert start <= 1.001 <= end
+    assert moved.fastest(100.0) == (0.0, 3.0)
+    back = Trajectory(time, *split_turns(50.0 * np.sin(angle)), speed)
+    assert back.travel[-1] > 60.0  # back and forth
