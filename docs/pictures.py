@@ -7,6 +7,7 @@ import os
 import shutil
 import sys
 import tempfile
+from contextlib import chdir
 from io import BytesIO
 from pathlib import Path
 
@@ -16,6 +17,10 @@ from playwright.sync_api import sync_playwright
 from gear_kinematics.commands.cli import main
 
 ROOT = Path(__file__).parents[1]
+sys.path.append(str(ROOT / 'test' / 'support'))
+
+from gear_recordings import record_both_encoders  # noqa: E402, see above
+
 DOCS = Path('docs')
 BAG = 'bags/servo_point_to_point'
 CONFIG = ['--config', 'config/actuator.yaml']
@@ -31,14 +36,27 @@ DRAWN = {
 }
 """By file, each with the arguments of gearkin that come before it."""
 PAGES = {
-    'pictures/validate.png': ['validate', BAG, *CONFIG],
     'pictures/describe.png': ['describe'],
     'pictures/index.png': ['index', '--phase-b', '--preload', '0.8', *SHAFT],
     'pictures/preload.png': ['preload', '--wanted-threshold', '1', *SHAFT],
     'pictures/lost_motion.png': ['lost-motion', 'docs/examples/ramps.csv', *CONFIG],
 }
+OF_RECORDINGS = {
+    'pictures/validate.png': ['validate', 'other_gear', '--config', 'actuator.yaml'],
+    'pictures/calibrate.png': ['calibrate', 'monday', 'tuesday'],
+}
+"""Pages of recordings that `record` makes."""
+OTHER_GEAR = '/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}'
 VIEW = {'width': 1100, 'height': 1000}  # pixels
 COLOURS = 64
+
+
+def record() -> None:
+    """Record other_gear, which has other teeth, and with both encoders monday and tuesday."""
+    shutil.copy(ROOT / CONFIG[1], 'actuator.yaml')
+    Path('other.yaml').write_text(OTHER_GEAR, 'utf-8')
+    run(['compute', str(ROOT / BAG), 'other_gear', '--config', 'other.yaml'])
+    record_both_encoders(Path(), 'monday', 'tuesday')
 
 
 def photograph(pages: dict[str, list[str]]) -> None:
@@ -50,15 +68,16 @@ def photograph(pages: dict[str, list[str]]) -> None:
             page = Path(folder, 'page.html')
             run([*arguments, '--html', str(page)])
             tab.goto(page.as_uri())
+            tab.add_style_tag(content='footer { display: none; }')  # it has a date
             tab.wait_for_load_state('networkidle')
             picture = Image.open(BytesIO(tab.screenshot()))
-            picture.quantize(COLOURS).save(DOCS / name, optimize=True)
+            picture.quantize(COLOURS).save(ROOT / DOCS / name, optimize=True)
         browser.close()
 
 
 def run(arguments: list[str]) -> None:
-    """Run gearkin, which has to succeed."""
-    if main(arguments):
+    """Run gearkin, which has to succeed, or to find that something fails."""
+    if main(arguments) > 1:
         sys.exit(f'gearkin {" ".join(arguments)}: failed')
 
 
@@ -67,3 +86,6 @@ if __name__ == '__main__':
     for name, arguments in DRAWN.items():
         run([*arguments, str(DOCS / name), '--force'])
     photograph(PAGES)
+    with tempfile.TemporaryDirectory() as folder, chdir(folder):
+        record()
+        photograph(OF_RECORDINGS)

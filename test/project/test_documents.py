@@ -6,11 +6,9 @@ import shutil
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-import numpy as np
 import pytest
 import yaml
-from gear_recordings import Samples, write_recording
-from simulated_gear import GearSet, gears, simulate, strokes
+from gear_recordings import record_both_encoders
 
 from gear_kinematics.commands.cli import COMMANDS, main, make_parser
 from gear_kinematics.state.parameters import BRANCH_PARAMETERS, PARAMETERS, defaults
@@ -44,22 +42,6 @@ def names(cell: str) -> list[str]:
     return re.findall('`([^`]+)`', cell)
 
 
-def record_both_encoders(folder: Path, *names: str) -> None:
-    """Write recordings of a simulated gear."""
-    folder.mkdir()
-    random = np.random.default_rng(3)
-    setting = GearSet(1)
-    gear = gears(setting, random)
-    for name in names:
-        simulated = simulate(setting, gear, strokes(25.0, random), random)
-        stamps = 10**18 + np.round(simulated.time * 1e9).astype(np.int64)
-        write_recording(
-            folder / name,
-            Samples(stamps, simulated.rotor[:, 0], simulated.effort[:, 0]),
-            Samples(stamps, simulated.measured[:, 0]),
-        )
-
-
 def test_readme_is_one_screen():
     assert len(README.splitlines()) <= 120
 
@@ -73,6 +55,7 @@ def test_every_command_in_the_documentation_has_arguments_that_exist(page):
 def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     shutil.copytree(ROOT / 'bags/servo_point_to_point', tmp_path / 'logs/monday')
     shutil.copy(ROOT / 'docs/examples/ramps.csv', tmp_path)
+    (tmp_path / 'encoder').mkdir()
     record_both_encoders(tmp_path / 'encoder', 'monday', 'tuesday', 'friday')
     monkeypatch.chdir(tmp_path)
     told = {}

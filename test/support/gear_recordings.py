@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from simulated_gear import GearSet, gears, simulate, strokes
 
 from gear_kinematics.bag import BagWriter
 from gear_kinematics.wire.cdr import JointStateTemplate
@@ -97,6 +98,21 @@ def _messages(joint: str, samples: Samples):
     columns = [samples.positions, *([] if samples.efforts is None else [samples.efforts])]
     for stamp, *numbers in zip(samples.stamps, *columns, strict=True):
         yield int(stamp), template.encode(int(stamp), *([float(number)] for number in numbers))
+
+
+def record_both_encoders(folder: Path, *names: str) -> None:
+    """Write recordings of a simulated gear."""
+    random = np.random.default_rng(3)
+    setting = GearSet(1)
+    gear = gears(setting, random)
+    for name in names:
+        simulated = simulate(setting, gear, strokes(25.0, random), random)
+        stamps = 10**18 + np.round(simulated.time * 1e9).astype(np.int64)
+        write_recording(
+            folder / name,
+            Samples(stamps, simulated.rotor[:, 0], simulated.effort[:, 0]),
+            Samples(stamps, simulated.measured[:, 0]),
+        )
 
 
 def old_recording(
