@@ -1,8 +1,11 @@
-"""The report in a browser: the mechanism moves, and is where 50 digits say."""
+"""The report in a browser: what it shows first, on a phone too; the mechanism moves, and is where
+50 digits say.
+"""
 
 import math
 import shutil
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import oracle
@@ -10,6 +13,7 @@ import pytest
 import report_samples as samples
 
 from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.report.document import Document, Figure, Line, Panel, Pen, Section, Table
 from gear_kinematics.report.html import to_html
 from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.validation.document import document
@@ -54,6 +58,12 @@ def tab(browser, tmp_path_factory):
     path = tmp_path_factory.mktemp('page') / 'report.html'
     path.write_text(to_html(document(reports)), 'utf-8')
     tab = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
+    visit(tab, path)
+    return tab
+
+
+def visit(tab, path):
+    """Open a page, which loads nothing but itself and complains about nothing."""
     tab.seen = []
     tab.on('console', lambda message: tab.seen.append(message.text))
     tab.on('pageerror', lambda error: tab.seen.append(str(error)))
@@ -61,7 +71,6 @@ def tab(browser, tmp_path_factory):
     tab.goto(path.as_uri())
     assert tab.seen == [path.as_uri()]
     tab.seen.clear()
-    return tab
 
 
 @pytest.fixture(params=[0, 1], ids=['80-76', '11-8'])
@@ -202,3 +211,108 @@ def test_narrow_pages_need_no_scrolling_sideways(tab, report):
         expect(tab.locator('html')).to_have_js_property('scrollWidth', width)
     finally:
         tab.set_viewport_size(size)
+
+
+# What it shows first
+
+ROTOR = replace(samples.ROTOR, first_stamp=samples.START)
+FAILED = replace(samples.FAILING, rotor=ROTOR, verdict='fail')
+WIDE, PHONE = {'width': 1280, 'height': 800}, {'width': 400, 'height': 800}
+
+
+@pytest.fixture
+def opened(browser, tmp_path):
+    """Open documents."""
+    tabs = []
+
+    def open_(shown, view):
+        path = tmp_path / 'page.html'
+        path.write_text(to_html(shown), 'utf-8')
+        tab = browser.new_page(viewport=view)
+        tabs.append(tab)
+        visit(tab, path)
+        return tab
+
+    yield open_
+    for tab in tabs:
+        assert tab.seen == []
+        tab.close()
+
+
+def test_first_screen_has_verdict_cause_mechanism_and_the_curve_that_failed(opened):
+    tab = opened(document([FAILED]), WIDE)
+    expect(tab.locator('.legendtext')).to_have_text(['expected', 'recorded'])
+    for part in ('h1 .badge', '.first', '.branches figure >> nth=0', '.subplot.xy >> nth=0'):
+        box = tab.locator(part).bounding_box()
+        assert box['y'] >= 0, part
+        assert box['y'] + box['height'] <= WIDE['height'], part
+    expect(tab.locator('h1 .badge')).to_have_text('failed')
+    expect(tab.locator('.first')).to_have_text(samples.FAILING.causes[0])
+    # At the worst moment, 2.5 s from the start; the legend is above the curves.
+    expect(tab.locator('.motion output')).to_have_text('2.5000 s')
+    area, legend = plot(tab), tab.locator('.legend').last.bounding_box()
+    assert legend['y'] + legend['height'] <= area['y']
+
+
+def test_findings_lead_to_their_moment(opened):
+    tab = opened(document([FAILED]), WIDE)
+    tab.locator('summary').first.click()
+    tab.get_by_role('link', name='missing').first.click()
+    expect(tab.locator('.motion output')).to_have_text('1.0000 s')
+    low, high = tab.evaluate("document.querySelector('.figure').layout.xaxis.range")
+    assert low == pytest.approx(1.0 - 3.99 / 40)
+    assert high == pytest.approx(1.0 + 3.99 / 40)
+
+
+CUT = """() => {
+  document.querySelectorAll('details').forEach(folded => folded.open = true);
+  const texts = document.querySelectorAll(
+    'h1, h2, h3, p, li, dt, dd, th[scope=row], td, summary, figcaption, text');
+  const cut = [];
+  for (const text of texts) {
+    if (text.closest('#js-plotly-tester')) continue; // where plotly measures text
+    const {left, right, width} = text.getBoundingClientRect();
+    const wider = text instanceof HTMLElement && text.scrollWidth > text.clientWidth + 1;
+    const outside = left < 0 || right > innerWidth + 0.5;
+    if (width && (outside || wider)) cut.push(`${text.tagName} ${text.textContent}`);
+  }
+  return [cut, document.documentElement.scrollWidth];
+}"""
+
+
+def test_nothing_is_cut_off_on_a_phone(opened):
+    """The page of a fleet, and panels that would be side by side."""
+    lines = tuple(Line(name, Pen.FIRST, *[np.arange(9.0)] * 2) for name in ('rising', 'falling'))
+    title = 'ramps to 5 N·m: hysteresis 1.559 ± 0.033 arcmin'
+    label = 'torque at the output [N·m]; dashed: 0 and ±3 % of rated'
+    loops = Panel(title, label, 'wind-up at the output [arcmin]', lines)
+    aside = Section('', (Table((), ()),), figure=Figure((loops, loops, loops)))
+    for shown, axes in (
+        (document([FAILED, samples.UNUSABLE]), 4),
+        (Document('gearkin lost-motion', (aside,)), 3),
+    ):
+        tab = opened(shown, PHONE)
+        expect(tab.locator('.figure .nsewdrag')).to_have_count(axes)
+        assert tab.evaluate(CUT) == [[], PHONE['width']]
+        areas = [area.bounding_box() for area in tab.locator('.nsewdrag').all()]
+        for upper, lower in pairwise(areas):
+            assert upper['y'] + upper['height'] < lower['y']
+            assert upper['x'] == lower['x']
+
+
+def test_page_on_300_000_messages_is_small_and_shown_at_once(opened, tmp_path):
+    tab = opened(document([samples.of_300_000_messages()]), WIDE)
+    assert (tmp_path / 'page.html').stat().st_size <= 6e6
+    expect(tab.locator('.figure .nsewdrag')).to_have_count(12)
+    needed = []
+    for _ in range(2):
+        # The time of the processor, as others can be busy with something else.
+        session = tab.context.new_cdp_session(tab)
+        session.send('Performance.enable', {'timeDomain': 'threadTicks'})
+        tab.reload()
+        tab.wait_for_selector('.figure .nsewdrag')
+        tab.evaluate('() => new Promise(go => requestAnimationFrame(() => setTimeout(go)))')
+        metrics = session.send('Performance.getMetrics')['metrics']
+        needed += [metric['value'] for metric in metrics if metric['name'] == 'TaskDuration']
+    tab.seen.clear()  # of the page itself
+    assert 0.1 < min(needed) <= 2.0
