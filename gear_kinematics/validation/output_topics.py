@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Gear, Mechanism, MotionState
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder, UnseenTurns
+from gear_kinematics.validation.factor import FactorFit, describe
 from gear_kinematics.validation.field_errors import FieldErrors
 from gear_kinematics.validation.matching import Columns, Faults, OutputTopic
 from gear_kinematics.validation.series import FieldSamples
@@ -112,6 +113,7 @@ class OutputState(JointStateTopic):
         """Take the arguments of `JointStateTopic`."""
         super().__init__(*arguments)
         self.fit = AngleFit()
+        self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
         self.position = self.errors[0]
 
     def _compare(self, rows: Array, samples: Columns) -> None:
@@ -130,6 +132,8 @@ class OutputState(JointStateTopic):
         effort = float(self._gear.gear_ratio) * samples['effort']
         needed = np.stack([angle, velocity, effort], axis=-1)
         self._add_errors(rows, stamp, rotor_angle, recorded, needed)
+        for column, fit in enumerate(self._factors.values(), 1):
+            fit.update(recorded[:, column], needed[:, column])
         error = recorded[:, 0] - needed[:, 0]
         usable = np.isfinite(error)
         self.fit.update(rotor_angle[usable], recorded[usable, 0], error[usable])
@@ -139,6 +143,12 @@ class OutputState(JointStateTopic):
             'output_angle': recorded[usable, 0],
             'error': error[usable],
         }
+
+    def factors(self) -> Iterator[str]:
+        """Describe constant factors of the velocity and the effort, in sentences."""
+        for field, fit in self._factors.items():
+            if (factor := fit.factor()) is not None:
+                yield describe(field, factor, self._gear.gear_ratio)
 
 
 class BodyPoses(OutputTopic):

@@ -327,6 +327,8 @@ class Validator:
             found = diagnose(self._gear, self.output.fit, self._tolerances.angle)
             if found:
                 yield found
+        else:
+            yield from self.output.factors()
         if self.poses:
             yield from self.poses.order()
         if self._input.mostly_rejected and self._input.missing_joint:

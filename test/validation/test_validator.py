@@ -769,6 +769,38 @@ def test_lanes_tell_which_values_are_absent_or_not_finite(recorded, config):
     ]
 
 
+@pytest.mark.parametrize(
+    ('field', 'factor', 'told'),
+    [
+        (
+            'velocity',
+            180.0 / math.pi,
+            '57.2958 times the expected one: it is in degrees per second',
+        ),
+        (
+            'velocity',
+            30.0 / math.pi,
+            '9.5493 times the expected one: it is in revolutions per min',
+        ),
+        ('velocity', -19.0, '-19 times the expected one: it is that of the rotor'),
+        ('effort', 1.0 / 19.0, ': it is that of the rotor, with the sign flipped'),
+        ('effort', -1.0, '-1 times the expected one: the sign is flipped'),
+        ('effort', 1.25, 'is 1.25 times the expected one'),
+    ],
+)
+def test_a_constant_factor_is_told_with_its_reason(recorded, config, field, factor, told):
+    changed = change_all(recorded, OUTPUT, lambda m: getattr(m, field).__imul__(factor))
+    [cause] = validate(changed, config).causes
+    assert cause.startswith(f'the recorded {field} is ')
+    assert told in cause
+
+
+@pytest.mark.parametrize('value', [2e-9, 1.0, math.nan, 1e300])
+def test_a_factor_that_is_not_constant_is_not_told(recorded, config, value):
+    changed, _ = change_one(recorded, OUTPUT, lambda m: m.velocity.__iadd__(value))
+    assert validate(changed, config).causes == ()
+
+
 def test_the_cause_is_told_before_its_effects(recorded, config):
     changed = change_all(recorded, OUTPUT, lambda m: m.position.__imul__(-1.0))
     report = validate(changed, config)
