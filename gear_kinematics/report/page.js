@@ -96,7 +96,8 @@
     if (!element.data) draw(element);
     const {time} = figures.get(element);
     const moment = Number(link.dataset.time);
-    const around = (time[time.length - 1] - time[0]) / 40 || 1;
+    const known = time.filter(at => at !== null);
+    const around = (Math.max(...known) - Math.min(...known)) / 40 || 1;
     Plotly.relayout(element, {'xaxis.range': [moment - around, moment + around]});
     element.dispatchEvent(new CustomEvent('moment', {detail: moment}));
   });

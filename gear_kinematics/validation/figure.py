@@ -33,18 +33,19 @@ _MARGIN = 0.02
 
 
 def figure(report: BagReport) -> Figure | None:
-    """Return the panels of a bag over time, with what failed first; None without any curve."""
+    """Return the panels of a bag over time, with what failed first; None if there is nothing."""
     curves = list(_curves(report))
-    if not curves:
+    if not curves and not report.lanes:
         return None
     failed = [found for found in curves if not found[1].passed]
     passed = [found for found in curves if found[1].passed]
     panels = [panel for found in (*failed, *passed[:1]) for panel in _both(*found)]
     if report.lanes:
         place = 0 if not failed and any(lane.fails for lane in report.lanes) else 2
-        panels.insert(place, _lanes(report.lanes, report.series[0].time))
+        panels.insert(place, _lanes(report.lanes, curves[0][2].time if curves else ()))
     panels += [_error(*found) for found in passed[1:] if not failed and found[1].unit == 'm']
-    return Figure((*panels, _rotor(report.series[0])), stacked=True)
+    panels += [_rotor(report.series[0])] if curves else []
+    return Figure(tuple(panels), stacked=True)
 
 
 def _curves(report: BagReport) -> Iterator[tuple[TopicReport, FieldReport, Series, Curve]]:
@@ -106,8 +107,10 @@ def _rotor(series: Series) -> Panel:
 
 
 def _lanes(lanes: Sequence[Lane], time: Sequence[float]) -> Panel:
-    """Return a panel with a lane for everything that happened on the topics."""
-    first, last = np.fmin.reduce(time), np.fmax.reduce(time)
+    """Return a panel with a lane for all that happened; its marks are near times, if there are."""
+    first, last = np.fmin.reduce(time, initial=np.inf), np.fmax.reduce(time, initial=-np.inf)
+    if first > last:
+        first, last = -np.inf, np.inf
     margin = _MARGIN * (last - first)
     lines, levels = [], []
     for k, lane in enumerate(lanes):

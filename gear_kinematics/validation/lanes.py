@@ -15,15 +15,17 @@ _Events = Iterator[tuple[str, Occurrences, bool]]
 def lanes(
     rotor: tuple[str, Occurrences, Occurrences],
     outputs: Iterable[tuple[str, OutputTopic, Missing]],
-    start: int,
+    start: int | None,
 ) -> Iterator[Lane]:
-    """Yield a lane for everything that happened on the topics.
+    """Yield a lane for everything that happened on the topics; none without a start.
 
     Args:
         rotor: name of the rotor's topic, its gaps and its rejected messages.
         outputs: name, comparison and missing messages of each output.
         start: stamp at the time 0, ns.
     """
+    if start is None:
+        return
     topic, gaps, rejected = rotor
     yield from _of(topic, iter([('gaps', gaps, False), ('rejected', rejected, False)]), start)
     for name, output, missing in outputs:

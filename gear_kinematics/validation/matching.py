@@ -5,7 +5,7 @@ message is looked up only where a run ends. Memory is bounded by a window of sam
 """
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.recorder import NO_INPUT, Completeness, Missing, RecordedInputs
 from gear_kinematics.validation.report import TopicReport
 from gear_kinematics.validation.series import RecordedField, SeriesRecorder
+from gear_kinematics.validation.wording import counted
 
 Array = NDArray[Any]
 Columns = dict[str, Array]
@@ -236,3 +237,33 @@ class Group(NamedTuple):
     """Of the rotor's topic and those of the outputs."""
     outputs: Sequence[OutputTopic]
     absences: Completeness
+
+    def why_missing(self) -> Iterator[str]:
+        """Say why messages may be missing, in sentences."""
+        rotor, *names = self.names
+        missing = dict(zip(names, self.absences.topics, strict=True))
+        for topic, of_topic in missing.items():
+            if of_topic.ended_early is not None:
+                yield (
+                    f'{topic} ends {of_topic.ended_early:.3f} s before {rotor}: '
+                    'the node may have ended'
+                )
+        counts = {topic: of_topic.inputs.count for topic, of_topic in missing.items()}
+        lost = [topic for topic, count in counts.items() if count]
+        if len(names) == 1 or not lost:
+            return
+        unanswered = self.absences.unanswered
+        if set(counts.values()) == {unanswered}:
+            yield (
+                f'{counted(unanswered, "message")} of {rotor} without any output: the node did '
+                'not receive them, or was blocked'
+            )
+        elif len(lost) < len(names) and not unanswered:
+            whole = [topic for topic in names if topic not in lost]
+            lacking = ', '.join(
+                f'{counted(counts[topic], "message")} of {topic}' for topic in lost
+            )
+            yield (
+                f'{lacking} missing, but none of {", ".join(whole)}: the node '
+                'had the inputs, and the messages were lost on their way to the recording'
+            )

@@ -122,6 +122,9 @@ class Completeness:
             strict: whether to judge everything, as if the recorder lost nothing.
         """
         self.topics = tuple(Missing() for _ in range(topics))
+        self.unanswered = 0
+        """Inputs without an output on any topic, up to the last one with an output."""
+        self._behind = 0  # further ones without, behind that
         self._strict = strict
         self._start = _ALWAYS if strict else None
         self._first: list[Inputs] = []  # until the recorder has certainly settled
@@ -155,6 +158,13 @@ class Completeness:
             topic.close(self._last_received, strict=self._strict)
 
     def _take(self, inputs: Inputs, cause: str = '') -> None:
+        if not cause:
+            answered = np.flatnonzero(inputs.answered.any(axis=1))
+            end = int(answered[-1]) + 1 if len(answered) else 0
+            if end:
+                self.unanswered += self._behind + end - len(answered)
+                self._behind = 0
+            self._behind += len(inputs.stamp) - end
         for topic, answered in zip(self.topics, inputs.answered.T, strict=True):
             topic.update(inputs.received, inputs.stamp, answered, cause)
 

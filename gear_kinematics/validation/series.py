@@ -88,7 +88,7 @@ class SeriesRecorder:
         curves = [
             _curve(name, recorded, samples)
             for (name, recorded), samples in zip(self._fields.items(), rows.fields, strict=True)
-            if not np.isnan(samples.error).all()
+            if not (np.isnan(samples.recorded).all() and np.isnan(samples.expected).all())
         ]
         return Series(topic, time.tolist(), rows.rotor_angle.tolist(), tuple(curves))
 

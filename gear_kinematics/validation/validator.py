@@ -168,7 +168,7 @@ class Validator:
             findings=(*self._findings, *causes, *notes, *(found.text for found in judgements)),
             causes=(*failed, *causes),
             series=tuple(found for found in series if found),
-            lanes=tuple(lanes(inputs, self._judged(), start)),
+            lanes=tuple(lanes(inputs, self._judged(), rotor.first_stamp)),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters['module'],
         )
@@ -333,12 +333,8 @@ class Validator:
             yield from self.poses.order()
         if self._input.mostly_rejected and self._input.missing_joint:
             yield f'{self._topics.rotor}: {self._input.missing_joint}'
-        for topic, _, missing in self._judged():
-            if missing.ended_early is not None:
-                yield (
-                    f'{topic} ends {missing.ended_early:.3f} s before {self._topics.rotor}: '
-                    'the node may have ended'
-                )
+        for group in self._groups:
+            yield from group.why_missing()
 
     def _notes(self) -> Iterator[str]:
         """Yield what fails nothing."""

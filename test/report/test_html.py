@@ -287,6 +287,15 @@ def test_lanes_come_first_where_no_value_is_wrong():
     ]
 
 
+def test_lanes_are_all_that_is_drawn_where_nothing_was_compared():
+    nothing = replace(samples.FAILING, series=(), topics=(samples.FAILING.topics[1],))
+    plots = figure(nothing)
+    assert [len(names) for names in panels(plots)] == [3]
+    assert plots['time'] == [1.76, 1.8, None, 3.09, 3.1, None]
+    assert 'turned' not in plots
+    assert not parse(without_plotly(to_html([nothing]))).find_class('motion')
+
+
 @pytest.mark.parametrize('report', [samples.FAILING, samples.PASSING])
 def test_panels_do_not_overlap(report):
     layout = figure(report)['layout']

@@ -770,6 +770,36 @@ def test_lanes_tell_which_values_are_absent_or_not_finite(recorded, config):
 
 
 @pytest.mark.parametrize(
+    ('dropped', 'told'),
+    [
+        ([(OUTPUT, 100), (OUTPUT, 150)], f'2 messages of {OUTPUT} missing, but none of {POSES}'),
+        ([(POSES, 150)], f'1 message of {POSES} missing, but none of {OUTPUT}'),
+        ([(OUTPUT, 100), (POSES, 100)], f'1 message of {ROTOR} without any output'),
+        ([(OUTPUT, 100), (POSES, 101)], None),
+        ([(OUTPUT, 100), (POSES, 100), (POSES, 150)], None),
+        ([], None),
+    ],
+)
+def test_who_lost_messages_is_told_by_those_that_are_there(recorded, config, dropped, told):
+    places = {index_of(recorded, topic, number) for topic, number in dropped}
+    left = [message for k, message in enumerate(recorded) if k not in places]
+    causes = validate(left, config).causes
+    assert [cause[: len(told or '')] for cause in causes] == ([told] if told else [])
+
+
+def test_a_field_that_is_always_absent_has_a_curve_of_what_was_expected(recorded, config):
+    changed = change_all(recorded, OUTPUT, lambda m: setattr(m, 'effort', np.zeros(0)))
+    report = validate(changed, config)
+    assert not field_of(report, OUTPUT, 'effort').passed
+    [effort] = (curve for curve in report.series[0].curves if curve.field == 'effort')
+    assert np.isnan(effort.recorded).all()
+    assert np.isfinite(effort.expected).all()
+    neither = change_all(changed, ROTOR, lambda m: setattr(m, 'effort', np.zeros(0)))
+    fields = [curve.field for curve in validate(neither, config).series[0].curves]
+    assert fields == ['position', 'velocity']
+
+
+@pytest.mark.parametrize(
     ('field', 'factor', 'told'),
     [
         (
