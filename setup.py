@@ -40,6 +40,7 @@ setup(
         *shared('launch', '*.launch.py'),
         *shared('bags', '*'),
         *shared('policies', '*.policy.xml'),
+        *shared('meshes', '*.stl'),
         *shared('docs', 'report.*'),
         *shared('docs', 'security.md'),
     ],
@@ -65,6 +66,8 @@ setup(
         'video': ['imageio-ffmpeg'],
         # `gearkin completion`
         'completion': ['shtab'],
+        # `gearkin urdf --meshes`
+        'mesh': ['mapbox-earcut'],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

@@ -11,6 +11,7 @@ from launch_ros.substitutions import FindPackageShare
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.ros.launch_arguments import node_arguments
 from gear_kinematics.shape.urdf import urdf
+from gear_kinematics.state.meshes import folder_uri
 
 
 def start_viewers(context: LaunchContext) -> list[Node]:
@@ -19,7 +20,9 @@ def start_viewers(context: LaunchContext) -> list[Node]:
     names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
     # robot_state_publisher needs the URDF as a parameter, and publishes it again. That topic is
     # renamed below, so that it does not collide with the node's.
-    description = urdf(Mechanism.from_mapping(parameters), module=parameters['module'], **names)
+    mechanism, module = Mechanism.from_mapping(parameters), parameters['module']
+    meshes = folder_uri(parameters['meshes'], mechanism, module)
+    description = urdf(mechanism, module=module, meshes=meshes, **names)
     fixed_frame = f'{names["frame_prefix"]}stator'
     return [
         Node(

@@ -8,6 +8,7 @@ EXTRAS = {
     'distributed': 'dask',
     'imageio_ffmpeg': 'video',
     'shtab': 'completion',
+    'mapbox_earcut': 'mesh',
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'

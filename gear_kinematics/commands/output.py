@@ -10,7 +10,7 @@ from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, TextIO
 
 from rich import console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -180,12 +180,17 @@ def write_file(target: str, content: bytes) -> None:
             unfinished.unlink()
 
 
-def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:
-    """Print why gears are drawn without teeth, if these cannot mesh; module in m."""
+def warn_if_teeth_cannot_mesh(
+    mechanism: Mechanism, module: float, stream: TextIO | None = None
+) -> None:
+    """Print why gears are drawn without teeth, if these cannot mesh; module in m.
+
+    The text goes to a stream, by default to stdout.
+    """
     try:
         tooth_pair(mechanism, module)
     except InterferenceError as error:
-        print(f'The gears are drawn as circles: {error}')
+        print(f'The gears are drawn as circles: {error}', file=stream)
 
 
 @contextmanager

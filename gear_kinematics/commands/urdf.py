@@ -1,22 +1,80 @@
-"""`gearkin urdf`: print the URDF."""
+"""`gearkin urdf`: print the URDF, and write its meshes."""
 
 import argparse
+import sys
+from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 from gear_kinematics.shape.urdf import urdf
+from gear_kinematics.state import meshes
 
-HELP = 'print the URDF'
+HELP = 'print the URDF, and write its meshes'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
+    parser.add_argument(
+        '--meshes',
+        type=Path,
+        metavar='DIR',
+        help='write the bodies with their teeth to this folder, as STL, and show them',
+    )
+    parser.add_argument(
+        '--mesh-uri',
+        type=_mesh_uri,
+        metavar='URI',
+        help='of the folder with the meshes, such as package://my_robot/meshes '
+        '(default: file:// and DIR, or the parameter meshes)',
+    )
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Print the URDF."""
+    """Write the meshes, and print the URDF."""
     config = arguments.load_config(options)
-    names = {name: config[name] for name in ('module', 'output_joint', 'frame_prefix')}
-    print(urdf(Mechanism.from_mapping(config), **names), end='')
+    mechanism, module = Mechanism.from_mapping(config), config['module']
+    uri = options.mesh_uri or config['meshes']
+    if options.meshes:
+        warn_if_teeth_cannot_mesh(mechanism, module, sys.stderr)
+        _write(mechanism, module, options.meshes)
+        uri = options.mesh_uri or options.meshes.resolve().as_uri()
+    text = urdf(
+        mechanism,
+        module=module,
+        output_joint=config['output_joint'],
+        frame_prefix=config['frame_prefix'],
+        meshes=meshes.folder_uri(uri, mechanism, module),
+    )
+    print(text, end='')
     return ExitCode.DONE
+
+
+def _mesh_uri(text: str) -> str:
+    try:
+        meshes.check(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
+    return text
+
+
+def _write(mechanism: Mechanism, module: float, folder: Path) -> None:
+    """Write the solids to a folder, which is created.
+
+    Raises:
+        ValueError: if they cannot be written, or a file of the same name is not of this program.
+    """
+    files = {
+        folder / f'{name}.stl': to_stl(solid) for name, solid in solids(mechanism, module).items()
+    }
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path in files:
+            if path.exists() and not path.read_bytes().startswith(STL_HEADER):
+                raise ValueError(f'{path} is not from gearkin, and is kept')
+    except OSError as error:
+        raise ValueError(f'{error.filename}: {error.strerror}') from error
+    for path, content in files.items():
+        write_file(str(path), content)

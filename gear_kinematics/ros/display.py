@@ -15,6 +15,7 @@ from visualization_msgs.msg import MarkerArray
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import urdf
+from gear_kinematics.state.meshes import folder_uri
 from gear_kinematics.wire import topics
 
 
@@ -31,7 +32,7 @@ class Display:
         """Open the topics.
 
         Args:
-            node: with the parameters `module` and `markers_rate`.
+            node: with the parameters `module`, `meshes` and `markers_rate`.
             mechanism: the mechanism to show.
             create_output: creates a publisher of the node, from type, topic and QoS.
             publish: publishes a message.
@@ -39,6 +40,7 @@ class Display:
         self._mechanism = mechanism
         self._module = node.get_parameter('module').value
         self._publish = publish
+        self._meshes = folder_uri(node.get_parameter('meshes').value, mechanism, self._module)
         self._description = String()
         self._description_publisher = create_output(String, topics.ROBOT_DESCRIPTION, _latched())
         if rate := node.get_parameter('markers_rate').value:
@@ -57,7 +59,9 @@ class Display:
             ValueError: if `output_joint` is empty or the name of another joint.
         """
         names = {'output_joint': output_joint, 'frame_prefix': frame_prefix}
-        description = String(data=urdf(self._mechanism, module=self._module, **names))
+        description = String(
+            data=urdf(self._mechanism, module=self._module, meshes=self._meshes, **names)
+        )
         if description == self._description:
             return
         self._description = description

@@ -20,7 +20,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.shape import teeth
 from gear_kinematics.shape.outlines import roses, turned
-from gear_kinematics.shape.urdf import COLOURS, FACE_WIDTH
+from gear_kinematics.shape.solids import FACE_WIDTH
+from gear_kinematics.shape.visuals import COLOURS
 
 Array = NDArray[np.float64]
 Size = tuple[float, float, float]

@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from gear_kinematics.kinematics import Branch, GearRatio
+from gear_kinematics.state import meshes
 from gear_kinematics.state.parameter_files import ConfigError, given_parameters
 from gear_kinematics.state.share import share_directory
 from gear_kinematics.wire.nearest import nearest
@@ -126,6 +127,12 @@ PARAMETERS: Mapping[str, Parameter] = {
     'home_angle': Parameter('Output angle that ~/home sets, rad', -1e9, 1e9),
     'frame_prefix': Parameter('Prefix of every frame id and joint name'),
     'markers_rate': Parameter('Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True),
+    'meshes': Parameter(
+        'URI of the folder with the meshes of the URDF; auto: the installed ones, if they are of '
+        'this mechanism; none: simple shapes',
+        read_only=True,
+        check=meshes.check,
+    ),
     'executor': Parameter(
         'rclpy executor; auto: events if this ROS has it',
         choices=('auto', 'events', 'single_threaded'),

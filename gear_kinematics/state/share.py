@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-_PACKAGE = 'gear_kinematics'
+PACKAGE = 'gear_kinematics'
 
 
 def share_directory() -> Path:
@@ -17,10 +17,10 @@ def share_directory() -> Path:
         FileNotFoundError: if the package was moved out of its installation.
     """
     for ancestor in Path(__file__).resolve().parents:
-        for candidate in (ancestor / 'share' / _PACKAGE, ancestor):
+        for candidate in (ancestor / 'share' / PACKAGE, ancestor):
             if (candidate / 'package.xml').is_file() and (candidate / 'config').is_dir():
                 return candidate
-    raise FileNotFoundError(f'the files installed with {_PACKAGE} are missing')
+    raise FileNotFoundError(f'the files installed with {PACKAGE} are missing')
 
 
 def version() -> str:

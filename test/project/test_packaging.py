@@ -37,7 +37,7 @@ ROSDEP_KEYS = {
     'yaml': 'python3-yaml',
 }
 # Extras, which rosdep does not know, and what Python itself has from 3.14 on.
-WITHOUT_KEY = {'compression', 'distributed', 'imageio_ffmpeg', 'plotly', 'shtab'}
+WITHOUT_KEY = {'compression', 'distributed', 'imageio_ffmpeg', 'mapbox_earcut', 'plotly', 'shtab'}
 PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 
 
@@ -158,6 +158,7 @@ def metadata(wheel) -> Message:
 def shared_files(root: Path) -> set[str]:
     """Return every file that belongs into share/gear_kinematics."""
     folders = {'config': '*', 'launch': '*.launch.py', 'bags': '*', 'policies': '*'}
+    folders['meshes'] = '*'
     files = {
         path.relative_to(root).as_posix()
         for folder, pattern in folders.items()
@@ -319,7 +320,20 @@ def test_gearkin_is_on_the_path_of_a_sourced_workspace(workspace, tmp_path):
     source_and_run = f'. {workspace}/install/setup.sh && command -v gearkin && gearkin urdf'
     found, _, urdf = run('sh', '-c', source_and_run, cwd=tmp_path).partition('\n')
     assert Path(found).is_relative_to(workspace)
-    assert ET.fromstring(urdf).tag == 'robot'  # noqa: S314, the project's own words
+    assert_meshes_are_installed(urdf, workspace / 'install/gear_kinematics/share')
+
+
+def test_pip_installs_the_meshes_of_the_urdf(prefix):
+    urdf = run(prefix / 'bin/gearkin', 'urdf', cwd=prefix, env=isolated())
+    assert_meshes_are_installed(urdf, prefix / 'share')
+
+
+def assert_meshes_are_installed(urdf: str, share: Path) -> None:
+    robot = ET.fromstring(urdf)  # noqa: S314, the project's own words
+    assert robot.tag == 'robot'
+    names = [mesh.get('filename') for mesh in robot.iter('mesh')]
+    assert len(names) == 10
+    assert all((share / name.removeprefix('package://')).is_file() for name in names)
 
 
 def test_every_installation_states_the_version_of_the_manifest(manifest, prefix, workspace):

@@ -158,6 +158,7 @@ TENANTS = {
     'rosbags': ['bag'],
     'matplotlib': ['plotting', 'report'],
     'plotly': ['report'],
+    'mapbox_earcut': ['shape'],
 }
 """Libraries, and the only rooms that import them."""
 

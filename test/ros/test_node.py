@@ -31,7 +31,7 @@ pytestmark = pytest.mark.live
 READ_ONLY = (
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
-    'executor',
+    'meshes', 'executor',
 )  # fmt: skip
 INTEGER_BOUNDS = {
     'ring_teeth': (2, 100_000, 0),
@@ -88,7 +88,7 @@ def test_every_parameter_has_a_type_and_a_description(node):
         for name in node.get_parameters_by_prefix('')
         if not name.startswith(('qos_overrides', 'use_sim_time', 'start_type_description'))
     ]
-    assert len(own) == 30
+    assert len(own) == 31
     for name in own:
         descriptor = node.describe_parameter(name)
         assert descriptor.description
@@ -406,6 +406,23 @@ def test_markers_can_be_switched_off(context):
     assert '/unmarked/output_state' in topics
     assert '/unmarked/markers' not in topics
     node.destroy_node()
+
+
+def test_description_shows_the_meshes_that_are_asked_for(context):
+    def described(**values):
+        overrides = [Parameter(name, value=value) for name, value in values.items()]
+        node = GearStatePublisher(
+            context=context, namespace='meshes', parameter_overrides=overrides
+        )
+        text = node._display._description.data
+        node.destroy_node()
+        return set(re.findall('filename="(.*)/satellite.stl"', text))
+
+    assert described() == {'package://gear_kinematics/meshes/80_76_0_0011_0_0005'}
+    assert described(module=0.00051) == described(meshes='none') == set()
+    assert described(meshes='package://my_robot/meshes') == {'package://my_robot/meshes'}
+    with pytest.raises(ParameterException, match='meshes: must be auto, none or a URI'):
+        described(meshes='my_robot/meshes')
 
 
 def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(context, monkeypatch):

@@ -41,6 +41,7 @@ OUR_OWN = {
     'max_rotor_acceleration': 6500.0,
     'markers_rate': 30.0,
     'executor': 'auto',
+    'meshes': 'auto',
     'output_encoder_joint': '',
     'output_encoder_direction': 1,
     'output_encoder_zero': 0.0,
@@ -51,7 +52,7 @@ OUR_OWN = {
 }
 READ_ONLY = {
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
-    'markers_rate', 'executor',
+    'markers_rate', 'meshes', 'executor',
 }  # fmt: skip
 LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
 

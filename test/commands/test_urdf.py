@@ -1,0 +1,116 @@
+"""`gearkin urdf`: the URDF and its meshes."""
+
+import re
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import pytest
+
+from gear_kinematics.commands.cli import main
+
+FILES = {'ring_gear.stl', 'satellite.stl', 'cam.stl', 'coupling.stl', 'arm.stl'}
+
+
+@pytest.fixture(autouse=True)
+def _earcut(request):
+    if 'without' not in request.node.name:
+        pytest.importorskip('mapbox_earcut', reason='mapbox_earcut is not installed')
+
+
+def mesh_names(text: str) -> set[str]:
+    robot = ET.fromstring(text)  # noqa: S314, our own
+    return {mesh.get('filename') for mesh in robot.iterfind('link/visual/geometry/mesh')}
+
+
+def test_meshes_are_written_and_named(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(['urdf', '--meshes', 'my robot/meshes']) == 0
+    folder = tmp_path / 'my robot/meshes'
+    assert {path.name for path in folder.iterdir()} == FILES
+    names = mesh_names(capsys.readouterr().out)
+    assert all(name.startswith('file:///') and ' ' not in name for name in names)
+    assert {Path(unquote(urlsplit(name).path)) for name in names} == set(folder.iterdir())
+
+
+def test_meshes_of_the_default_are_the_installed_ones(capsys):
+    assert main(['urdf']) == 0
+    prefix = 'package://gear_kinematics/meshes/80_76_0_0011_0_0005/'
+    assert mesh_names(capsys.readouterr().out) == {prefix + name for name in FILES}
+    assert main(['urdf', '--mesh-uri', 'none']) == 0
+    assert mesh_names(capsys.readouterr().out) == set()
+
+
+def test_uri_can_be_that_of_another_package(capsys, tmp_path):
+    config = tmp_path / 'my.yaml'
+    config.write_text(
+        '/**:\n  ros__parameters: {ring_teeth: 61, satellite_teeth: 58, eccentricity: 0.001,\n'
+        '    meshes: "package://from_file/meshes"}\n'
+    )
+    assert main(['urdf', '--config', str(config)]) == 0
+    names = mesh_names(capsys.readouterr().out)
+    assert names == {f'package://from_file/meshes/{name}' for name in FILES}
+    uri = ['--mesh-uri', 'package://my_robot/meshes']
+    assert main(['urdf', '--config', str(config), '--meshes', str(tmp_path / 'm'), *uri]) == 0
+    names = mesh_names(capsys.readouterr().out)
+    assert names == {f'package://my_robot/meshes/{name}' for name in FILES}
+    assert {path.name for path in (tmp_path / 'm').iterdir()} == FILES
+
+
+def test_own_meshes_are_replaced_and_no_others(capsys, tmp_path):
+    assert main(['urdf', '--meshes', str(tmp_path)]) == 0
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    (tmp_path / 'cam.stl').write_bytes(before['cam.stl'][:100])
+    assert main(['urdf', '--meshes', str(tmp_path)]) == 0
+    assert before == {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    capsys.readouterr()
+    for path in tmp_path.iterdir():
+        path.unlink()
+    (tmp_path / 'cam.stl').write_text('solid cam')
+    assert main(['urdf', '--meshes', str(tmp_path)]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err == f'gearkin: {tmp_path}/cam.stl is not from gearkin, and is kept\n'
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [
+        ('cam.stl', 'solid cam')
+    ]
+
+
+def test_file_in_the_place_of_the_folder_is_refused(capsys, tmp_path):
+    (tmp_path / 'file').touch()
+    for folder in (tmp_path / 'file', tmp_path / 'file/below'):
+        assert main(['urdf', '--meshes', str(folder)]) == 2
+        captured = capsys.readouterr()
+        assert captured.out == ''
+        assert re.fullmatch(rf'gearkin: {re.escape(str(tmp_path))}/file.*: .*\n', captured.err)
+
+
+def test_teeth_that_cannot_mesh_are_told_beside_the_urdf(capsys, tmp_path):
+    config = tmp_path / 'my.yaml'
+    config.write_text('/**:\n  ros__parameters: {eccentricity: 0.002}\n')
+    assert main(['urdf', '--config', str(config), '--meshes', str(tmp_path / 'm')]) == 0
+    captured = capsys.readouterr()
+    assert mesh_names(captured.out)
+    assert captured.err.startswith('The gears are drawn as circles: ')
+
+
+def test_urdf_without_meshes_needs_no_extra(capsys, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, 'mapbox_earcut', None)
+    assert main(['urdf']) == 0
+    capsys.readouterr()
+    assert main(['urdf', '--meshes', str(tmp_path / 'm')]) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ''
+    assert captured.err == (
+        "gearkin: mapbox_earcut is not installed: pip install 'gear_kinematics[mesh]'\n"
+    )
+    assert not (tmp_path / 'm').exists()
+
+
+def test_uri_that_is_none_is_refused(capsys):
+    with pytest.raises(SystemExit):
+        main(['urdf', '--mesh-uri', 'my meshes'])
+    captured = capsys.readouterr()
+    assert captured.err.startswith('gearkin: argument --mesh-uri: must be auto, none or a URI')
+    assert captured.err.count('\n') == 1
