@@ -1,5 +1,7 @@
 """The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
+import math
+import time
 from collections.abc import Callable
 
 from rclpy.event_handler import (
@@ -18,6 +20,10 @@ from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 DEPTH = 2000
 """Queued messages on either side of a topic: those of a driver at several kHz while the node is
 blocked."""
+_SETTLING = 0.9
+"""s after a driver's first message. Fast DDS reports as lost what a reliable driver published
+while the two were connecting, up to 0.2 s after that message on a busy machine. It is less than
+the time between two reports, so that only the first report after that message counts none."""
 
 
 class DriverInput:
@@ -51,6 +57,8 @@ class DriverInput:
     def _subscribe(self) -> None:
         self.unheard = True
         """Whether no message has been received yet."""
+        self._publishers = 0
+        self._settled_at = math.inf
         self.subscription = self._node.create_subscription(
             JointState,
             self._topic,
@@ -79,17 +87,23 @@ class DriverInput:
             self._subscribe()
 
     def begin_to_count_losses(self) -> None:
-        """Ignore losses before the first message, from before or during discovery."""
-        self.count_losses()
+        """Ignore losses from before and during the connection, which has just been made."""
         self.unheard = False
+        self._settled_at = time.monotonic() + _SETTLING
 
     def count_losses(self) -> None:
-        """Poll the middleware for the messages lost since the last call.
+        """Poll the middleware for the messages lost since the last call, and for new drivers.
 
         A callback for each loss, as for other events, could deadlock the thread that takes the
         event and the one that receives: ros2/rmw_fastrtps#890.
         """
         with self.losses:
             status = self.losses.take_event()
-        if not self.unheard:
+        now, publishers = time.monotonic(), self.subscription.get_publisher_count()
+        if publishers > self._publishers:
+            self._settled_at = now + _SETTLING
+        self._publishers = publishers
+        if not self.unheard and now >= self._settled_at:
             self._monitor.lost += status.total_count_change
+        if not publishers:
+            self.unheard = True

@@ -303,8 +303,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _report(self) -> None:
         for driver in self._drivers:
             driver.count_losses()
-            if not driver.subscription.get_publisher_count():
-                driver.unheard = True
         self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
         self._unheard.look(self._monitor.drivers, time.monotonic())
         self._look_at_graph()

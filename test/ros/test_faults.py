@@ -368,6 +368,7 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path, tally, encode
     assert process.returncode == 0
     assert values['referenced'] == str(referenced).lower()
     assert ('not referenced' in message, level == ERROR) == (not referenced,) * 2
+    assert values['lost messages'] == '0'
     assert tally.faults == NONE
 
 

@@ -359,11 +359,12 @@ class Losses:
         pass
 
 
-def test_what_is_lost_before_the_first_message_of_a_driver_is_not_counted(context, monkeypatch):
+def test_losses_are_counted_once_a_driver_is_connected(context, monkeypatch):
     node = GearStatePublisher(context=context, namespace='unheard')
     losses = Losses()
     node._rotor_driver.losses = losses
-    drivers = 1
+    now, drivers = 1000.0, 1
+    monkeypatch.setattr(time, 'monotonic', lambda: now)
     monkeypatch.setattr(Subscription, 'get_publisher_count', lambda _: drivers)
     monkeypatch.setattr(Publisher, 'publish', lambda *_: None)
     stamps = itertools.count(1)
@@ -376,19 +377,36 @@ def test_what_is_lost_before_the_first_message_of_a_driver_is_not_counted(contex
     def message():
         node._on_rotor_state(rotor_bytes(next(stamps), position=[1.0]))
 
-    # The count goes on from the first message on.
+    # The driver has been there for long, but was silent.
     assert lost(3, node._report) == 0
+    now += 60.0
+    assert lost(3, node._report) == 0
+    # What was lost during the connection may be reported soon after the first message.
     assert lost(4, message) == 0
-    assert lost(5, message) == 0
-    assert lost(0, node._report) == 5
-    assert lost(6, node._report) == 11
+    assert lost(5, node._report) == 0
+    now += 0.8
+    assert lost(2, node._report) == 0
+    now += 0.2
+    assert lost(6, message) == 0
+    assert lost(0, node._report) == 6
+    assert lost(5, node._report) == 11
     # The driver has ended, and another begins.
     drivers = 0
     assert lost(7, node._report) == 18
     drivers = 1
     assert lost(8, node._report) == 18
+    now += 1.1
     assert lost(9, message) == 18
+    assert lost(1, node._report) == 18
+    now += 1.1
     assert lost(10, node._report) == 28
+    # Another one joins it, such as a new one while the killed one is still in the graph.
+    drivers = 2
+    assert lost(2, node._report) == 28
+    now += 1.1
+    assert lost(20, node._report) == 48
+    drivers = 1
+    assert lost(30, node._report) == 78
     node.destroy_node()
 
 
