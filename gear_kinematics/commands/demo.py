@@ -3,10 +3,11 @@
 import argparse
 from pathlib import Path
 
-from rich.console import Console
-
 from gear_kinematics.commands import ExitCode
-from gear_kinematics.commands.output import warn_of_shared_memory
+from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.report.document import Cell, Document, Section, Table, Tone
+from gear_kinematics.report.text import render
+from gear_kinematics.validation.report import BagReport
 
 HELP = 'play the shipped bag into the live node and validate its outputs'
 
@@ -27,4 +28,30 @@ def run(options: argparse.Namespace) -> ExitCode:
     # Needs ROS, unlike most commands.
     from gear_kinematics.ros import demo  # noqa: PLC0415
 
-    return ExitCode.DONE if demo.run(Console(), options.calibration).passed else ExitCode.FAILED
+    console = Console()
+    report = demo.run(console, options.calibration)
+    render(_document(report, demo.TOLERANCE), console)
+    return ExitCode.DONE if report.passed else ExitCode.FAILED
+
+
+def _document(report: BagReport, tolerance: float) -> Document:
+    rows = []
+    for topic in report.topics:
+        missing = Cell(str(topic.missing), Tone.BAD if topic.missing else Tone.PLAIN)
+        for field in topic.fields:
+            deviation = Cell(
+                f'{field.max_error:.1e}', Tone.PLAIN if field.passed else Tone.BAD, field.unit
+            )
+            name = Cell(f'{topic.topic} {field.name}')
+            rows.append((name, Cell(str(field.compared)), missing, deviation))
+    columns = '', 'messages', 'missing', 'worst deviation'
+    agree = 'all agree' if report.passed else 'they do not agree'
+    remark = (
+        f'{report.rotor.messages if report.rotor else 0} rotor states, and the outputs of the '
+        f'node compared with the matrix method: {agree} to {tolerance:g} rad and {tolerance:g} of '
+        'the eccentricity'
+    )
+    section = Section(
+        report.bag, (Table(columns, tuple(rows)),), report.verdict, remarks=(remark,)
+    )
+    return Document('gearkin demo', (section,))

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from collections.abc import Set as AbstractSet
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from rich.table import Table
 from gear_kinematics.bag import Bag, Message
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.kinematics import gear_from_mapping, matrix_method
-from gear_kinematics.ros.live import live_messages
+from gear_kinematics.ros.live import live_messages, outputs_of
 from gear_kinematics.state import parameters
 from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.share import share_directory
@@ -21,12 +22,14 @@ from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_pose_arrays
+from gear_kinematics.wire.cdr import STAMP_BYTES
 from gear_kinematics.wire.joint_reader import JointReader
 from gear_kinematics.wire.topics import CORRECTED_STATE
 
 TOLERANCE = 1e-12
 """Tolerance: of angles in rad, of positions in units of the eccentricity."""
-_BAG = 'servo_point_to_point'
+BAG = 'servo_point_to_point'
+"""The shipped bag that is played."""
 _TOPICS = Topics()
 
 
@@ -34,7 +37,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     """Play the shipped bag's rotor states into a node process and validate its outputs.
 
     Args:
-        console: to show them on.
+        console: to show them on, moving if it is a terminal.
         calibration_file: of the gear; None takes that of the parameters, if any.
 
     Raises:
@@ -45,11 +48,11 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     if file := calibration_file or config['calibration']:
         calibration = Calibration.load(Path(file), gear_from_mapping(config))
         config['calibration'] = str(file)
-    with Bag(share_directory() / 'bags' / _BAG) as bag:
+    with Bag(share_directory() / 'bags' / BAG) as bag:
         count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
         console.print(
-            f'Playing [bold]{_BAG}[/bold], {count} recorded rotor states, '
-            'into gear_state_publisher over DDS.'
+            f'Playing {BAG}, {count} recorded rotor states, into gear_state_publisher over DDS.',
+            soft_wrap=not console.is_terminal,
         )
         published = _play(console, bag, config, count)
     eccentricity = config['eccentricity']
@@ -62,12 +65,12 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
         corrected=corrected_beside() if calibration else {},
     )
     validator.feed(published)
-    report = validator.report(_BAG)
-    console.print(_verdict(report))
-    return report
+    return validator.report(BAG)
 
 
 def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> list[Message]:
+    if not console.is_terminal:
+        return list(live_messages(bag, config))
     progress = Progress(
         TextColumn('rotor states'),
         BarColumn(),
@@ -78,21 +81,46 @@ def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> 
     task = progress.add_task('', total=count)
     bodies = 2 * len(config['branches'])
     received: list[Message] = []
+    answers = Answers({_TOPICS.rotor, *outputs_of(config)})
     with Live(progress, console=console, auto_refresh=False, transient=True) as live:
 
         def show(sent: int, _total: int | None) -> None:
             progress.update(task, completed=sent)
-            live.update(Group(progress, _current(received, bodies)), refresh=True)
+            live.update(Group(progress, _current(answers.latest, bodies)), refresh=True)
 
         for message in live_messages(bag, config, progress=show):
-            received.append(message)  # noqa: PERF402  # `show` displays it
+            received.append(message)
+            answers.add(message)
     return received
 
 
-def _current(received: list[Message], bodies: int) -> Table:
-    """Return a table of the latest message of each topic."""
+class Answers:
+    """Finds the latest rotor state to which all outputs have been received."""
+
+    def __init__(self, topics: AbstractSet[str]) -> None:
+        """Set the topics that have a message for each rotor state, with its stamp."""
+        self.latest: Mapping[str, bytes] = {}
+        """The messages by topic; empty until all have been received."""
+        self._topics = topics
+        self._incomplete: dict[bytes, dict[str, bytes]] = {}
+
+    def add(self, message: Message) -> None:
+        """Take a received message."""
+        topic, _, data = message
+        stamp = data[STAMP_BYTES]
+        group = self._incomplete.setdefault(stamp, {})
+        group[topic] = data
+        if group.keys() >= self._topics:
+            self.latest = group
+            # Those before it without all outputs were rejected.
+            earlier = list(self._incomplete)
+            for old in earlier[: earlier.index(stamp) + 1]:
+                del self._incomplete[old]
+
+
+def _current(latest: Mapping[str, bytes], bodies: int) -> Table:
+    """Return a table of messages of one stamp, by topic."""
     table = Table('topic', 'now', box=None)
-    latest = {topic: data for topic, _, data in received[-12:]}
     angles = {
         _TOPICS.rotor: 'rotor angle',
         _TOPICS.output: 'output angle',
@@ -105,31 +133,4 @@ def _current(received: list[Message], bodies: int) -> Table:
     if poses := latest.get(_TOPICS.poses):
         x, y = 1e3 * decode_pose_arrays([poses], bodies).poses[0, 0, :2]
         table.add_row(_TOPICS.poses, f'satellite_a {x:+.4f} mm, {y:+.4f} mm')
-    return table
-
-
-def _verdict(report: BagReport) -> Table:
-    verdict = '[green]All agree' if report.passed else '[red]They do not agree'
-    rotor = report.rotor
-    table = Table(
-        'topic',
-        'messages',
-        'missing',
-        'field',
-        'worst deviation',
-        title='Outputs of the node, compared with the matrix method',
-        caption=(
-            f'{rotor.messages if rotor else 0} rotor states in. '
-            f'{verdict}[/] to {TOLERANCE:g} rad and {TOLERANCE:g} of the eccentricity.'
-        ),
-    )
-    for topic in report.topics:
-        for field in topic.fields:
-            table.add_row(
-                topic.topic,
-                str(field.compared),
-                str(topic.missing),
-                field.name,
-                f'{field.max_error:.1e} {field.unit}',
-            )
     return table

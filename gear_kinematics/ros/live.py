@@ -34,7 +34,7 @@ from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.parameters import as_file
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET, JointStateTemplate
+from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE
 
@@ -42,7 +42,6 @@ POLL = 0.1
 """Greatest delay of the response to a signal, s."""
 
 _TOPICS = Topics()
-_STAMP = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s to wait for unexpected messages
 _WINDOW = 500  # messages by which the node may lag; a queue of DEPTH does not overflow
@@ -106,7 +105,7 @@ def live_messages(
         ReplayError: if the node ends or never answers.
     """
     expected = RotorInput(InputSettings.from_mapping(parameters))
-    outputs = _outputs(parameters)
+    outputs = outputs_of(parameters)
     source.type_of(rotor_topic, JOINT_STATE)
     schedule = due_messages(source, [rotor_topic], rate)
     report = throttled(progress)
@@ -267,7 +266,7 @@ class Replay:
 
     def _recorder(self, topic: str) -> Callable[[bytes], None]:
         def record(data: bytes) -> None:
-            if data[_STAMP] == _PROBE_STAMP:
+            if data[STAMP_BYTES] == _PROBE_STAMP:
                 self._probed.add(topic)
                 return
             self.counts[topic] += 1
@@ -322,7 +321,7 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
                 env=os.environ | {'ROS_LOG_DIR': folder},
             ) as process,
             Replay(
-                namespace, alive=lambda: process.poll() is None, outputs=_outputs(parameters)
+                namespace, alive=lambda: process.poll() is None, outputs=outputs_of(parameters)
             ) as replay,
         ):
             try:
@@ -333,7 +332,7 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
                 raise ReplayError(': '.join([str(error), *words])) from error
 
 
-def _outputs(parameters: Mapping[str, Any]) -> Collection[str]:
+def outputs_of(parameters: Mapping[str, Any]) -> Collection[str]:
     """The recorded topics on which the node answers."""
     known = isinstance(gear_from_mapping(parameters), Mechanism)
     corrected = corrected_beside().values() if parameters['calibration'] else ()
@@ -342,9 +341,8 @@ def _outputs(parameters: Mapping[str, Any]) -> Collection[str]:
 
 def _stamped(data: bytes, received: int) -> bytes:
     """Return the message, with its time of reception as stamp if it has none."""
-    if any(data[_STAMP]) or len(data) < _STAMP.stop:
+    if any(data[STAMP_BYTES]) or len(data) < STAMP_BYTES.stop:
         return data
     layout = '<iI' if data[1] else '>iI'
-    return (
-        data[: _STAMP.start] + struct.pack(layout, *divmod(received, SECOND)) + data[_STAMP.stop :]
-    )
+    stamp = struct.pack(layout, *divmod(received, SECOND))
+    return data[: STAMP_BYTES.start] + stamp + data[STAMP_BYTES.stop :]

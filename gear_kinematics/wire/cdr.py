@@ -17,6 +17,8 @@ from typing import NamedTuple
 SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # after the encapsulation
 STAMP = struct.Struct('<iI')
+STAMP_BYTES = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
+"""Where the stamp is in the bytes of a message with a header."""
 LATEST = 2**31 * SECOND - 1
 """Latest stamp, ns, whose seconds fit into 32 bits."""
 _LITTLE_ENDIAN = b'\x00\x01'
