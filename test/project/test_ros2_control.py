@@ -1,0 +1,147 @@
+"""The example for ros2_control, held against what its packages do.
+
+Neither runs here. What is written down of them is from joint_state_topic_hardware_interface 1.1.0,
+hardware_interface 4.46 (Jazzy) and joint_state_broadcaster.
+"""
+
+import math
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import pytest
+import yaml
+from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible, qos_profile_sensor_data
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState
+
+from gear_kinematics.kinematics import split_turns
+from gear_kinematics.ros.drivers import DEPTH
+from gear_kinematics.shape.urdf import urdf
+from gear_kinematics.state.parameters import defaults
+from gear_kinematics.state.rotor_input import RotorSample
+from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.wire.topics import CORRECTED_STATE, JOINT_STATE, OUTPUT_STATE, TOPICS
+
+pytestmark = pytest.mark.live  # imports ROS
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / 'config/ros2_control'
+NAMES = {name: defaults()[name] for name in ('output_joint', 'frame_prefix')}
+PLUGIN = 'joint_state_topic_hardware_interface/JointStateTopicSystem'
+HARDWARE_PARAMETERS = {
+    'joint_commands_topic', 'joint_states_topic', 'trigger_joint_command_threshold',
+    'sum_wrapped_joint_states',
+}  # fmt: skip
+BROADCASTER_PARAMETERS = {
+    'use_local_topics', 'joints', 'extra_joints', 'interfaces', 'map_interface_to_joint_state',
+    'use_urdf_to_filter',
+}  # fmt: skip
+
+
+@pytest.fixture(scope='module')
+def control() -> ET.Element:
+    return ET.parse(FOLDER / 'output_shaft.xml').getroot()  # noqa: S314, the project's own file
+
+
+@pytest.fixture(scope='module')
+def controllers() -> dict:
+    return yaml.safe_load((FOLDER / 'controllers.yaml').read_text('utf-8'))
+
+
+class Hardware:
+    """The state interfaces of the hardware, and how its `read` fills them from a message."""
+
+    def __init__(self, control: ET.Element) -> None:
+        self.joints = [joint.get('name') for joint in control.iterfind('joint')]
+        self.states = {
+            f'{joint.get("name")}/{interface.get("name")}': math.nan
+            for joint in control.iterfind('joint')
+            for interface in joint.iterfind('state_interface')
+        }
+
+    def read(self, message: JointState) -> None:
+        for i, name in enumerate(message.name):
+            if name not in self.joints:
+                continue
+            for interface in ('position', 'velocity', 'effort'):
+                values = getattr(message, interface)
+                if len(values) and math.isfinite(values[i]):  # at(i) throws if it is too short
+                    if f'{name}/{interface}' not in self.states:
+                        raise RuntimeError('The requested state interface not found')
+                    self.states[f'{name}/{interface}'] = values[i]
+
+
+def output_state(actuator, velocity, effort) -> JointState:
+    sample = RotorSample(5, split_turns(-38.0), velocity, effort)
+    [(_, data)] = StateMessages(actuator, **NAMES).encode(sample, [OUTPUT_STATE])
+    return deserialize_message(data, JointState)
+
+
+@pytest.mark.parametrize('velocity', [None, 19.0])
+@pytest.mark.parametrize('effort', [None, 0.5])
+def test_hardware_takes_every_output(control, actuator, velocity, effort):
+    hardware = Hardware(control)
+    hardware.read(output_state(actuator, velocity, effort))
+    expected = {
+        'output_shaft/position': 2.0,
+        'output_shaft/velocity': math.nan if velocity is None else -1.0,
+        'output_shaft/effort': math.nan if effort is None else -9.5,
+    }
+    assert hardware.states == pytest.approx(expected, rel=1e-12, nan_ok=True)
+
+
+def test_hardware_without_an_interface_for_a_field_would_stop(control, actuator):
+    hardware = Hardware(control)
+    del hardware.states['output_shaft/effort']
+    with pytest.raises(RuntimeError, match='not found'):
+        hardware.read(output_state(actuator, 19.0, 0.5))
+
+
+def test_hardware_is_described_by_its_own_names(control):
+    assert (control.tag, control.get('type')) == ('ros2_control', 'system')
+    assert control.findtext('hardware/plugin') == PLUGIN
+    parameters = {p.get('name'): p.text for p in control.iterfind('hardware/param')}
+    assert parameters.keys() <= HARDWARE_PARAMETERS
+    topic = parameters['joint_states_topic'].removeprefix('/')
+    assert topic == OUTPUT_STATE
+    assert TOPICS[topic].type == TOPICS[CORRECTED_STATE].type == JOINT_STATE
+    # The default threshold with no command interface: the sum of no differences is not above it.
+    assert 'trigger_joint_command_threshold' not in parameters
+    assert [*control.iter('command_interface')] == []
+    # Not a topic of the node, or of anybody else by chance.
+    assert parameters['joint_commands_topic'].removeprefix('/') not in TOPICS
+
+
+def test_joint_is_in_the_urdf_and_the_parsers_accept_the_element(control, actuator):
+    pin = pytest.importorskip('pinocchio', reason='Pinocchio is not installed')
+    robot = ET.fromstring(urdf(actuator, module=0.0005, **NAMES))  # noqa: S314, our own
+    assert {joint.get('name') for joint in control.iterfind('joint')} <= {
+        joint.get('name') for joint in robot.iterfind('joint')
+    }
+    robot.append(control)
+    model = pin.buildModelFromXML(ET.tostring(robot, encoding='unicode'))
+    assert model.existJointName('output_shaft')
+
+
+def test_outputs_satisfy_the_quality_of_service_of_the_hardware():
+    compatibility, reason = qos_check_compatible(QoSProfile(depth=DEPTH), qos_profile_sensor_data)
+    assert compatibility != QoSCompatibility.ERROR, reason
+
+
+def test_controllers_broadcast_what_the_hardware_has(control, controllers):
+    manager, broadcaster = (
+        controllers[name]['ros__parameters']
+        for name in ('controller_manager', 'joint_state_broadcaster')
+    )
+    assert set(controllers) == {'controller_manager', 'joint_state_broadcaster'}
+    assert manager.pop('update_rate') > 0
+    assert manager == {
+        'joint_state_broadcaster': {'type': 'joint_state_broadcaster/JointStateBroadcaster'}
+    }
+    assert broadcaster.keys() <= BROADCASTER_PARAMETERS
+    asked_for = {
+        f'{joint}/{interface}'
+        for joint in broadcaster['joints']
+        for interface in broadcaster['interfaces']
+    }
+    assert asked_for == Hardware(control).states.keys()
