@@ -19,6 +19,7 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.middleware import use_profile
 from gear_kinematics.ros.node import GearStatePublisher
 
 _SPIN_TIMEOUT = 3600.0  # s; without a timeout, the EventsExecutor of some releases does nothing
@@ -51,6 +52,7 @@ def main(args: list[str] | None = None) -> int:
     """Run the node until SIGINT or SIGTERM; returns the exit code."""
     signals = _caught_signals()
     try:
+        use_profile()
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
         arguments = sys.argv if args is None else args
         files = [Path(file) for option, file in pairwise(arguments) if option == '--params-file']

@@ -1,0 +1,104 @@
+"""The profile for Fast DDS: who chooses it, and that it spares a wakeup for every message."""
+
+import os
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+from live import live_node, rotor_state, stamp_of
+
+from gear_kinematics.ros import middleware
+from gear_kinematics.ros.middleware import use_profile
+
+pytestmark = pytest.mark.live
+
+PROFILE = Path(__file__).resolve().parents[2] / 'config/fastdds.xml'
+VARIABLE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
+
+
+@pytest.fixture(autouse=True)
+def _nothing_chosen(monkeypatch, tmp_path):
+    monkeypatch.setenv(VARIABLE, 'to restore it in the end')
+    monkeypatch.delenv(VARIABLE)
+    monkeypatch.chdir(tmp_path)
+
+
+def test_profile_is_used_if_nobody_has_chosen_one():
+    use_profile()
+    assert Path(os.environ[VARIABLE]).read_bytes() == PROFILE.read_bytes()
+
+
+@pytest.mark.parametrize('name', [VARIABLE, 'FASTDDS_DEFAULT_PROFILES_FILE'])
+def test_profile_in_the_environment_prevails(name, monkeypatch):
+    monkeypatch.setenv(name, '/my.xml')
+    use_profile()
+    assert os.environ[name] == '/my.xml'
+    assert len({VARIABLE, 'FASTDDS_DEFAULT_PROFILES_FILE'} & os.environ.keys()) == 1
+
+
+def test_profile_in_the_current_folder_prevails_if_it_is_read(monkeypatch, tmp_path):
+    (tmp_path / 'DEFAULT_FASTRTPS_PROFILES.xml').touch()
+    use_profile()
+    assert VARIABLE not in os.environ
+    monkeypatch.setenv('SKIP_DEFAULT_XML_FILE', '1')
+    use_profile()
+    assert VARIABLE in os.environ
+
+
+def test_profile_can_be_switched_off(monkeypatch):
+    monkeypatch.setenv('GEAR_KINEMATICS_FASTDDS_PROFILE', 'off')
+    use_profile()
+    assert VARIABLE not in os.environ
+
+
+def test_other_middleware_gets_no_profile(monkeypatch):
+    monkeypatch.setattr(
+        middleware, 'get_rmw_implementation_identifier', lambda: 'rmw_cyclonedds_cpp'
+    )
+    use_profile()
+    assert VARIABLE not in os.environ
+
+
+def wakeups(pid: int) -> int:
+    """Count how often the event threads of Fast DDS have waited."""
+    tasks = Path(f'/proc/{pid}/task').iterdir()
+    texts = [
+        (task / 'status').read_text() for task in tasks if 'dds.ev' in (task / 'comm').read_text()
+    ]
+    if not texts:
+        pytest.skip('the threads of this Fast DDS have no names')
+    return sum(int(text.partition('\nvoluntary_ctxt_switches:')[2].split()[0]) for text in texts)
+
+
+def wakeups_per_message(live) -> float:
+    """Send messages one by one, each after the output_state to the one before."""
+    peer, count = live.peer, 100
+    outputs = peer.received['output_state']
+    before = wakeups(live.process.pid)
+    for _ in range(count):
+        stamp = peer.stamp()
+        peer.send(rotor_state(stamp, position=[1.0]))
+        peer.wait_until(lambda s=stamp: outputs and stamp_of(outputs[-1]) == s, 'an output')
+    return (wakeups(live.process.pid) - before) / count
+
+
+@contextmanager
+def node_with_one_listener(folder):
+    with live_node(folder) as live:
+        live.peer.connect()
+        for subscription in live.peer._subscriptions[1:]:
+            live.peer.node.destroy_subscription(subscription)
+        yield live
+
+
+def test_node_does_not_wake_up_a_thread_for_every_message(tmp_path):
+    with node_with_one_listener(tmp_path) as live:
+        # A thread wakes up at most 50 times a second: again if the machine is busier than that.
+        live.peer.wait_until(lambda: wakeups_per_message(live) < 0.7, 'few wakeups')
+    assert 'XMLPARSER' not in live.text()
+
+
+def test_node_without_the_profile_wakes_up_a_thread_for_every_message(tmp_path, monkeypatch):
+    monkeypatch.setenv('GEAR_KINEMATICS_FASTDDS_PROFILE', 'off')
+    with node_with_one_listener(tmp_path) as live:
+        assert wakeups_per_message(live) > 0.9
