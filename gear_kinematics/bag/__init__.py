@@ -14,13 +14,14 @@ from gear_kinematics.bag.reading import (
 )
 from gear_kinematics.bag.storage import Message
 from gear_kinematics.bag.topics import Topic
-from gear_kinematics.bag.writing import BagWriter
+from gear_kinematics.bag.writing import BagWriter, LiveBagWriter
 
 __all__ = [
     'Bag',
     'BagError',
     'BagWriter',
     'DamagedBagError',
+    'LiveBagWriter',
     'Message',
     'ReportProgress',
     'Topic',

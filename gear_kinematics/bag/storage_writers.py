@@ -65,6 +65,12 @@ class _McapWriter(McapWriter):
         for channel, count in Counter(channels).items():
             self.channel_stats[channel] += count
 
+    def flush(self) -> None:
+        """Write what a reader needs to find every message so far."""
+        if self.chunk.msgs:
+            self.close_chunk()
+        self.bio.flush()
+
 
 class _SqliteWriter(Sqlite3Writer):
     def add_msgtype(self, connection: Connection) -> None:
@@ -120,3 +126,12 @@ class BulkWriter(Writer):
             self.counts[topic] += count
         self.min_timestamp = min(self.min_timestamp, *times)
         self.max_timestamp = max(self.max_timestamp, *times)
+
+    def number_file(self) -> None:
+        """Number the open mcap file: rosbag2 finds only numbered files when it reindexes a bag."""
+        file = cast('_McapWriter', self.storage)
+        file.path = file.path.rename(file.path.with_stem(f'{file.path.stem}_0'))
+
+    def flush(self) -> None:
+        """Write all messages so far to the mcap file; they are found even if it is never ended."""
+        cast('_McapWriter', self.storage).flush()

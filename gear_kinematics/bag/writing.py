@@ -83,9 +83,7 @@ class BagWriter:
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
             # reindexes a bag.
             self._partial = Path(folder, f'{self.path.name}_0')
-            self._writer = BulkWriter(self._partial, version=9, storage_plugin=self._storage)
-            self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
-            self._writer.open()
+            self._open(self._partial)
             self._folder = stack.pop_all()
         return self
 
@@ -178,6 +176,11 @@ class BagWriter:
         except (OSError, sqlite3.Error) as error:
             raise BagError(f'{self.path}: {cause(error)}') from error
 
+    def _open(self, folder: Path) -> None:
+        self._writer = BulkWriter(folder, version=9, storage_plugin=self._storage)
+        self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
+        self._writer.open()
+
     def _add(self, topic: Topic, qos: list[Qos]) -> None:
         if topic.name in self._numbers:
             raise BagError(f'{self.path}: topic {topic.name} has been added already')
@@ -185,3 +188,52 @@ class BagWriter:
         if self._entries > _MAX_ENTRIES:
             raise ValueError(f'there are more than {_MAX_ENTRIES} topics and QoS profiles')
         self._numbers[topic.name] = self._writer.add_topic(topic, qos)
+
+
+class LiveBagWriter(BagWriter):
+    """Writes a recording while it happens: whatever ends it, the messages so far can be read.
+
+    The folder is at `path` from the start; after an exception it stays, unfinished.
+    """
+
+    def __init__(self, path: Path | str) -> None:
+        """Define the recording, in mcap; `__enter__` opens it."""
+        super().__init__(path)
+
+    def __enter__(self) -> Self:
+        """Create the folder.
+
+        Raises:
+            BagError: if the path exists already or cannot be written.
+        """
+        with bag_errors(self.path):
+            if self.path.exists() or self.path.is_symlink():
+                raise ValueError('exists already')
+            self._open(self.path)
+            self._writer.number_file()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Finish the recording, unless there was an exception.
+
+        Raises:
+            BagError: if it cannot be finished.
+        """
+        with bag_errors(self.path):
+            self._writer.__exit__(kind, error, trace)
+
+    def flush(self) -> None:
+        """Write all messages so far to the file.
+
+        Raises:
+            BagError: if they cannot be written.
+        """
+        try:
+            self._writer.flush()
+        except OSError as error:
+            raise BagError(f'{self.path}: {cause(error)}') from error
