@@ -49,27 +49,30 @@ class Layout(NamedTuple):
     """Spans (start, end) of the bytes that define it: encapsulation, lengths, strings."""
 
 
+def joint_names(layout: Layout) -> list[bytes]:
+    """Names of the joints of a JointState.
+
+    If no joint has a name, as in messages of many micro-ROS drivers, their indices are their
+    names: b'0', b'1', ...
+    """
+    _, *names = layout.texts
+    if any(names):
+        return names
+    _, positions = layout.arrays[0]
+    return [b'%d' % index for index in range(len(names) or positions)]
+
+
 def joint_index(layout: Layout, joint: bytes) -> int | None:
     """Index of a joint in the arrays of a JointState; None if it is not in the message.
 
     Args:
         layout: of the message.
-        joint: its name; b'' for the only joint. If no joint has a name, as in messages of many
-            micro-ROS drivers, their indices are their names: b'0', b'1', ...
+        joint: its name, as of `joint_names`; b'' for the only joint.
     """
     names = joint_names(layout)
     if joint:
         return names.index(joint) if joint in names else None
     return 0 if len(names) == 1 else None
-
-
-def joint_names(layout: Layout) -> list[bytes]:
-    """Names of the joints in a JointState, as `joint_index` looks them up."""
-    _, *names = layout.texts
-    if not any(names):
-        _, positions = layout.arrays[0]
-        names = [b'%d' % index for index in range(len(names) or positions)]
-    return names
 
 
 def joint_state_layout(data: bytes) -> Layout:
