@@ -242,14 +242,21 @@ class DrawnBranch:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class MovingMechanism:
-    """A mechanism that moves with the x axis of the figure, time in s."""
+class DrawnMechanism:
+    """A mechanism as it is drawn."""
 
     branches: tuple[DrawnBranch, ...]
     body_names: Mapping[str, str]
     """Names in the legend by classes of page.css."""
     eccentricity: float
     """m."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MovingMechanism:
+    """A mechanism that moves with the x axis of the figure, time in s."""
+
+    drawn: DrawnMechanism
     time: Array
     """(n,), s."""
     rotor: Array

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from gear_kinematics.report.document import Array, MovingMechanism
+from gear_kinematics.report.document import Array, DrawnMechanism, MovingMechanism
 
 _RADIUS = 500.0
 """Radius of the drawing, in units of which no screen shows a tenth."""
@@ -38,14 +38,16 @@ class Drawings:
             mechanism: the mechanism.
             figure: name of the figure with whose x axis it moves.
         """
+        yield f'<div class="motion" data-figure="{figure}">\n{_controls(mechanism)}'
+        yield from self.drawn(mechanism.drawn)
+        yield '</div>\n'
+
+    def drawn(self, mechanism: DrawnMechanism) -> Iterator[str]:
+        """Write a mechanism branch by branch, for an element that has the angles."""
         shapes = [branch.shapes for branch in mechanism.branches]
         reach = max(float(np.max(np.abs(outline))) for outline in shapes[0]['stator'])
         scale = _RADIUS / reach
-        yield (
-            f'<div class="motion" data-figure="{figure}" '
-            f'style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
-            f'{_controls(mechanism)}<div class="branches">\n'
-        )
+        yield f'<div class="branches" style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
         for branch in mechanism.branches:
             yield (
                 f'<figure style="--cam: {math.degrees(branch.cam_phase):.6g}deg">'
@@ -59,7 +61,7 @@ class Drawings:
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
         names = mechanism.body_names
         legend = ''.join(f'<li class="{body}">{names[body]}</li>' for body in shapes[0])
-        yield f'</div>\n<ul class="legend">{legend}</ul>\n</div>\n'
+        yield f'</div>\n<ul class="legend">{legend}</ul>\n'
 
     def shapes(self) -> str:
         """Write the shapes of all drawn mechanisms, for any place in the page."""

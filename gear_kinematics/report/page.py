@@ -1,4 +1,4 @@
-"""The shell of a page that needs neither network nor server."""
+"""The shell of pages, which load nothing from anywhere."""
 
 import base64
 import hashlib
@@ -21,20 +21,46 @@ def page(title: str, body: str, *, scripts: Sequence[str] = ()) -> str:
         ModuleNotFoundError: if there are scripts, and plotly is not installed.
     """
     sources = [_plotly_js(), *map(_resource, scripts)] if scripts else []
+    return _shell(title, body, sources, _policy(sources))
+
+
+def live_page(title: str, body: str, *, style: str, script: str, server: str) -> str:
+    """Write a page that talks to the server it comes from, and to nothing else.
+
+    Args:
+        title: as text.
+        body: as HTML.
+        style: rules beside those of all pages.
+        script: source of the only script.
+        server: its address for WebSockets: `ws://host:port`.
+    """
+    policy = _policy([script], server)
+    no_icon = '<link rel="icon" href="data:,">\n'  # or the browser would ask for one
+    return _shell(title, body, [script], policy, style, no_icon)
+
+
+def _shell(
+    title: str, body: str, scripts: Sequence[str], policy: str, style: str = '', head: str = ''
+) -> str:
     return (
         f'<!DOCTYPE html>\n<!-- {MARK} -->\n'
         '<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta http-equiv="Content-Security-Policy" content="{_policy(sources)}">\n'
+        f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f'<title>{escape(title)}</title>\n'
-        f'<style>\n{_resource("page.css")}</style>\n</head>\n<body>\n{body}'
-        + ''.join(f'<script>{script}</script>\n' for script in sources)
+        f'<style>\n{_resource("page.css")}{style}</style>\n{head}</head>\n<body>\n{body}'
+        + ''.join(f'<script>{script}</script>\n' for script in scripts)
         + '</body>\n</html>\n'
     )
 
 
-def _policy(scripts: Sequence[str]) -> str:
-    """Let the browser run these scripts alone, and load nothing from anywhere."""
+def _policy(scripts: Sequence[str], server: str = '') -> str:
+    """Let the browser run these scripts alone, and load nothing from anywhere else.
+
+    Args:
+        scripts: their sources.
+        server: what they may connect to.
+    """
     none = ["'none'"]
     hashes = [
         f"'sha256-{base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()}'"
@@ -43,6 +69,7 @@ def _policy(scripts: Sequence[str]) -> str:
     return (
         f"default-src 'none'; script-src {' '.join(hashes or none)}; "
         "style-src 'unsafe-inline'; img-src data: blob:"
+        + (f'; connect-src {server}' if server else '')
     )
 
 

@@ -9,6 +9,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import (
     Array,
     DrawnBranch,
+    DrawnMechanism,
     Figure,
     Line,
     MovingMechanism,
@@ -137,16 +138,23 @@ def moving(report: BagReport) -> MovingMechanism | None:
     time = np.asarray(report.series[0].time, np.float64)
     worst = _worst_moment(report)
     return MovingMechanism(
-        tuple(
-            DrawnBranch(branch.name, branch.cam_phase, bodies(mechanism, report.module, k))
-            for k, branch in enumerate(mechanism.branches)
-        ),
-        NAMES,
-        mechanism.eccentricity,
+        drawn(mechanism, report.module),
         time,
         _degrees(turns, angle),
         _degrees(output_turns, state.output_turn_angle),
         0 if worst is None else int(np.argmin(np.nan_to_num(np.abs(time - worst), nan=np.inf))),
+    )
+
+
+def drawn(mechanism: Mechanism, module: float) -> DrawnMechanism:
+    """Return what a mechanism looks like; the module of its teeth is in m."""
+    return DrawnMechanism(
+        tuple(
+            DrawnBranch(branch.name, branch.cam_phase, bodies(mechanism, module, k))
+            for k, branch in enumerate(mechanism.branches)
+        ),
+        NAMES,
+        mechanism.eccentricity,
     )
 
 

@@ -97,7 +97,9 @@ def test_names_are_no_markup(fleet):
 
 def test_figure_of_hostile_names_cannot_leave_its_script():
     page = to_html([samples.HOSTILE_NAMES])
-    (data,) = re.findall(r'data-figure="figure-0">(.*?)</script>', page, re.DOTALL)
+    (data,) = re.findall(
+        r'<script type="application/json" data-figure="figure-0">(.*?)</script>', page, re.DOTALL
+    )
     assert not set(data) & set('<>&')
     assert json.loads(data) == figure(samples.HOSTILE_NAMES)
 
