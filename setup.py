@@ -23,6 +23,9 @@ def shared(folder: str, pattern: str) -> list[tuple[str, list[str]]]:
 # do not need this, because pip installs the programs to bin/.
 ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
 
+# The page of `gearkin watch`, for machines with and without a ROS installation
+WATCH = ['tornado>=6.2']
+
 setup(
     name=PACKAGE,
     version=MANIFEST.findtext('version'),
@@ -31,7 +34,11 @@ setup(
     maintainer_email=MANIFEST.find('maintainer').get('email'),
     license=MANIFEST.findtext('license'),
     packages=find_packages(exclude=['test', 'test.*']),
-    package_data={PACKAGE: ['py.typed'], f'{PACKAGE}.report': ['*.css', '*.js']},
+    package_data={
+        PACKAGE: ['py.typed'],
+        f'{PACKAGE}.report': ['*.css', '*.js'],
+        f'{PACKAGE}.ros.watch': ['*.css', '*.js'],
+    },
     data_files=[
         *ON_PATH,
         ('share/ament_index/resource_index/packages', [f'resource/{PACKAGE}']),
@@ -56,7 +63,12 @@ setup(
     extras_require={
         # For machines without a ROS installation. As a plain requirement, it would install a
         # second ROS beside that of the distribution.
-        'ros': ['ros-jazzy-rclpy[fastrtps]==7.1.6', 'ros-jazzy-common-interfaces==5.3.6'],
+        'ros': [
+            'ros-jazzy-rclpy[fastrtps]==7.1.6',
+            'ros-jazzy-common-interfaces==5.3.6',
+            *WATCH,
+        ],
+        'watch': WATCH,
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],
         'dask': ['dask[distributed]'],

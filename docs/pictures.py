@@ -5,16 +5,18 @@ Pages are photographed by the system's Chromium.
 
 import os
 import shutil
+import subprocess
 import sys
 import tempfile
-from contextlib import chdir
+from contextlib import ExitStack, chdir
 from io import BytesIO
 from pathlib import Path
 
 from PIL import Image
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import Page, sync_playwright
 
 from gear_kinematics.commands.cli import main
+from gear_kinematics.ros.live import running_node
 
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / 'test' / 'support'))
@@ -70,9 +72,32 @@ def photograph(pages: dict[str, list[str]]) -> None:
             tab.goto(page.as_uri())
             tab.add_style_tag(content='footer { display: none; }')  # it has a date
             tab.wait_for_load_state('networkidle')
-            picture = Image.open(BytesIO(tab.screenshot()))
-            picture.quantize(COLOURS).save(ROOT / DOCS / name, optimize=True)
+            keep(tab.screenshot(), DOCS / name)
+        photograph_live(tab, DOCS / 'pictures/watch.png')
         browser.close()
+
+
+def photograph_live(tab: Page, target: Path) -> None:
+    """Have a driver and a node shown live, and keep the page as a PNG."""
+    program = [sys.executable, '-P', '-m', 'gear_kinematics']
+    with ExitStack() as stack:
+        stack.enter_context(running_node(stderr=subprocess.DEVNULL))
+        for arguments in (['replay', BAG, '--loop'], ['watch']):
+            process = subprocess.Popen(  # noqa: S603, our own program
+                [*program, *arguments], stdout=subprocess.PIPE, text=True
+            )
+            stack.callback(process.wait)
+            stack.callback(process.terminate)
+        address = process.stdout.readline().split()[-1]
+        tab.goto(address)
+        tab.get_by_text('Rotor input: healthy.').wait_for()
+        keep(tab.screenshot(full_page=True), target)
+
+
+def keep(screenshot: bytes, target: Path) -> None:
+    """Write a PNG with few colours."""
+    picture = Image.open(BytesIO(screenshot))
+    picture.quantize(COLOURS).save(target, optimize=True)
 
 
 def run(arguments: list[str]) -> None:

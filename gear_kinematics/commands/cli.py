@@ -24,12 +24,14 @@ from gear_kinematics.commands import (
     describe,
     index,
     info,
+    init,
     lost_motion,
     plot,
     preload,
     replay,
     urdf,
     validate,
+    watch,
 )
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.origin import command_line
@@ -43,6 +45,8 @@ COMMANDS: dict[str, Command] = {
     'compute': compute,
     'replay': replay,
     'demo': demo,
+    'init': init,
+    'watch': watch,
     'describe': describe,
     'index': index,
     'preload': preload,

@@ -9,6 +9,7 @@ EXTRAS = {
     'imageio_ffmpeg': 'video',
     'shtab': 'completion',
     'mapbox_earcut': 'mesh',
+    'tornado': 'watch',
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from gear_kinematics.kinematics import solve, split_turns
+from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import (
     Array,

@@ -34,6 +34,7 @@ ROSDEP_KEYS = {
     'numpy': 'python3-numpy',
     'rich': 'python3-rich',
     'rosbags': 'python3-rosbags-pip',
+    'tornado': 'python3-tornado',
     'yaml': 'python3-yaml',
 }
 # Extras, which rosdep does not know, and what Python itself has from 3.14 on.

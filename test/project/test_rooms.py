@@ -137,7 +137,7 @@ ROOMS = {
     'lost_motion': ('bag', 'kinematics', 'report', 'state', 'wire'),
     'calibration': ('bag', 'kinematics', 'lost_motion', 'report', 'state', 'wire'),
     'plotting': ('kinematics', 'report', 'shape', 'state'),
-    'ros': ('bag', 'kinematics', 'shape', 'state', 'validation', 'wire'),
+    'ros': ('bag', 'kinematics', 'report', 'shape', 'state', 'validation', 'wire'),
     'commands': (
         'bag',
         'calibration',
@@ -159,6 +159,7 @@ TENANTS = {
     'matplotlib': ['plotting', 'report'],
     'plotly': ['report'],
     'mapbox_earcut': ['shape'],
+    'tornado': ['ros'],
 }
 """Libraries, and the only rooms that import them."""
 

@@ -1,0 +1,99 @@
+"""`gearkin init`: a parameter file for a driver that is running."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.report.document import printable
+from gear_kinematics.state.new_config import new_config, start_command, write_new
+from gear_kinematics.state.parameters import default_config
+from gear_kinematics.wire.nearest import nearest
+
+if TYPE_CHECKING:
+    from gear_kinematics.ros.watch.drivers import Driver
+
+HELP = 'list the drivers that are running, and write a parameter file for one'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument('--topic', metavar='NAME', help='of the driver, if there are several')
+    parser.add_argument('--joint', metavar='NAME', help='of the rotor, if there are several')
+    parser.add_argument(
+        '-o',
+        '--output',
+        default=default_config().name,
+        metavar='FILE',
+        help='the parameter file; - is stdout (default: %(default)s)',
+    )
+    parser.add_argument(
+        '--wait',
+        type=arguments.positive,
+        default=3.0,
+        metavar='S',
+        help='time to listen (default: %(default)g)',
+    )
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """List the drivers, and write the file."""
+    path = Path(options.output)
+    to_stdout = options.output == '-'
+    if not to_stdout and (path.exists() or path.is_symlink()):
+        raise ValueError(f'{path}: exists already; give another name with -o')
+    warn_of_shared_memory(participants=1)
+    # These need ROS, unlike most commands.
+    from gear_kinematics.ros.watch.drivers import listen  # noqa: PLC0415
+    from gear_kinematics.ros.watch.text import list_drivers  # noqa: PLC0415
+
+    drivers = listen(options.wait)
+    if not drivers:
+        raise ValueError(
+            f'no topic of type JointState in {options.wait:g} s: is the driver running, with the '
+            'same ROS_DOMAIN_ID?'
+        )
+    console = Console(stderr=to_stdout)
+    list_drivers(drivers, console)
+    topic, joint = _choose(drivers, options)
+    name = default_config().name if to_stdout else str(path)
+    text = new_config(topic, joint, name)
+    if to_stdout:
+        print(text, end='')
+    else:
+        write_new(path, text)
+        print(f'{path} is for the joint {printable(joint)} on {topic}. Start the node:')
+        print(f'    {start_command(topic, name)}')
+    return ExitCode.DONE
+
+
+def _choose(drivers: Sequence['Driver'], options: argparse.Namespace) -> tuple[str, str]:
+    """The topic and the joint that are given, the only ones, or those that the user names."""
+    if options.topic:
+        topic = f'/{options.topic.removeprefix("/")}'
+        known = [driver.topic for driver in drivers]
+        if topic not in known:
+            raise ValueError(f'no topic {topic} of type JointState{nearest(topic, known)}')
+        drivers = [driver for driver in drivers if driver.topic == topic]
+    joints = [(driver.topic, joint) for driver in drivers for joint in driver.joints]
+    if options.joint:
+        known = [joint for _, joint in joints]
+        if options.joint not in known:
+            hint = nearest(options.joint, known)
+            raise ValueError(f'no joint {options.joint}{hint}; there are: {", ".join(known)}')
+        joints = [(topic, joint) for topic, joint in joints if joint == options.joint]
+    if not joints:
+        raise ValueError(f'no message with joints in {options.wait:g} s')
+    if len(joints) == 1:
+        return joints[0]
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise ValueError('which joint is the rotor? Choose with --topic and --joint')
+    for number, (topic, joint) in enumerate(joints, 1):
+        print(f'{number:3}  {printable(joint)} on {topic}')
+    answer = input('Number of the joint of the rotor: ')
+    if not (answer.isdecimal() and 1 <= int(answer) <= len(joints)):
+        raise ValueError(f'{answer!r} is no number from 1 to {len(joints)}')
+    return joints[int(answer) - 1]

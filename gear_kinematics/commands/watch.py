@@ -1,0 +1,87 @@
+"""`gearkin watch`: a running node live, on a page or in the terminal."""
+
+import argparse
+import asyncio
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.output import Console, warn_of_shared_memory
+
+if TYPE_CHECKING:
+    from gear_kinematics.ros.watch.watcher import Watcher
+
+HELP = 'show a running node and its driver live: on a page, or in the terminal'
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of the command."""
+    parser.add_argument(
+        '--text', action='store_true', help='in the terminal, or as lines in a pipe; no page'
+    )
+    parser.add_argument(
+        '--node',
+        default='',
+        metavar='FULL_NAME',
+        help='the node, such as /left/gear_state_publisher (default: the first that runs)',
+    )
+    parser.add_argument(
+        '--record', type=Path, metavar='BAG', help='folder to record to, from the start'
+    )
+    parser.add_argument(
+        '--port', type=int, default=0, help='of the page, on 127.0.0.1 (default: a free one)'
+    )
+
+
+def run(options: argparse.Namespace) -> ExitCode:
+    """Watch until interrupted.
+
+    Raises:
+        KeyboardInterrupt: on SIGINT or SIGTERM, when everything is closed.
+    """
+    if options.record and (options.record.exists() or options.record.is_symlink()):
+        raise ValueError(f'{options.record}: exists already')
+    warn_of_shared_memory(participants=1)
+    # These need ROS, unlike most commands.
+    from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
+    from gear_kinematics.ros.watch.watcher import Watcher  # noqa: PLC0415
+
+    show = _show_text if options.text else _serve(options.port)
+    console = Console()
+    with stopped_by_signals() as stopped:
+        with Watcher(options.node, options.record) as watcher:
+            show(watcher, console, stopped)
+        if watcher.farewell:
+            console.print(watcher.farewell, soft_wrap=True, markup=False, highlight=False)
+        if stopped():
+            raise KeyboardInterrupt
+    return ExitCode.DONE
+
+
+_Show = Callable[['Watcher', Console, Callable[[], bool]], None]
+
+
+def _show_text(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
+    from gear_kinematics.ros.watch.text import show  # noqa: PLC0415
+
+    show(watcher, console, stopped)
+
+
+def _serve(port: int) -> _Show:
+    """Return the function that serves the page, after a look whether it can."""
+    from gear_kinematics.ros.watch.server import Server  # noqa: PLC0415, an extra
+    from gear_kinematics.ros.watch.text import wait_and_list  # noqa: PLC0415
+
+    def serve(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
+        server = Server(watcher, port)
+        console.print(f'Open {server.address}', soft_wrap=True, markup=False, highlight=False)
+        lister = threading.Thread(target=wait_and_list, args=(watcher, console, stopped))
+        lister.start()
+        try:
+            asyncio.run(server.run(stopped))
+        finally:
+            lister.join()
+
+    return serve

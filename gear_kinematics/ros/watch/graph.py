@@ -1,0 +1,116 @@
+"""What the ROS graph says: the nodes of gears, their topics, and the drivers beside them."""
+
+from collections.abc import Iterable, Mapping, Sequence
+
+from rclpy.node import Node
+
+from gear_kinematics.wire import topics
+
+_TRIGGER = 'std_srvs/srv/Trigger'
+_PUBLISHED = {
+    name: topic.type for name, topic in topics.TOPICS.items() if topic.publisher == 'node'
+}
+_HEARD = {name: topic.type for name, topic in topics.TOPICS.items() if topic.publisher == 'driver'}
+_OWN_STATES = {name for name, kind in _PUBLISHED.items() if kind == topics.JOINT_STATE}
+_ENOUGH = 2  # names by which a node is known, however the others are remapped
+
+
+def gear_nodes(node: Node) -> list[str]:
+    """Find the full names of the nodes of gears: they have ~/home, and topics of known names."""
+    running = set(_full_names(node))
+    owners = (
+        service.rpartition('/')[0]
+        for service, types in node.get_service_names_and_types()
+        if service.endswith('/home') and _TRIGGER in types
+    )
+    return sorted(
+        owner
+        for owner in owners
+        if owner in running
+        and len({_base(name) for name in published_by(node, owner)} & _OWN_STATES) >= _ENOUGH
+    )
+
+
+def published_by(node: Node, name: str) -> dict[str, str]:
+    """Return the topics that a node publishes, types by name; none if it does not run."""
+    return _topics_of(node, name, node.get_publisher_names_and_types_by_node)
+
+
+def outputs_of(node: Node, name: str) -> dict[str, str]:
+    """Return the topics of a gear's node by the names that they have without remapping."""
+    return known_as(_PUBLISHED, published_by(node, name))
+
+
+def inputs_of(node: Node, name: str) -> dict[str, str]:
+    """Return the topics that a gear's node hears, in the same way."""
+    heard = _topics_of(node, name, node.get_subscriber_names_and_types_by_node)
+    return known_as(_HEARD, heard)
+
+
+def known_as(expected: Mapping[str, str], found: Mapping[str, str]) -> dict[str, str]:
+    """Tell which topic is which, where some are remapped.
+
+    Args:
+        expected: types of topics by the name that they have without remapping.
+        found: types of topics by full name.
+
+    Returns:
+        Full names by expected name: of the same last part, and what is left if that is one of a
+        type on either side. The others are left out.
+    """
+    relative = {name.rpartition('/')[2]: name for name in expected}
+    known = {
+        relative[_base(topic)]: topic
+        for topic, kind in found.items()
+        if _base(topic) in relative and expected[relative[_base(topic)]] == kind
+    }
+    for kind in set(expected.values()):
+        missing = [name for name in expected if expected[name] == kind and name not in known]
+        unknown = [
+            topic for topic in found if found[topic] == kind and topic not in known.values()
+        ]
+        if len(missing) == len(unknown) == 1:
+            known[missing[0]] = unknown[0]
+    return known
+
+
+def driver_topics(node: Node, gears: Iterable[str]) -> list[str]:
+    """Find the topics of type JointState that somebody else than the nodes of gears publishes."""
+    own = {topic for gear in gears for topic in published_by(node, gear)}
+    return sorted(
+        topic
+        for topic, types in node.get_topic_names_and_types()
+        if topics.JOINT_STATE in types and topic not in own and _published(node, topic)
+    )
+
+
+def _published(node: Node, topic: str) -> bool:
+    return bool(node.count_publishers(topic))
+
+
+def publishers_of(node: Node, topic: str, name: str) -> set[bytes]:
+    """Identify the publishers that a node has on a topic: a node that restarts has others."""
+    return {
+        bytes(end.endpoint_gid)
+        for end in node.get_publishers_info_by_topic(topic)
+        if f'{end.node_namespace.rstrip("/")}/{end.node_name}' == name
+    }
+
+
+def _topics_of(node: Node, name: str, ask: object) -> dict[str, str]:
+    if name not in _full_names(node):  # rclpy would raise an error
+        return {}
+    namespace, _, base = name.rpartition('/')
+    found: Sequence[tuple[str, list[str]]] = ask(base, namespace or '/')  # type: ignore[operator]
+    return {topic: types[0] for topic, types in found}
+
+
+def _full_names(node: Node) -> list[str]:
+    return [
+        f'{namespace.rstrip("/")}/{name}'
+        for name, namespace in node.get_node_names_and_namespaces()
+    ]
+
+
+def _base(topic: str) -> str:
+    return topic.rpartition('/')[2]

@@ -1,0 +1,62 @@
+"""The page of `gearkin watch`; watch.js fills it with what the server sends."""
+
+from importlib.resources import files
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.report.mechanism import Drawings
+from gear_kinematics.report.page import live_page
+from gear_kinematics.validation.figure import drawn
+
+_BODY = """\
+<header class="bar">
+<h1>gearkin watch</h1>
+<span id="node"></span>
+<span id="state" class="badge">connecting</span>
+<div class="buttons">
+<button type="button" id="home" disabled>Home</button>
+<button type="button" id="record" disabled>Record</button>
+</div>
+</header>
+<p id="words"></p>
+<p id="answer" role="status"></p>
+<p id="recording"></p>
+<main>
+<section class="live" aria-label="mechanism and values">
+<div id="mechanism" class="motion"></div>
+<div class="values">
+<dl id="readings"></dl>
+<figure id="curve" hidden>
+<svg viewBox="0 0 600 120" preserveAspectRatio="none" role="img" aria-label="transmission error">
+<line x1="0" x2="600" vector-effect="non-scaling-stroke"/>
+<polyline vector-effect="non-scaling-stroke"/></svg>
+<figcaption></figcaption>
+</figure>
+</div>
+</section>
+<section><h2>Diagnostics</h2><ul id="sentences"></ul></section>
+<section><details id="drivers"><summary>Drivers: topics of type JointState</summary>
+<div class="scroll"><table><thead><tr><th scope="col">topic</th><th scope="col">joint</th>
+<th scope="col" class="number">rate</th><th scope="col"></th></tr></thead>
+<tbody></tbody></table></div></details></section>
+</main>
+"""
+
+
+def watch_page(server: str) -> str:
+    """Write the page.
+
+    Args:
+        server: its address for WebSockets: `ws://host:port`.
+    """
+    style, script = (
+        files(__package__).joinpath(f'watch.{kind}').read_text('utf-8') for kind in ('css', 'js')
+    )
+    return live_page('gearkin watch', _BODY, style=style, script=script, server=server)
+
+
+def drawing(mechanism: Mechanism | None, module: float) -> str:
+    """Write the mechanism as HTML, or why there is no drawing; the module is in m."""
+    if mechanism is None:
+        return '<p>Of this gear only the ratio is known, not its bodies.</p>'
+    drawings = Drawings()
+    return ''.join(drawings.drawn(drawn(mechanism, module))) + drawings.shapes()
