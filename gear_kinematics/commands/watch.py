@@ -13,6 +13,8 @@ from gear_kinematics.commands.output import Console, warn_of_shared_memory
 if TYPE_CHECKING:
     from gear_kinematics.ros.watch.watcher import Watcher
 
+_MAX_PORT = 65535
+
 HELP = 'show a running node and its driver live: on a page, or in the terminal'
 
 
@@ -31,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--record', type=Path, metavar='BAG', help='folder to record to, from the start'
     )
     parser.add_argument(
-        '--port', type=int, default=0, help='of the page, on 127.0.0.1 (default: a free one)'
+        '--port', type=_port, default=0, help='of the page, on 127.0.0.1 (default: a free one)'
     )
 
 
@@ -58,6 +60,12 @@ def run(options: argparse.Namespace) -> ExitCode:
         if stopped():
             raise KeyboardInterrupt
     return ExitCode.DONE
+
+
+def _port(text: str) -> int:
+    if not 0 <= (port := int(text)) <= _MAX_PORT:
+        raise argparse.ArgumentTypeError(f'must be from 0 to {_MAX_PORT}, not {text}')
+    return port
 
 
 _Show = Callable[['Watcher', Console, Callable[[], bool]], None]

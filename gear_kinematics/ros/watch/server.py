@@ -4,13 +4,12 @@ import asyncio
 import hmac
 import json
 import secrets
+import socket
 from collections.abc import Callable
 from dataclasses import asdict
 from typing import Any
-from urllib.parse import urlsplit
 
 from tornado.httpserver import HTTPServer
-from tornado.netutil import bind_sockets
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
@@ -39,7 +38,8 @@ class Server:
             OSError: if the port is taken.
         """
         token = secrets.token_urlsafe(24)
-        self._sockets = bind_sockets(port, HOST)
+        self._socket = socket.create_server((HOST, port))
+        self._socket.setblocking(False)  # noqa: FBT003, its only argument
         given = {'watcher': watcher, 'token': token}
         self._application = Application(
             [(r'/([^/]+)/', _Page, given), (r'/([^/]+)/live', _Live, given)],
@@ -47,12 +47,16 @@ class Server:
             websocket_ping_interval=_PING,
             websocket_max_message_size=_LARGEST,
         )
-        self.address = f'http://{HOST}:{self._sockets[0].getsockname()[1]}/{token}/'
+        self.address = f'http://{HOST}:{self._socket.getsockname()[1]}/{token}/'
+
+    def close(self) -> None:
+        """Close the port without having served."""
+        self._socket.close()
 
     async def run(self, stopped: Callable[[], bool]) -> None:
         """Serve until stopped."""
         server = HTTPServer(self._application)
-        server.add_sockets(self._sockets)
+        server.add_socket(self._socket)
         try:
             while not stopped():  # noqa: ASYNC110, a signal only sets a flag
                 await asyncio.sleep(PERIOD)
@@ -77,7 +81,7 @@ class _Guarded(RequestHandler):
         given = self.path_args[0].encode()
         origin = self.request.headers.get('Origin')
         if (
-            urlsplit(f'//{self.request.host}').hostname not in _NAMES
+            self.request.host_name not in _NAMES
             or not hmac.compare_digest(given, self._token.encode())
             or (origin is not None and origin != f'http://{self.request.host}')
         ):
