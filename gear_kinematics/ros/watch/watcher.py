@@ -265,7 +265,7 @@ class Watcher:
             self._node, {topic: (kind, _CLASSES[kind]) for topic, kind in found.items()}, path
         )
         self._failed = ''
-        words = f'Recording {", ".join(found)} to {path}.'
+        words = f'Recording {len(found)} topics to {path}.'
         if self._gear and self._gear.running and self._gear.known:
             words += self._keep_parameters(self._gear, path)
         return Answer(words, done=True)

@@ -1,0 +1,335 @@
+"""`gearkin watch` beside a live node and a driver at 1 kHz: in Chromium, terminal and pipe.
+
+The driver's stamps are a millisecond apart, so that a gap in a recording shows what was lost.
+"""
+
+import contextlib
+import math
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from live import Listener
+from rclpy.parameter_client import AsyncParameterClient
+from steady_driver import MILLISECOND, RATIO
+
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands.cli import main
+from gear_kinematics.ros.live import running_node
+from gear_kinematics.wire.batches import decode_joint_states
+
+pytestmark = [pytest.mark.live, pytest.mark.slow]
+
+ROOT = Path(__file__).resolve().parents[2]
+NAMESPACE = f'/watched_{os.getpid()}'
+NODE = f'{NAMESPACE}/gear_state_publisher'
+MOTOR = f'{NAMESPACE}/motor/joint_states'
+GEARKIN = (sys.executable, '-P', '-m', 'gear_kinematics')
+NODE_ARGUMENTS = (
+    '--ros-args', '-r', f'__ns:={NAMESPACE}', '-r', 'rotor_state:=motor/joint_states',
+    '-p', 'rotor_joint:=m1', '-p', 'transmission_error_window:=2.0',
+)  # fmt: skip
+DEADLINE = 60.0
+
+
+class Program(NamedTuple):
+    """A running gearkin."""
+
+    process: subprocess.Popen
+    log: Path
+
+    def text(self) -> str:
+        return self.log.read_text('utf-8')
+
+    def wait_for(self, pattern: str) -> re.Match:
+        """Wait until it has printed a pattern."""
+        deadline = time.monotonic() + DEADLINE
+        while not (found := re.search(pattern, self.text())):
+            assert self.process.poll() is None, self.text()
+            assert time.monotonic() < deadline, self.text()
+            time.sleep(0.02)
+        return found
+
+
+@contextlib.contextmanager
+def gearkin(folder: Path, *arguments: str):
+    """Run a command in a folder, and end it as a user does."""
+    log = folder / f'{arguments[0]}.log'
+    with log.open('w', encoding='utf-8') as stream:
+        process = subprocess.Popen(
+            [*GEARKIN, *arguments], cwd=folder, stdout=stream, stderr=subprocess.STDOUT
+        )
+    try:
+        yield Program(process, log)
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        process.wait()
+
+
+@contextlib.contextmanager
+def node(folder: Path):
+    with (
+        (folder / 'node.log').open('a', encoding='utf-8') as stream,
+        running_node(NODE_ARGUMENTS, stdout=stream, stderr=stream) as process,
+    ):
+        yield process
+
+
+@pytest.fixture(scope='module', autouse=True)
+def driver():
+    """Run the driver."""
+    program = ROOT / 'test/support/steady_driver.py'
+    process = subprocess.Popen([sys.executable, program, NAMESPACE])
+    yield
+    process.kill()
+    process.wait()
+
+
+def assert_is_whole(path: Path, *, least: int) -> None:
+    """Check that a recording has every message of the driver from first to last, and validates."""
+    with Bag(path) as bag:
+        messages = [data for _, _, data in bag.messages([MOTOR])]
+    stamps = decode_joint_states(messages, 'm1').stamp
+    assert len(stamps) >= least
+    assert set(np.diff(stamps).tolist()) == {MILLISECOND}
+    assert main(['validate', str(path)]) == 0
+
+
+# On the page
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp('watch')
+
+
+@pytest.fixture(scope='module')
+def browser():
+    sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
+    pytest.importorskip('tornado', reason='no tornado is installed')
+    sync_api.expect.set_options(timeout=30_000.0)  # a machine can be busy
+    program = shutil.which('chromium') or shutil.which('google-chrome')
+    if program is None:
+        pytest.skip('no Chromium is installed')
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope='module')
+def page(browser, folder):
+    """Give the page as it was opened before there was a node, with all that it asked for."""
+    with gearkin(folder, 'watch', '--node', NODE) as program:
+        address = program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1]
+        page = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
+        page.seen = []
+        page.on('console', lambda message: page.seen.append(message.text))
+        page.on('pageerror', lambda error: page.seen.append(str(error)))
+        page.on('request', lambda request: page.seen.append(request.url))
+        page.goto(address)
+        yield page
+        assert page.seen == [address]
+        listed = program.text()
+    assert f'{MOTOR}: joints: brake, m1' in listed
+    assert re.search(rf'{MOTOR}: rate: \d+ Hz', listed)
+    assert program.process.returncode == 130
+    assert 'Traceback' not in program.text()
+
+
+@pytest.fixture(scope='module')
+def connected(page, folder):
+    """Give the page when it shows the node."""
+    from playwright.sync_api import expect  # noqa: PLC0415, an extra
+
+    with node(folder) as process:
+        expect(page.locator('#state')).to_have_text('connected')
+        expect(page.locator('#sentences')).to_contain_text('Rotor input: healthy.')
+        page.node = process
+        page.expect = expect
+        yield page
+
+
+def reading(page, name):
+    return page.locator('#readings > div').filter(has_text=name)
+
+
+def angles(page) -> tuple[float, float]:
+    """Give the drawn angles of rotor and output at one moment, degrees."""
+    texts = page.locator('#mechanism').evaluate(
+        'e => ["--rotor", "--output"].map(name => e.style.getPropertyValue(name))'
+    )
+    return tuple(float(text.removesuffix('deg')) for text in texts)
+
+
+def test_page_lists_drivers_and_writes_a_config_before_there_is_a_node(page, folder):
+    from playwright.sync_api import expect  # noqa: PLC0415, an extra
+
+    row = page.locator('#drivers tr').filter(has_text=re.compile(f'{MOTOR}m1'))
+    expect(row).to_be_visible()
+    expect(row.locator('.number')).to_have_text(re.compile(r'^(9\d\d|10\d\d) Hz$'))
+    expect(page.locator('#words')).to_contain_text(f'{NODE} is not running')
+    expect(page.locator('#home')).to_be_disabled()
+    row.get_by_role('button').click()
+    expect(page.locator('#answer')).to_contain_text(
+        f'gear_state_publisher --ros-args --params-file actuator.yaml -r rotor_state:={MOTOR}'
+    )
+    assert "rotor_joint: 'm1'\n" in (folder / 'actuator.yaml').read_text('utf-8')
+
+
+def test_mechanism_moves_as_the_gear_ratio_says(connected):
+    for branch in ('a', 'b'):
+        assert connected.locator(f'svg[aria-label="branch {branch}"] use').count() == 5
+    seen = []
+    for _ in range(5):
+        before = angles(connected)
+        connected.wait_for_function(
+            'before => document.getElementById("mechanism").style'
+            '.getPropertyValue("--rotor") !== before',
+            arg=f'{before[0]}deg',
+        )
+        seen.append(before)
+    assert len(set(seen)) > 1
+    for rotor, output in seen:
+        assert abs(math.remainder(rotor - RATIO * output, 360.0)) < 1e-6
+    assert (
+        connected.locator('.upright .rotor')
+        .first.evaluate('e => getComputedStyle(e).transform')
+        .startswith('matrix(')
+    )
+
+
+def test_values_of_the_driver_and_of_both_encoders_are_shown(connected):
+    expect = connected.expect
+    expect(reading(connected, 'output angle')).to_contain_text('°')
+    expect(reading(connected, 'input')).to_contain_text(re.compile(r'(9\d\d|10\d\d) Hz'))
+    expect(reading(connected, 'input')).to_contain_text(re.compile('last message .* ago'))
+    # Twice the amplitude of 1e-4 rad is 41.25″.
+    expect(reading(connected, 'transmission error')).to_contain_text(
+        re.compile(r'peak to peak 4[01]\.\d+″ in 2 s, limit 10′ 18\.794″')
+    )
+    expect(connected.locator('#curve figcaption')).to_have_text(
+        re.compile(r'of the last 2 s: -20\.\d″ to 20\.\d″')
+    )
+
+
+def test_home_is_called_with_the_keyboard_and_answered(connected):
+    connected.locator('body').click(position={'x': 5, 'y': 5})
+    connected.keyboard.press('Tab')
+    connected.expect(connected.locator('#home')).to_be_focused()
+    connected.keyboard.press('Enter')
+    answer = connected.locator('#answer')
+    connected.expect(answer).to_contain_text('output shaft at 0.0 rad: rotor_zero is')
+    zero = float(re.search(r'rotor_zero is (\S+) rad; it was 0\.0 rad', answer.inner_text())[1])
+    listener = Listener(NAMESPACE, 'asking')
+    try:
+        client = AsyncParameterClient(listener.node, NODE)
+        listener.wait_until(client.services_are_ready, 'the parameter services')
+        future = client.get_parameters(['rotor_zero'])
+        listener.wait_until(future.done, 'the parameter')
+        assert future.result().values[0].double_value == zero
+    finally:
+        listener.close()
+
+
+def test_recording_loses_nothing_and_is_validated(connected, folder):
+    record, expect = connected.locator('#record'), connected.expect
+    record.focus()
+    connected.keyboard.press('Space')
+    expect(connected.locator('#answer')).to_contain_text('Recording 8 topics to ')
+    expect(connected.locator('#recording')).to_have_text(
+        re.compile(r'Recording to \S+: [4-9]\d{3} messages in [\d.]+ s, 0 lost')
+    )
+    expect(record).to_have_text('Stop recording')
+    expect(connected.locator('#home')).to_be_disabled()
+    connected.keyboard.press('Space')
+    answer = connected.locator('#answer')
+    expect(answer).to_contain_text(', 0 lost: gearkin validate gearkin_')
+    expect(connected.locator('#home')).to_be_enabled()
+    assert_is_whole(folder / answer.inner_text().split()[-1], least=800)
+
+
+def test_phone_shows_everything_within_its_width(connected):
+    connected.set_viewport_size({'width': 390, 'height': 844})
+    try:
+        assert connected.evaluate('document.documentElement.scrollWidth') == 390
+        for part in ('#home', '#record', '#readings > :first-child', '#mechanism'):
+            box = connected.locator(part).bounding_box()
+            assert box['x'] >= 0.0
+            assert box['x'] + box['width'] <= 390.0
+        assert connected.locator('#record').bounding_box()['height'] >= 40.0  # for a finger
+        above = connected.locator('#readings').bounding_box()['y']
+        assert above < connected.locator('#mechanism').bounding_box()['y']
+    finally:
+        connected.set_viewport_size({'width': 1280, 'height': 900})
+
+
+def test_dark_mode_is_dark_and_can_be_read(connected):
+    connected.emulate_media(color_scheme='dark')
+    try:
+        for part in ('body', '#home', '#readings dd', '#readings .detail', '#node'):
+            contrast = connected.locator(part).first.evaluate(CONTRAST)
+            assert contrast >= 4.5, part
+        background = 'e => getComputedStyle(e).backgroundColor'
+        assert connected.locator('body').evaluate(background) == 'rgb(20, 23, 27)'
+    finally:
+        connected.emulate_media(color_scheme='light')
+
+
+CONTRAST = """element => {
+    const light = colour => {
+        const [r, g, b] = colour.match(/[\\d.]+/g).slice(0, 3).map(v => v / 255)
+            .map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    let ground = element;
+    while (getComputedStyle(ground).backgroundColor === 'rgba(0, 0, 0, 0)') {
+        ground = ground.parentElement;
+    }
+    const colours = [getComputedStyle(element).color, getComputedStyle(ground).backgroundColor];
+    const both = colours.map(light);
+    return (Math.max(...both) + 0.05) / (Math.min(...both) + 0.05);
+}"""
+"""Contrast as WCAG 2 defines it."""
+
+
+def test_other_page_in_the_same_browser_is_refused(connected, browser):
+    other = browser.new_page()
+    address = connected.url.replace('http', 'ws', 1) + 'live'
+    opened = other.evaluate(
+        """address => new Promise(resolve => {
+            const socket = new WebSocket(address);
+            socket.addEventListener('open', () => resolve(true));
+            socket.addEventListener('close', () => resolve(false));
+        })""",
+        address,
+    )
+    assert not opened
+    assert other.goto(connected.url.replace('/127', '/x:y@127')[:-2] + '/').status == 403
+    other.close()
+
+
+def test_page_connects_again_after_the_node_was_restarted(connected, folder):
+    expect = connected.expect
+    connected.node.terminate()
+    expect(connected.locator('#state')).to_have_text('ended')
+    expect(connected.locator('#words')).to_contain_text('Waiting for it to start again.')
+    expect(connected.locator('#home')).to_be_disabled()
+    with node(folder):
+        expect(connected.locator('#state')).to_have_text('connected')
+        expect(connected.locator('#sentences')).to_contain_text('Rotor input: healthy.')
+        rotor, _ = angles(connected)
+        connected.wait_for_function(
+            'before => document.getElementById("mechanism").style'
+            '.getPropertyValue("--rotor") !== before',
+            arg=f'{rotor}deg',
+        )
