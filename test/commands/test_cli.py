@@ -282,3 +282,38 @@ def test_help_is_everywhere(command, capsys):
 def test_only_the_demo_needs_ros():
     done = run(f'import sys; sys.modules["rclpy"] = None; {GEARKIN}', 'describe')
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ('missing', 'arguments', 'remedy'),
+    [
+        ('tornado', ['watch'], "tornado is not installed: pip install 'gear_kinematics[watch]'"),
+        ('rclpy', ['init'], "pip install 'gear_kinematics[ros]'"),
+    ],
+)
+@pytest.mark.slow
+def test_what_is_missing_to_watch_is_told_before_anything_happens(missing, arguments, remedy):
+    done = run(f'import sys; sys.modules["{missing}"] = None; {GEARKIN}', *arguments)
+    assert done.returncode == 2
+    assert done.stdout == ''
+    assert done.stderr.count('\n') == 1
+    assert remedy in done.stderr
+
+
+def test_watch_and_init_replace_nothing(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'actuator.yaml').write_text('mine')
+    assert main(['init']) == 2
+    cause = 'actuator.yaml: exists already; give another name with -o'
+    assert capsys.readouterr().err == f'gearkin: {cause}\n'
+    (tmp_path / 'monday').symlink_to('nowhere')
+    assert main(['watch', '--record', 'monday']) == 2
+    assert capsys.readouterr().err == 'gearkin: monday: exists already\n'
+    assert (tmp_path / 'actuator.yaml').read_text() == 'mine'
+
+
+@pytest.mark.parametrize('port', ['-1', '65536', 'x'])
+def test_watch_refuses_what_is_no_port(port, capsys):
+    with pytest.raises(SystemExit):
+        main(['watch', '--port', port])
+    assert 'argument --port: ' in capsys.readouterr().err

@@ -14,7 +14,9 @@ from types import SimpleNamespace
 import pytest
 from rich.console import Console
 
+from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, GearRatio, Mechanism
+from gear_kinematics.ros.watch import drivers
 from gear_kinematics.ros.watch.drivers import Driver
 from gear_kinematics.ros.watch.gear import Joint, Status
 from gear_kinematics.ros.watch.graph import known_as
@@ -32,6 +34,8 @@ from gear_kinematics.ros.watch.view import (
     state_of,
 )
 from gear_kinematics.ros.watch.watcher import Answer
+from gear_kinematics.state import parameters
+from gear_kinematics.state.new_config import new_config
 from gear_kinematics.wire import topics
 
 tornado_websocket = pytest.importorskip('tornado.websocket', reason='no tornado is installed')
@@ -267,6 +271,60 @@ def test_drivers_are_listed_with_joints_and_rates():
         '/odd: rate: 0 Hz',
         'There are no topics of type JointState yet.',
     ]
+
+
+# gearkin init
+
+
+@pytest.fixture
+def listening(monkeypatch, tmp_path):
+    """Run in an empty folder, beside two drivers."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(drivers, 'listen', lambda _: list(DRIVERS))
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ('arguments', 'cause'),
+    [
+        ([], 'which joint is the rotor? Choose with --topic and --joint'),
+        (['--joint', 'm11'], 'no joint m11; did you mean `m1`?; there are: brake, m1'),
+        (
+            ['--topic', 'motor/joint_state'],
+            'no topic /motor/joint_state of type JointState; did you mean `/motor/joint_states`?',
+        ),
+        (['--topic', '/odd'], 'no message with joints in 3 s'),
+        (['-o', 'nowhere/a.yaml', '--joint', 'm1'], 'nowhere/a.yaml: No such file or directory'),
+    ],
+)
+def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
+    assert main(['init', *arguments]) == 2
+    told = capsys.readouterr()
+    assert told.err == f'gearkin: {cause}\n'
+    assert '/motor/joint_states: joints: brake, m1' in told.out
+    assert not list(listening.iterdir())
+
+
+def test_init_writes_what_is_named(listening, capsys):
+    assert main(['init', '--topic', '/motor/joint_states', '--joint', 'm1', '-o', 'a b.yaml']) == 0
+    assert parameters.load(listening / 'a b.yaml')['rotor_joint'] == 'm1'
+    command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
+    assert f'\n    {command}/motor/joint_states\n' in capsys.readouterr().out
+
+
+def test_init_writes_to_stdout_and_lists_elsewhere(listening, capsys):
+    assert main(['init', '--joint', 'm1', '-o', '-']) == 0
+    told = capsys.readouterr()
+    assert told.out == new_config('/motor/joint_states', 'm1', 'actuator.yaml')
+    assert '/motor/joint_states: joints: brake, m1' in told.err
+    assert not list(listening.iterdir())
+
+
+def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):
+    monkeypatch.setattr(drivers, 'listen', lambda _: [])
+    assert main(['init', '--wait', '0.5']) == 2
+    assert 'no topic of type JointState in 0.5 s' in capsys.readouterr().err
+    assert not list(listening.iterdir())
 
 
 # The server

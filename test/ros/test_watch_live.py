@@ -4,13 +4,17 @@ The driver's stamps are a millisecond apart, so that a gap in a recording shows 
 """
 
 import contextlib
+import fcntl
 import math
 import os
 import re
+import select
 import shutil
 import signal
+import struct
 import subprocess
 import sys
+import termios
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -32,11 +36,9 @@ ROOT = Path(__file__).resolve().parents[2]
 NAMESPACE = f'/watched_{os.getpid()}'
 NODE = f'{NAMESPACE}/gear_state_publisher'
 MOTOR = f'{NAMESPACE}/motor/joint_states'
+ENCODER = f'{NAMESPACE}/output_encoder'
 GEARKIN = (sys.executable, '-P', '-m', 'gear_kinematics')
-NODE_ARGUMENTS = (
-    '--ros-args', '-r', f'__ns:={NAMESPACE}', '-r', 'rotor_state:=motor/joint_states',
-    '-p', 'rotor_joint:=m1', '-p', 'transmission_error_window:=2.0',
-)  # fmt: skip
+OTHER = f'{NAMESPACE}/other/gear_state_publisher'
 DEADLINE = 60.0
 
 
@@ -76,10 +78,14 @@ def gearkin(folder: Path, *arguments: str):
 
 
 @contextlib.contextmanager
-def node(folder: Path):
+def node(folder: Path, name: str = NODE):
+    """Run the node for the driver, under a full name."""
+    arguments = ['--ros-args', '-r', f'__ns:={name.rpartition("/")[0]}', '-p', 'rotor_joint:=m1']
+    arguments += ['-r', f'rotor_state:={MOTOR}', '-r', f'output_encoder:={ENCODER}']
+    arguments += ['-p', 'transmission_error_window:=2.0']
     with (
         (folder / 'node.log').open('a', encoding='utf-8') as stream,
-        running_node(NODE_ARGUMENTS, stdout=stream, stderr=stream) as process,
+        running_node(arguments, stdout=stream, stderr=stream) as process,
     ):
         yield process
 
@@ -176,7 +182,7 @@ def test_page_lists_drivers_and_writes_a_config_before_there_is_a_node(page, fol
 
     row = page.locator('#drivers tr').filter(has_text=re.compile(f'{MOTOR}m1'))
     expect(row).to_be_visible()
-    expect(row.locator('.number')).to_have_text(re.compile(r'^(9\d\d|10\d\d) Hz$'))
+    expect(row.locator('.number')).to_have_text(re.compile(r'^[1-9]\d\d+ Hz$'))
     expect(page.locator('#words')).to_contain_text(f'{NODE} is not running')
     expect(page.locator('#home')).to_be_disabled()
     row.get_by_role('button').click()
@@ -211,7 +217,7 @@ def test_mechanism_moves_as_the_gear_ratio_says(connected):
 def test_values_of_the_driver_and_of_both_encoders_are_shown(connected):
     expect = connected.expect
     expect(reading(connected, 'output angle')).to_contain_text('°')
-    expect(reading(connected, 'input')).to_contain_text(re.compile(r'(9\d\d|10\d\d) Hz'))
+    expect(reading(connected, 'input')).to_contain_text(re.compile(r'[1-9]\d\d+ Hz'))
     expect(reading(connected, 'input')).to_contain_text(re.compile('last message .* ago'))
     # Twice the amplitude of 1e-4 rad is 41.25″.
     expect(reading(connected, 'transmission error')).to_contain_text(
@@ -333,3 +339,115 @@ def test_page_connects_again_after_the_node_was_restarted(connected, folder):
             '.getPropertyValue("--rotor") !== before',
             arg=f'{rotor}deg',
         )
+
+
+# In the terminal and in a pipe
+
+
+@pytest.fixture(scope='module')
+def running(tmp_path_factory):
+    with node(tmp_path_factory.mktemp('node'), OTHER):
+        yield
+
+
+@pytest.mark.usefixtures('running')
+def test_recordings_in_a_pipe_are_whole_also_after_the_process_was_killed(tmp_path):
+    paths = {name: tmp_path / name for name in ('ended', 'killed')}
+    with contextlib.ExitStack() as stack:
+        programs = {}
+        for name, path in paths.items():
+            path.with_suffix('.folder').mkdir()
+            arguments = ['watch', '--text', '--node', OTHER, '--record', str(path)]
+            programs[name] = stack.enter_context(gearkin(path.with_suffix('.folder'), *arguments))
+        for program in programs.values():
+            program.wait_for(r'recording \S+: [4-9]\d{3} messages in .* s, 0 lost')
+        programs['killed'].process.kill()
+        programs['ended'].process.terminate()
+        assert programs['ended'].process.wait(DEADLINE) == 130
+    text = programs['ended'].text()
+    listed, *_ = text.splitlines()
+    assert listed == f'{MOTOR}: joints: brake, m1'
+    assert re.search(
+        rf'^[\d-]+T[\d:]+\S* {OTHER} connected \| output angle \S+° .*; rotor angle .*; '
+        r'input \d+ Hz \(last message .* ago\); transmission error .* \| Rotor input: healthy\. ',
+        text,
+        re.MULTILINE,
+    )
+    assert re.search(r'^Recorded \d+ messages, 0 lost: gearkin validate ', text, re.MULTILINE)
+    assert not (paths['killed'] / 'metadata.yaml').exists()
+    assert_is_whole(paths['ended'], least=600)
+    assert_is_whole(paths['killed'], least=300)
+
+
+class Terminal:
+    """A program in a terminal, and a person in front of it."""
+
+    def __init__(self, folder: Path, *arguments: str) -> None:
+        self._master, slave = os.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 50, 160, 0, 0))
+        self.before = termios.tcgetattr(slave)
+        self.process = subprocess.Popen(
+            [*GEARKIN, *arguments],
+            cwd=folder,
+            stdin=slave,
+            stdout=slave,
+            stderr=slave,
+            env=os.environ | {'TERM': 'xterm'},
+        )
+        self._slave = slave
+        self._text = ''
+
+    def wait_for(self, pattern: str) -> str:
+        """Wait until something new is shown, and give what matches."""
+        deadline = time.monotonic() + DEADLINE
+        while not (found := re.search(pattern, self._text)):
+            ready, _, _ = select.select([self._master], [], [], deadline - time.monotonic())
+            assert ready, self._text
+            read = os.read(self._master, 65536).decode(errors='replace')
+            self._text += re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', read)
+        self._text = self._text[found.end() :]
+        return found[0]
+
+    def type(self, keys: str) -> None:
+        os.write(self._master, keys.encode())
+
+    def close(self) -> int:
+        """Wait for the end, and give the exit code."""
+        deadline = time.monotonic() + DEADLINE
+        while self.process.poll() is None:  # it waits for its last output to be read
+            assert time.monotonic() < deadline
+            if select.select([self._master], [], [], 0.05)[0]:
+                os.read(self._master, 65536)
+        assert termios.tcgetattr(self._slave) == self.before
+        for descriptor in (self._master, self._slave):
+            os.close(descriptor)
+        return self.process.returncode
+
+
+@pytest.mark.usefixtures('running')
+def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
+    terminal = Terminal(tmp_path, 'watch', '--text', '--node', OTHER)
+    terminal.wait_for(f'gearkin watch {OTHER} connected')
+    terminal.wait_for(r'output angle +-?\d+\.\d+° ')
+    terminal.wait_for('Rotor input: healthy')
+    terminal.type('r')
+    terminal.wait_for('● recording to gearkin_')
+    terminal.type('h')
+    terminal.wait_for('Stop the recording first')
+    terminal.type('r')
+    terminal.wait_for(r'Recorded \d+ messages, 0 lost')
+    terminal.type('h')
+    terminal.wait_for('output shaft at 0.0 rad: rotor_zero is')
+    terminal.type('q')
+    assert terminal.close() == 0
+
+
+def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
+    terminal = Terminal(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml')
+    terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
+    choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
+    terminal.wait_for('Number of the joint of the rotor: ')
+    terminal.type(f'{choice[0]}\n')
+    terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}')
+    assert terminal.close() == 0
+    assert "rotor_joint: 'm1'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
