@@ -6,16 +6,16 @@ import json
 import math
 import re
 import time
-from concurrent.futures import Future
 from contextlib import asynccontextmanager
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from rich.console import Console
+from watching import WatcherStandIn
 
 from gear_kinematics.commands.cli import main
-from gear_kinematics.kinematics import Branch, GearRatio, Mechanism
+from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.ros.watch import drivers
 from gear_kinematics.ros.watch.drivers import Driver
 from gear_kinematics.ros.watch.gear import Joint, Status
@@ -330,28 +330,9 @@ def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):
 # The server
 
 
-class _Watcher:
-    """Stands in for a watcher, and notes what it is asked for."""
-
-    def __init__(self) -> None:
-        self.view = FULL
-        self.drawn = Mechanism(80, 76, 0.0011, (Branch('a'),))
-        self.module = 0.0005
-        self.asked = []
-
-    def __getattr__(self, name):
-        def ask(*arguments):
-            self.asked.append((name, *arguments))
-            answer = Future()
-            answer.set_result(Answer(f'{name}.', done=True))
-            return answer
-
-        return ask
-
-
 @pytest.fixture
-def watcher() -> _Watcher:
-    return _Watcher()
+def watcher() -> WatcherStandIn:
+    return WatcherStandIn(FULL)
 
 
 @asynccontextmanager

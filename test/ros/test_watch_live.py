@@ -3,6 +3,7 @@
 The driver's stamps are a millisecond apart, so that a gap in a recording shows what was lost.
 """
 
+import asyncio
 import contextlib
 import fcntl
 import math
@@ -15,6 +16,7 @@ import struct
 import subprocess
 import sys
 import termios
+import threading
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -24,10 +26,13 @@ import pytest
 from live import Listener
 from rclpy.parameter_client import AsyncParameterClient
 from steady_driver import MILLISECOND, RATIO
+from watching import WatcherStandIn
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
 from gear_kinematics.ros.live import running_node
+from gear_kinematics.ros.watch.drivers import Driver
+from gear_kinematics.ros.watch.view import Reading, Sentence, View
 from gear_kinematics.wire.batches import decode_joint_states
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
@@ -322,6 +327,43 @@ def test_other_page_in_the_same_browser_is_refused(connected, browser):
     assert not opened
     assert other.goto(connected.url.replace('/127', '/x:y@127')[:-2] + '/').status == 403
     other.close()
+
+
+def test_names_are_text_on_the_page(connected, browser):
+    hostile = '<img src=x onerror=alert(1)>'
+    view = View(
+        node=hostile,
+        state='connected',
+        words=hostile,
+        readings=(Reading(hostile, hostile, hostile),),
+        sentences=(Sentence(hostile),),
+        drivers=(Driver(hostile, (hostile,), 1.0, 1),),
+        failure=hostile,
+    )
+    from gear_kinematics.ros.watch.server import Server  # noqa: PLC0415, needs an extra
+
+    ended = threading.Event()
+    server = Server(WatcherStandIn(view))
+    thread = threading.Thread(target=lambda: asyncio.run(server.run(ended.is_set)))
+    thread.start()
+    page = browser.new_page()
+    try:
+        page.goto(server.address)
+        for part in (
+            '#node',
+            '#words',
+            '#recording',
+            '#readings dt',
+            '#readings dd',
+            '#sentences',
+        ):
+            connected.expect(page.locator(part).first).to_have_text(hostile)
+        connected.expect(page.locator('#drivers td').nth(1)).to_have_text(hostile)
+        assert page.locator('img').count() == 0
+    finally:
+        page.close()
+        ended.set()
+        thread.join()
 
 
 def test_page_connects_again_after_the_node_was_restarted(connected, folder):
