@@ -52,11 +52,14 @@ def run(options: argparse.Namespace) -> ExitCode:
 
     show = _show_text if options.text else _serve(options.port)
     console = Console()
+    watcher = Watcher(options.node, options.record)
     with stopped_by_signals() as stopped:
-        with Watcher(options.node, options.record) as watcher:
-            show(watcher, console, stopped)
-        if watcher.farewell:
-            console.print(watcher.farewell, soft_wrap=True, markup=False, highlight=False)
+        try:
+            with watcher:
+                show(watcher, console, lambda: stopped() or watcher.ended)
+        finally:
+            if watcher.farewell:
+                console.print(watcher.farewell, soft_wrap=True, markup=False, highlight=False)
         if stopped():
             raise KeyboardInterrupt
     return ExitCode.DONE

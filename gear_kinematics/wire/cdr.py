@@ -75,6 +75,14 @@ def joint_index(layout: Layout, joint: bytes) -> int | None:
     return 0 if len(names) == 1 else None
 
 
+def header_stamp(data: bytes) -> int:
+    """Return the stamp of any message that begins with a std_msgs/Header, ns; -1 without one."""
+    if len(data) < STAMP_OFFSET + STAMP.size:
+        return -1
+    seconds, nanoseconds = struct.unpack_from('<iI' if data[1] & 1 else '>iI', data, STAMP_OFFSET)
+    return int(seconds * SECOND + nanoseconds)
+
+
 def joint_state_layout(data: bytes) -> Layout:
     """Find the layout of a sensor_msgs/JointState.
 

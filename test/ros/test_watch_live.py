@@ -28,11 +28,12 @@ from rclpy.parameter_client import AsyncParameterClient
 from steady_driver import MILLISECOND, RATIO
 from watching import WatcherStandIn
 
-from gear_kinematics.bag import Bag
+from gear_kinematics.bag import Bag, BagError, LiveBagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.ros.live import running_node
 from gear_kinematics.ros.watch.drivers import Driver
 from gear_kinematics.ros.watch.view import Reading, Sentence, View
+from gear_kinematics.ros.watch.watcher import Answer, Watcher
 from gear_kinematics.wire.batches import decode_joint_states
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
@@ -453,7 +454,17 @@ class Terminal:
     def type(self, keys: str) -> None:
         os.write(self._master, keys.encode())
 
-    def close(self) -> int:
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_) -> None:
+        if kind:
+            self.process.kill()
+        self.process.wait()
+        for descriptor in (self._master, self._slave):
+            os.close(descriptor)
+
+    def end(self) -> int:
         """Wait for the end, and give the exit code."""
         deadline = time.monotonic() + DEADLINE
         while self.process.poll() is None:  # it waits for its last output to be read
@@ -461,35 +472,77 @@ class Terminal:
             if select.select([self._master], [], [], 0.05)[0]:
                 os.read(self._master, 65536)
         assert termios.tcgetattr(self._slave) == self.before
-        for descriptor in (self._master, self._slave):
-            os.close(descriptor)
         return self.process.returncode
 
 
 @pytest.mark.usefixtures('running')
 def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
-    terminal = Terminal(tmp_path, 'watch', '--text', '--node', OTHER)
-    terminal.wait_for(f'gearkin watch {OTHER} connected')
-    terminal.wait_for(r'output angle +-?\d+\.\d+° ')
-    terminal.wait_for('Rotor input: healthy')
-    terminal.type('r')
-    terminal.wait_for('● recording to gearkin_')
-    terminal.type('h')
-    terminal.wait_for('Stop the recording first')
-    terminal.type('r')
-    terminal.wait_for(r'Recorded \d+ messages, 0 lost')
-    terminal.type('h')
-    terminal.wait_for('output shaft at 0.0 rad: rotor_zero is')
-    terminal.type('q')
-    assert terminal.close() == 0
+    with Terminal(tmp_path, 'watch', '--text', '--node', OTHER) as terminal:
+        terminal.wait_for(f'gearkin watch {OTHER} connected')
+        terminal.wait_for(r'output angle +-?\d+\.\d+° ')
+        terminal.wait_for('Rotor input: healthy')
+        terminal.type('r')
+        terminal.wait_for('● recording to gearkin_')
+        terminal.type('h')
+        terminal.wait_for('Stop the recording first')
+        terminal.type('r')
+        terminal.wait_for(r'Recorded \d+ messages, 0 lost')
+        terminal.type('h')
+        terminal.wait_for('output shaft at 0.0 rad: rotor_zero is')
+        terminal.type('q')
+        assert terminal.end() == 0
+
+
+def until(condition):
+    deadline = time.monotonic() + DEADLINE
+    while not (found := condition()):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    return found
+
+
+@pytest.mark.usefixtures('running')
+def test_commands_that_cannot_be_done_are_answered_with_the_cause(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'there').mkdir()
+    with Watcher(OTHER) as watcher:
+        until(lambda: watcher.view.state == 'connected' and watcher.view.drivers)
+        for asked, cause in (
+            (watcher.stop(), 'Nothing is being recorded.'),
+            (watcher.configure(MOTOR, 'm2'), f'There is no joint m2 on {MOTOR}.'),
+            (watcher.record(Path('there')), 'there: exists already'),
+        ):
+            assert asked.result(DEADLINE) == Answer(cause, done=False)
+        assert watcher.record(Path('full')).result(DEADLINE).done
+        assert watcher.record().result(DEADLINE).text == 'full is being recorded.'
+
+        def full(*_):
+            raise BagError('full: No space left on device')
+
+        monkeypatch.setattr(LiveBagWriter, 'write_all', full)
+        words = until(lambda: watcher.view.failure)
+        assert words == 'The recording has ended: full: No space left on device'
+
+
+def test_drivers_are_recorded_where_there_is_no_node(tmp_path):
+    with Watcher('/nobody/gear_state_publisher') as watcher:
+        until(lambda: watcher.view.drivers)
+        assert watcher.home().result(DEADLINE).text == 'There is no node to home.'
+        path = tmp_path / 'drivers'
+        assert watcher.record(path).result(DEADLINE).done
+        until(lambda: ': 1' in watcher.view.recording.replace(': 0', ''))
+    assert watcher.farewell.endswith(f' 0 lost: gearkin validate {path}')
+    with Bag(path) as bag:
+        assert set(bag.topics) <= {MOTOR, ENCODER}
+        assert MOTOR in bag.topics
 
 
 def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
-    terminal = Terminal(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml')
-    terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
-    choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
-    terminal.wait_for('Number of the joint of the rotor: ')
-    terminal.type(f'{choice[0]}\n')
-    terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}')
-    assert terminal.close() == 0
-    assert "rotor_joint: 'm1'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
+    with Terminal(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
+        terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
+        choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
+        terminal.wait_for('Number of the joint of the rotor: ')
+        terminal.type(f'{choice[0]}\n')
+        terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}')
+        assert terminal.end() == 0
+        assert "rotor_joint: 'm1'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')

@@ -1,5 +1,6 @@
 """A node of a gear, as its topics and services show it."""
 
+import math
 import time
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -67,11 +68,16 @@ class GearNode:
         self.parameters: dict[str, Any] = {}
         """Of the node; empty until it has told them."""
         self.gear: Gear | None = None
+        self.known = False
+        """Whether the node has told its parameters since it started."""
         self.restarts = -1
         """How often it has been seen to start again."""
         self.outputs: dict[str, str] = {}
         """Names of its topics by those without remapping."""
+        self.heard: list[str] = []
+        """Names of the topics that it hears."""
         self.inputs: dict[str, str] = {}
+        """Those of them that are known, as in `outputs`."""
         self.statuses: dict[str, Status] = {}
         """Diagnostics by subject."""
         self.home = node.create_client(Trigger, f'{name}/home')
@@ -79,7 +85,7 @@ class GearNode:
         self._diagnostics: PolledSubscription | None = None
         self._client = AsyncParameterClient(node, name)
         self._asked: Future | None = None
-        self._deadline = 0.0
+        self._deadline = 0.0  # s of a steady clock, for the answer
         self._names: list[str] = []
         self._publishers: set[bytes] = set()
         self._readers: dict[str, JointReader] = {}
@@ -90,12 +96,14 @@ class GearNode:
         self.running = topics.DIAGNOSTICS in outputs
         if not self.running:
             return
-        self.inputs = graph.inputs_of(self._node, self.name)
+        self.heard = graph.heard_by(self._node, self.name)
+        self.inputs = graph.inputs_of(self.heard)
         self._subscribe(outputs)
         publishers = graph.publishers_of(self._node, outputs[topics.DIAGNOSTICS], self.name)
         if publishers - self._publishers:
             self.restarts += 1
             self.statuses.clear()
+            self.known = False
             self.reread()
         self._publishers = publishers
 
@@ -129,11 +137,6 @@ class GearNode:
         """Read the parameters once more."""
         self._names, self._asked, self._deadline = [], None, 0.0
 
-    @property
-    def known(self) -> bool:
-        """Whether the node has told its parameters since it started."""
-        return self._deadline == float('inf')
-
     def _subscribe(self, outputs: dict[str, str]) -> None:
         for name in _SHOWN:
             topic, latest = outputs.get(name), self._latest.get(name)
@@ -155,10 +158,13 @@ class GearNode:
         if self._asked is not None and self._asked.done():
             answer, self._asked = self._asked.result(), None
             self._deadline = 0.0
-            if self._names:
+            if not self._names:
+                self._names = [name for name in answer.result.names if _is_ours(name)]
+            elif len(answer.values) == len(self._names):
                 self._take_parameters(map(parameter_value_to_python, answer.values))
                 return
-            self._names = [name for name in answer.result.names if _is_ours(name)]
+            else:  # it has started again, with others
+                self._names = []
         if self.running and time.monotonic() >= self._deadline:
             if not self._client.services_are_ready():
                 return
@@ -173,7 +179,7 @@ class GearNode:
         known = {name: defaults()[name] for name in PARAMETERS}  # where it is an older version
         self.parameters = known | dict(zip(self._names, values, strict=True))
         self.gear = gear_from_mapping(self.parameters)
-        self._deadline = float('inf')
+        self.known, self._deadline = True, math.inf
 
 
 def _is_ours(name: str) -> bool:

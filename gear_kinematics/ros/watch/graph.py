@@ -1,7 +1,10 @@
 """What the ROS graph says: the nodes of gears, their topics, and the drivers beside them."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from typing import Any
 
+from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
 from gear_kinematics.wire import topics
@@ -33,7 +36,7 @@ def gear_nodes(node: Node) -> list[str]:
 
 def published_by(node: Node, name: str) -> dict[str, str]:
     """Return the topics that a node publishes, types by name; none if it does not run."""
-    return _topics_of(node, name, node.get_publisher_names_and_types_by_node)
+    return _topics_of(name, node.get_publisher_names_and_types_by_node)
 
 
 def outputs_of(node: Node, name: str) -> dict[str, str]:
@@ -41,10 +44,15 @@ def outputs_of(node: Node, name: str) -> dict[str, str]:
     return known_as(_PUBLISHED, published_by(node, name))
 
 
-def inputs_of(node: Node, name: str) -> dict[str, str]:
-    """Return the topics that a gear's node hears, in the same way."""
-    heard = _topics_of(node, name, node.get_subscriber_names_and_types_by_node)
-    return known_as(_HEARD, heard)
+def heard_by(node: Node, name: str) -> list[str]:
+    """Return the topics of type JointState that a node hears."""
+    heard = _topics_of(name, node.get_subscriber_names_and_types_by_node)
+    return [topic for topic, kind in heard.items() if kind == topics.JOINT_STATE]
+
+
+def inputs_of(heard: Iterable[str]) -> dict[str, str]:
+    """Tell which of the topics that a gear's node hears is which, as `outputs_of` does."""
+    return known_as(_HEARD, dict.fromkeys(heard, topics.JOINT_STATE))
 
 
 def known_as(expected: Mapping[str, str], found: Mapping[str, str]) -> dict[str, str]:
@@ -97,11 +105,11 @@ def publishers_of(node: Node, topic: str, name: str) -> set[bytes]:
     }
 
 
-def _topics_of(node: Node, name: str, ask: object) -> dict[str, str]:
-    if name not in _full_names(node):  # rclpy would raise an error
-        return {}
+def _topics_of(name: str, ask: Callable[[str, str], Any]) -> dict[str, str]:
     namespace, _, base = name.rpartition('/')
-    found: Sequence[tuple[str, list[str]]] = ask(base, namespace or '/')  # type: ignore[operator]
+    found: Sequence[tuple[str, list[str]]] = ()
+    with suppress(rclpy_implementation.NodeNameNonExistentError):
+        found = ask(base, namespace or '/')
     return {topic: types[0] for topic, types in found}
 
 

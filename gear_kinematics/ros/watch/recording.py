@@ -2,11 +2,12 @@
 
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
+from types import MappingProxyType
 from typing import NamedTuple
 
 from rclpy.node import Node
@@ -14,8 +15,10 @@ from rclpy.qos import ReliabilityPolicy
 
 from gear_kinematics.bag import BagError, LiveBagWriter, Message
 from gear_kinematics.ros.watch.polled import PolledSubscription, Taken
+from gear_kinematics.wire.cdr import header_stamp
 
 _PERIOD = 0.01  # s between looks into the queues, which hold 2000 messages
+_PATIENCE = 2.0  # s to wait for the answers to the last inputs
 _FLUSH_PERIOD = 1.0  # s; as much is missing at most if the process is killed
 
 
@@ -48,6 +51,8 @@ class _Channel:
         self.count = 0
         self.lost = 0
         self.numbered = True
+        self.stamp = -1
+        """Of the latest message, ns."""
         self._last: int | None = None
 
     def take(self) -> list[Message]:
@@ -56,6 +61,7 @@ class _Channel:
         taken = list(self.source.take())
         if taken:
             self._count_losses(taken)
+            self.stamp = header_stamp(taken[-1].data)
         return [(topic, message.received, message.data) for message in taken]
 
     def _count_losses(self, taken: list[Taken]) -> None:
@@ -76,13 +82,21 @@ class Recording:
     does not make the queues overflow.
     """
 
-    def __init__(self, node: Node, topics: Mapping[str, tuple[str, type]], path: Path) -> None:
+    def __init__(
+        self,
+        node: Node,
+        topics: Mapping[str, tuple[str, type]],
+        path: Path,
+        answers: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
         """Begin to record.
 
         Args:
             node: subscribes; subscriptions are made and removed by the caller's thread only.
             topics: type of each topic, by name and as a class.
             path: folder to create.
+            answers: topics whose messages have the stamps of those that they answer, each with
+                the topic of these.
 
         Raises:
             BagError: if it exists already or cannot be written.
@@ -98,6 +112,8 @@ class Recording:
         self._seconds: float | None = None
         self._error = ''
         self._channels = [_Channel(node, topic, kind) for topic, (_, kind) in topics.items()]
+        by_topic = {channel.source.topic: channel for channel in self._channels}
+        self._answers = {by_topic[topic]: by_topic[asked] for topic, asked in answers.items()}
         self._stopping = Event()
         self._queue: SimpleQueue[list[Message] | None] = SimpleQueue()
         self._threads = [Thread(target=self._take), Thread(target=self._write)]
@@ -135,9 +151,19 @@ class Recording:
         stopping = False
         while not stopping:
             stopping = self._stopping.wait(_PERIOD)
-            messages = [message for channel in self._channels for message in channel.take()]
-            self._queue.put(sorted(messages, key=lambda message: message[1]))
+            self._pass_on(self._channels)
+        # A node that is behind has not answered the last inputs yet.
+        end = time.monotonic() + _PATIENCE
+        while time.monotonic() < end and any(
+            answer.stamp < asked.stamp for answer, asked in self._answers.items()
+        ):
+            time.sleep(_PERIOD)
+            self._pass_on(self._answers)
         self._queue.put(None)
+
+    def _pass_on(self, channels: Iterable[_Channel]) -> None:
+        messages = [message for channel in channels for message in channel.take()]
+        self._queue.put(sorted(messages, key=lambda message: message[1]))
 
     def _write(self) -> None:
         flushed = time.monotonic()

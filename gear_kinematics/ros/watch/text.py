@@ -147,7 +147,10 @@ def _drivers(drivers: Sequence[Driver]) -> RenderableType:
 
 @contextmanager
 def _keys() -> Iterator[Callable[[float], str]]:
-    """Take single keys from the terminal; yields a function that waits some s for one."""
+    """Take single keys from the terminal; yields a function that waits some s for one.
+
+    The end of the input is q.
+    """
     if not sys.stdin.isatty():
 
         def wait(timeout: float) -> str:
@@ -161,7 +164,12 @@ def _keys() -> Iterator[Callable[[float], str]]:
 
     def read(timeout: float) -> str:
         ready, _, _ = select.select([descriptor], [], [], timeout)
-        return os.read(descriptor, 1).decode(errors='replace').lower() if ready else ''
+        if not ready:
+            return ''
+        try:
+            return os.read(descriptor, 1).decode(errors='replace').lower() or 'q'
+        except OSError:  # the terminal is gone
+            return 'q'
 
     try:
         tty.setcbreak(descriptor)

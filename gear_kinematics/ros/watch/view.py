@@ -22,6 +22,7 @@ Tone = Literal['', 'notable', 'bad']
 
 _STALE = 1.0  # s without an output after which its angle is out of date
 _SILENT = 3.0  # s without diagnostics, which come every second
+_NUMBER = re.compile(r'\d+(\.\d+)?(e[-+]?\d{1,2})?', re.ASCII)
 _RPM = 60.0 / TURN  # of 1 rad/s
 _LEVELS = {OK: 'healthy', WARN: 'warning', ERROR: 'error'}
 _ADVICE = (
@@ -192,8 +193,8 @@ def _window(gear: GearNode) -> str:
     """The peak-to-peak value in the window of the diagnostics, and its limit."""
     length = gear.parameters.get('transmission_error_window')
     status = gear.statuses.get('transmission error')
-    text = status.values.get('peak to peak (rad)', 'none') if status else 'none'
-    if length is None or text == 'none':
+    text = status.values.get('peak to peak (rad)', '') if status else ''
+    if length is None or not _NUMBER.fullmatch(text):
         return ''
     limit = arc(gear.parameters['transmission_error_limit'])
     return f'peak to peak {arc(float(text))} in {length:g} s, limit {limit}'

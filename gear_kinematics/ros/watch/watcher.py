@@ -100,6 +100,9 @@ class Watcher:
         """Of its teeth, m."""
         self.farewell = ''
         """What became of the recording, if any, at the end."""
+        self.ended = False
+        """Whether it has ended, also by itself."""
+        self._error: Exception | None = None
         self._to_record = record
         self._wanted = node and f'/{node.removeprefix("/")}'
         self._tasks: SimpleQueue[Callable[[], None]] = SimpleQueue()
@@ -125,9 +128,15 @@ class Watcher:
         return self
 
     def __exit__(self, *_: object) -> None:
-        """Finish a recording, and leave ROS."""
+        """Finish a recording, and leave ROS.
+
+        Raises:
+            Exception: whatever has ended it before.
+        """
         self._ending.set()
         self._thread.join()
+        if self._error:
+            raise self._error
 
     def home(self) -> 'Future[Answer]':
         """Call ~/home of the node."""
@@ -186,10 +195,13 @@ class Watcher:
                     if self._recording:
                         self.farewell = self._stop().text
                     executor.shutdown()
-        except BaseException as error:
+        except Exception as error:  # noqa: BLE001, raised again in the thread that waits
             if self._ready.done():
-                raise
-            self._ready.set_exception(error)
+                self._error = error
+            else:
+                self._ready.set_exception(error)
+        finally:
+            self.ended = True
 
     def _watch(self, executor: SingleThreadedExecutor) -> None:
         next_look = 0.0
@@ -209,7 +221,8 @@ class Watcher:
                 self._gear.poll()
             if look:
                 self._found = tuple(self._drivers.found())
-            if self._to_record and self._gear and self._gear.running and self._gear.known:
+            # By its first diagnostics, the drivers have been discovered.
+            if self._to_record and self._gear and self._gear.known and self._gear.statuses:
                 self._failed = self._record_from_start(self._to_record)
                 self._to_record = None
             self._homings = [homing for homing in self._homings if not homing.settled()]
@@ -261,9 +274,8 @@ class Watcher:
             return Answer('There is nothing to record.', done=False)
         now = datetime.now().astimezone()
         path = path or unused_name(Path(), f'{now:gearkin_%Y-%m-%d_%H-%M-%S}')
-        self._recording = Recording(
-            self._node, {topic: (kind, _CLASSES[kind]) for topic, kind in found.items()}, path
-        )
+        types = {topic: (kind, _CLASSES[kind]) for topic, kind in found.items()}
+        self._recording = Recording(self._node, types, path, self._answers(found))
         self._failed = ''
         words = f'Recording {len(found)} topics to {path}.'
         if self._gear and self._gear.running and self._gear.known:
@@ -282,12 +294,20 @@ class Watcher:
         drivers = [driver.topic for driver in self._found]
         if not (self._gear and self._gear.running):
             return dict.fromkeys(drivers, topics.JOINT_STATE)
-        heard = [topic for topic in self._gear.inputs.values() if topic in drivers]
+        encoder = self._gear.inputs.get(topics.OUTPUT_ENCODER)  # optional
+        heard = [topic for topic in self._gear.heard if topic != encoder or topic in drivers]
         return dict.fromkeys(heard, topics.JOINT_STATE) | {
             topic: topics.TOPICS[name].type
             for name, topic in self._gear.outputs.items()
             if topics.TOPICS[name].type in _CLASSES and name not in _NOT_RECORDED
         }
+
+    def _answers(self, found: Mapping[str, str]) -> dict[str, str]:
+        """The topics of the state among some topics, with that of the rotor, if it is known."""
+        if not (self._gear and topics.ROTOR_STATE in self._gear.inputs):
+            return {}
+        states = {self._gear.outputs.get(name, '') for name in topics.STATE_TOPICS}
+        return dict.fromkeys(states & found.keys(), self._gear.inputs[topics.ROTOR_STATE])
 
     def _keep_parameters(self, gear: GearNode, folder: Path) -> str:
         """Write the parameters beside the data, where `gearkin validate` looks for them."""
