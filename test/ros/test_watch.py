@@ -214,6 +214,7 @@ FULL = View(
     sentences=(Sentence(f'Rotor input: error, {HOSTILE}.', 'bad'),),
     recording='monday: 3 messages in 1.0 s, 0 lost',
     drivers=DRIVERS,
+    gear=1,
 )
 
 

@@ -186,7 +186,7 @@ def angles(page) -> tuple[float, float]:
 def test_page_lists_drivers_and_writes_a_config_before_there_is_a_node(page, folder):
     from playwright.sync_api import expect  # noqa: PLC0415, an extra
 
-    row = page.locator('#drivers tr').filter(has_text=re.compile(f'{MOTOR}m1'))
+    row = page.locator('#drivers tr').filter(has_text=re.compile(f'^m1{MOTOR}'))
     expect(row).to_be_visible()
     expect(row.locator('.number')).to_have_text(re.compile(r'^[1-9]\d\d+ Hz$'))
     expect(page.locator('#words')).to_contain_text(f'{NODE} is not running')
@@ -359,7 +359,7 @@ def test_names_are_text_on_the_page(connected, browser):
             '#sentences',
         ):
             connected.expect(page.locator(part).first).to_have_text(hostile)
-        connected.expect(page.locator('#drivers td').nth(1)).to_have_text(hostile)
+        connected.expect(page.locator('#drivers tbody td').first).to_have_text(hostile)
         assert page.locator('img').count() == 0
     finally:
         page.close()

@@ -33,11 +33,11 @@ _BODY = """\
 </figure>
 </div>
 </section>
-<section><h2>Diagnostics</h2><ul id="sentences"></ul></section>
+<section id="diagnostics"><h2>Diagnostics</h2><ul id="sentences"></ul></section>
 <section><details id="drivers"><summary>Drivers: topics of type JointState</summary>
-<div class="scroll"><table><thead><tr><th scope="col">topic</th><th scope="col">joint</th>
-<th scope="col" class="number">rate</th><th scope="col"></th></tr></thead>
-<tbody></tbody></table></div></details></section>
+<div class="scroll"><table><thead><tr><th scope="col" class="words">joint</th>
+<th scope="col" class="words">topic</th><th scope="col" class="number">rate</th><td></td></tr>
+</thead><tbody></tbody></table></div></details></section>
 </main>
 """
 

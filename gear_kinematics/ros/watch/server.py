@@ -14,6 +14,7 @@ from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from gear_kinematics.ros.watch.page import drawing, watch_page
+from gear_kinematics.ros.watch.view import View
 from gear_kinematics.ros.watch.watcher import PERIOD, Answer, Watcher
 
 HOST = '127.0.0.1'
@@ -153,7 +154,7 @@ class _Live(_Guarded, WebSocketHandler):
         return await asyncio.wrap_future(asked)
 
     async def _send(self) -> None:
-        drawn = -1
+        drawn = View().gear
         loop = asyncio.get_running_loop()
         try:
             while True:

@@ -84,7 +84,7 @@
       body.replaceChildren(...rows.map(({topic, joint}) => {
         const row = make('tr');
         const last = make('td');
-        row.append(make('td', topic, 'words'), make('td', joint, 'words'), make('td', '', 'number'), last);
+        row.append(make('td', joint, 'words'), make('td', topic, 'words'), make('td', '', 'number'), last);
         if (joint) {
           const button = make('button', 'Write config');
           button.type = 'button';
@@ -123,6 +123,7 @@
     showCurve(now);
     showDrivers(now.drivers, now.state === 'none');
     document.body.classList.toggle('old', now.state !== 'connected');
+    document.body.classList.toggle('none', now.state === 'none');
   }
 
   function send(command) {
