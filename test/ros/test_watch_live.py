@@ -234,6 +234,20 @@ def test_values_of_the_driver_and_of_both_encoders_are_shown(connected):
     )
 
 
+@pytest.mark.usefixtures('connected')
+def test_node_has_to_compute_only_what_is_shown():
+    listener = Listener('/elsewhere', 'counting')
+    count = listener.node.count_subscribers
+    try:
+        # The subscription to diagnostics is the last.
+        listener.wait_until(lambda: count('/diagnostics') == 1, 'the subscriptions of the page')
+        assert count(f'{NAMESPACE}/output_state') == 1
+        for topic in ('body_poses', 'mechanism_joint_states', 'markers', 'robot_description'):
+            assert count(f'{NAMESPACE}/{topic}') == 0
+    finally:
+        listener.close()
+
+
 def test_home_is_called_with_the_keyboard_and_answered(connected):
     connected.locator('body').click(position={'x': 5, 'y': 5})
     connected.keyboard.press('Tab')
