@@ -4,6 +4,7 @@ import argparse
 import asyncio
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -88,7 +89,12 @@ def _serve(port: int) -> _Show:
     def serve(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
         server = Server(watcher, port)
         console.print(f'Open {server.address}', soft_wrap=True, markup=False, highlight=False)
-        lister = threading.Thread(target=wait_and_list, args=(watcher, console, stopped))
+
+        def list_drivers() -> None:
+            with suppress(BrokenPipeError):  # nobody reads it
+                wait_and_list(watcher, console, stopped)
+
+        lister = threading.Thread(target=list_drivers)
         lister.start()
         try:
             asyncio.run(server.run(stopped))

@@ -5,7 +5,7 @@ import shlex
 
 import pytest
 import yaml
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.state import parameters
@@ -41,6 +41,7 @@ def test_head_says_how_to_start_the_node():
     assert start_command('/motor/joint_states', 'my actuator.yaml') == shlex.join(command)
 
 
+@settings(max_examples=30)
 @given(st.text(min_size=1))
 def test_every_joint_name_survives(joint):
     text = new_config('/driver', joint, 'a.yaml')

@@ -1,10 +1,105 @@
-"""A stand-in for what watches a node, for the server of `gearkin watch`."""
+"""`gearkin watch` beside a node and a driver at 1 kHz, and a stand-in for what watches them."""
 
+import contextlib
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
 from concurrent.futures import Future
+from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
+from steady_driver import MILLISECOND
+
+from gear_kinematics.bag import Bag
+from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.ros.live import running_node
 from gear_kinematics.ros.watch.view import View
 from gear_kinematics.ros.watch.watcher import Answer
+from gear_kinematics.wire.batches import decode_joint_states
+
+ROOT = Path(__file__).resolve().parents[2]
+NAMESPACE = f'/watched_{os.getpid()}'
+NODE = f'{NAMESPACE}/gear_state_publisher'
+MOTOR = f'{NAMESPACE}/motor/joint_states'
+ENCODER = f'{NAMESPACE}/output_encoder'
+GEARKIN = (sys.executable, '-P', '-m', 'gear_kinematics')
+OTHER = f'{NAMESPACE}/other/gear_state_publisher'
+DEADLINE = 60.0
+
+
+class Program(NamedTuple):
+    """A running gearkin."""
+
+    process: subprocess.Popen
+    log: Path
+
+    def text(self) -> str:
+        return self.log.read_text('utf-8')
+
+    def wait_for(self, pattern: str) -> re.Match:
+        """Wait until it has printed a pattern."""
+        deadline = time.monotonic() + DEADLINE
+        while not (found := re.search(pattern, self.text())):
+            assert self.process.poll() is None, self.text()
+            assert time.monotonic() < deadline, self.text()
+            time.sleep(0.02)
+        return found
+
+
+@contextlib.contextmanager
+def gearkin(folder: Path, *arguments: str):
+    """Run a command in a folder, and end it as a user does."""
+    log = folder / f'{arguments[0]}.log'
+    with log.open('w', encoding='utf-8') as stream:
+        process = subprocess.Popen(
+            [*GEARKIN, *arguments], cwd=folder, stdout=stream, stderr=subprocess.STDOUT
+        )
+    try:
+        yield Program(process, log)
+    finally:
+        if process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        process.wait()
+
+
+@contextlib.contextmanager
+def node(folder: Path, name: str = NODE):
+    """Run the node for the driver, under a full name."""
+    arguments = ['--ros-args', '-r', f'__ns:={name.rpartition("/")[0]}', '-p', 'rotor_joint:=m1']
+    arguments += ['-r', f'rotor_state:={MOTOR}', '-r', f'output_encoder:={ENCODER}']
+    arguments += ['-p', 'transmission_error_window:=2.0']
+    with (
+        (folder / 'node.log').open('a', encoding='utf-8') as stream,
+        running_node(arguments, stdout=stream, stderr=stream) as process,
+    ):
+        yield process
+
+
+@contextlib.contextmanager
+def driving():
+    """Run the driver."""
+    program = ROOT / 'test/support/steady_driver.py'
+    process = subprocess.Popen([sys.executable, program, NAMESPACE])
+    try:
+        yield
+    finally:
+        process.kill()
+        process.wait()
+
+
+def assert_is_whole(path: Path, *, least: int) -> None:
+    """Check that a recording has every message of the driver from first to last, and validates."""
+    with Bag(path) as bag:
+        messages = [data for _, _, data in bag.messages([MOTOR])]
+    stamps = decode_joint_states(messages, 'm1').stamp
+    assert len(stamps) >= least
+    assert set(np.diff(stamps).tolist()) == {MILLISECOND}
+    assert main(['validate', str(path)]) == 0
 
 
 class WatcherStandIn:

@@ -1,122 +1,36 @@
-"""`gearkin watch` beside a live node and a driver at 1 kHz: in Chromium, terminal and pipe.
-
-The driver's stamps are a millisecond apart, so that a gap in a recording shows what was lost.
-"""
+"""The page of `gearkin watch` in Chromium, beside a live node and a driver at 1 kHz."""
 
 import asyncio
-import contextlib
-import fcntl
 import math
-import os
 import re
-import select
 import shutil
-import signal
-import struct
-import subprocess
-import sys
-import termios
 import threading
-import time
-from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
 import pytest
 from live import Listener
 from rclpy.parameter_client import AsyncParameterClient
-from steady_driver import MILLISECOND, RATIO
-from watching import WatcherStandIn
+from steady_driver import RATIO
+from watching import (
+    MOTOR,
+    NAMESPACE,
+    NODE,
+    WatcherStandIn,
+    assert_is_whole,
+    driving,
+    gearkin,
+    node,
+)
 
-from gear_kinematics.bag import Bag, BagError, LiveBagWriter
-from gear_kinematics.commands.cli import main
-from gear_kinematics.ros.live import running_node
 from gear_kinematics.ros.watch.drivers import Driver
 from gear_kinematics.ros.watch.view import Reading, Sentence, View
-from gear_kinematics.ros.watch.watcher import Answer, Watcher
-from gear_kinematics.wire.batches import decode_joint_states
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
-
-ROOT = Path(__file__).resolve().parents[2]
-NAMESPACE = f'/watched_{os.getpid()}'
-NODE = f'{NAMESPACE}/gear_state_publisher'
-MOTOR = f'{NAMESPACE}/motor/joint_states'
-ENCODER = f'{NAMESPACE}/output_encoder'
-GEARKIN = (sys.executable, '-P', '-m', 'gear_kinematics')
-OTHER = f'{NAMESPACE}/other/gear_state_publisher'
-DEADLINE = 60.0
-
-
-class Program(NamedTuple):
-    """A running gearkin."""
-
-    process: subprocess.Popen
-    log: Path
-
-    def text(self) -> str:
-        return self.log.read_text('utf-8')
-
-    def wait_for(self, pattern: str) -> re.Match:
-        """Wait until it has printed a pattern."""
-        deadline = time.monotonic() + DEADLINE
-        while not (found := re.search(pattern, self.text())):
-            assert self.process.poll() is None, self.text()
-            assert time.monotonic() < deadline, self.text()
-            time.sleep(0.02)
-        return found
-
-
-@contextlib.contextmanager
-def gearkin(folder: Path, *arguments: str):
-    """Run a command in a folder, and end it as a user does."""
-    log = folder / f'{arguments[0]}.log'
-    with log.open('w', encoding='utf-8') as stream:
-        process = subprocess.Popen(
-            [*GEARKIN, *arguments], cwd=folder, stdout=stream, stderr=subprocess.STDOUT
-        )
-    try:
-        yield Program(process, log)
-    finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-        process.wait()
-
-
-@contextlib.contextmanager
-def node(folder: Path, name: str = NODE):
-    """Run the node for the driver, under a full name."""
-    arguments = ['--ros-args', '-r', f'__ns:={name.rpartition("/")[0]}', '-p', 'rotor_joint:=m1']
-    arguments += ['-r', f'rotor_state:={MOTOR}', '-r', f'output_encoder:={ENCODER}']
-    arguments += ['-p', 'transmission_error_window:=2.0']
-    with (
-        (folder / 'node.log').open('a', encoding='utf-8') as stream,
-        running_node(arguments, stdout=stream, stderr=stream) as process,
-    ):
-        yield process
 
 
 @pytest.fixture(scope='module', autouse=True)
 def driver():
-    """Run the driver."""
-    program = ROOT / 'test/support/steady_driver.py'
-    process = subprocess.Popen([sys.executable, program, NAMESPACE])
-    yield
-    process.kill()
-    process.wait()
-
-
-def assert_is_whole(path: Path, *, least: int) -> None:
-    """Check that a recording has every message of the driver from first to last, and validates."""
-    with Bag(path) as bag:
-        messages = [data for _, _, data in bag.messages([MOTOR])]
-    stamps = decode_joint_states(messages, 'm1').stamp
-    assert len(stamps) >= least
-    assert set(np.diff(stamps).tolist()) == {MILLISECOND}
-    assert main(['validate', str(path)]) == 0
-
-
-# On the page
+    with driving():
+        yield
 
 
 @pytest.fixture(scope='module')
@@ -396,167 +310,3 @@ def test_page_connects_again_after_the_node_was_restarted(connected, folder):
             '.getPropertyValue("--rotor") !== before',
             arg=f'{rotor}deg',
         )
-
-
-# In the terminal and in a pipe
-
-
-@pytest.fixture(scope='module')
-def running(tmp_path_factory):
-    with node(tmp_path_factory.mktemp('node'), OTHER):
-        yield
-
-
-@pytest.mark.usefixtures('running')
-def test_recordings_in_a_pipe_are_whole_also_after_the_process_was_killed(tmp_path):
-    paths = {name: tmp_path / name for name in ('ended', 'killed')}
-    with contextlib.ExitStack() as stack:
-        programs = {}
-        for name, path in paths.items():
-            path.with_suffix('.folder').mkdir()
-            arguments = ['watch', '--text', '--node', OTHER, '--record', str(path)]
-            programs[name] = stack.enter_context(gearkin(path.with_suffix('.folder'), *arguments))
-        for program in programs.values():
-            program.wait_for(r'recording \S+: [4-9]\d{3} messages in .* s, 0 lost')
-        programs['killed'].process.kill()
-        programs['ended'].process.terminate()
-        assert programs['ended'].process.wait(DEADLINE) == 130
-    text = programs['ended'].text()
-    listed, *_ = text.splitlines()
-    assert listed == f'{MOTOR}: joints: brake, m1'
-    assert re.search(
-        rf'^[\d-]+T[\d:]+\S* {OTHER} connected \| output angle \S+° .*; rotor angle .*; '
-        r'input \d+ Hz \(last message .* ago\); transmission error .* \| Rotor input: healthy\. ',
-        text,
-        re.MULTILINE,
-    )
-    assert re.search(r'^Recorded \d+ messages, 0 lost: gearkin validate ', text, re.MULTILINE)
-    assert not (paths['killed'] / 'metadata.yaml').exists()
-    assert_is_whole(paths['ended'], least=600)
-    assert_is_whole(paths['killed'], least=300)
-
-
-class Terminal:
-    """A program in a terminal, and a person in front of it."""
-
-    def __init__(self, folder: Path, *arguments: str) -> None:
-        self._master, slave = os.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 50, 160, 0, 0))
-        self.before = termios.tcgetattr(slave)
-        self.process = subprocess.Popen(
-            [*GEARKIN, *arguments],
-            cwd=folder,
-            stdin=slave,
-            stdout=slave,
-            stderr=slave,
-            env=os.environ | {'TERM': 'xterm'},
-        )
-        self._slave = slave
-        self._text = ''
-
-    def wait_for(self, pattern: str) -> str:
-        """Wait until something new is shown, and give what matches."""
-        deadline = time.monotonic() + DEADLINE
-        while not (found := re.search(pattern, self._text)):
-            ready, _, _ = select.select([self._master], [], [], deadline - time.monotonic())
-            assert ready, self._text
-            read = os.read(self._master, 65536).decode(errors='replace')
-            self._text += re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', read)
-        self._text = self._text[found.end() :]
-        return found[0]
-
-    def type(self, keys: str) -> None:
-        os.write(self._master, keys.encode())
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, kind, *_) -> None:
-        if kind:
-            self.process.kill()
-        self.process.wait()
-        for descriptor in (self._master, self._slave):
-            os.close(descriptor)
-
-    def end(self) -> int:
-        """Wait for the end, and give the exit code."""
-        deadline = time.monotonic() + DEADLINE
-        while self.process.poll() is None:  # it waits for its last output to be read
-            assert time.monotonic() < deadline
-            if select.select([self._master], [], [], 0.05)[0]:
-                os.read(self._master, 65536)
-        assert termios.tcgetattr(self._slave) == self.before
-        return self.process.returncode
-
-
-@pytest.mark.usefixtures('running')
-def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
-    with Terminal(tmp_path, 'watch', '--text', '--node', OTHER) as terminal:
-        terminal.wait_for(f'gearkin watch {OTHER} connected')
-        terminal.wait_for(r'output angle +-?\d+\.\d+° ')
-        terminal.wait_for('Rotor input: healthy')
-        terminal.type('r')
-        terminal.wait_for('● recording to gearkin_')
-        terminal.type('h')
-        terminal.wait_for('Stop the recording first')
-        terminal.type('r')
-        terminal.wait_for(r'Recorded \d+ messages, 0 lost')
-        terminal.type('h')
-        terminal.wait_for('output shaft at 0.0 rad: rotor_zero is')
-        terminal.type('q')
-        assert terminal.end() == 0
-
-
-def until(condition):
-    deadline = time.monotonic() + DEADLINE
-    while not (found := condition()):
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    return found
-
-
-@pytest.mark.usefixtures('running')
-def test_commands_that_cannot_be_done_are_answered_with_the_cause(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / 'there').mkdir()
-    with Watcher(OTHER) as watcher:
-        until(lambda: watcher.view.state == 'connected' and watcher.view.drivers)
-        for asked, cause in (
-            (watcher.stop(), 'Nothing is being recorded.'),
-            (watcher.configure(MOTOR, 'm2'), f'There is no joint m2 on {MOTOR}.'),
-            (watcher.record(Path('there')), 'there: exists already'),
-        ):
-            assert asked.result(DEADLINE) == Answer(cause, done=False)
-        assert watcher.record(Path('full')).result(DEADLINE).done
-        assert watcher.record().result(DEADLINE).text == 'full is being recorded.'
-
-        def full(*_):
-            raise BagError('full: No space left on device')
-
-        monkeypatch.setattr(LiveBagWriter, 'write_all', full)
-        words = until(lambda: watcher.view.failure)
-        assert words == 'The recording has ended: full: No space left on device'
-
-
-def test_drivers_are_recorded_where_there_is_no_node(tmp_path):
-    with Watcher('/nobody/gear_state_publisher') as watcher:
-        until(lambda: watcher.view.drivers)
-        assert watcher.home().result(DEADLINE).text == 'There is no node to home.'
-        path = tmp_path / 'drivers'
-        assert watcher.record(path).result(DEADLINE).done
-        until(lambda: ': 1' in watcher.view.recording.replace(': 0', ''))
-    assert watcher.farewell.endswith(f' 0 lost: gearkin validate {path}')
-    with Bag(path) as bag:
-        assert set(bag.topics) <= {MOTOR, ENCODER}
-        assert MOTOR in bag.topics
-
-
-def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
-    with Terminal(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
-        terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
-        choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
-        terminal.wait_for('Number of the joint of the rotor: ')
-        terminal.type(f'{choice[0]}\n')
-        terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}')
-        assert terminal.end() == 0
-        assert "rotor_joint: 'm1'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
