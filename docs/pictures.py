@@ -50,6 +50,7 @@ OF_RECORDINGS = {
 """Pages of recordings that `record` makes."""
 OTHER_GEAR = '/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}'
 VIEW = {'width': 1100, 'height': 1000}  # pixels
+LIVE_VIEW = {'width': 1100, 'height': 640}  # pixels
 COLOURS = 64
 
 
@@ -89,9 +90,10 @@ def photograph_live(tab: Page, target: Path) -> None:
             stack.callback(process.wait)
             stack.callback(process.terminate)
         address = process.stdout.readline().split()[-1]
+        tab.set_viewport_size(LIVE_VIEW)
         tab.goto(address)
         tab.get_by_text('Rotor input: healthy.').wait_for()
-        keep(tab.screenshot(full_page=True), target)
+        keep(tab.screenshot(), target)
 
 
 def keep(screenshot: bytes, target: Path) -> None:

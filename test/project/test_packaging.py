@@ -187,6 +187,9 @@ def test_wheel_holds_types_and_share(tree, wheel, manifest):
     data = f'gear_kinematics-{manifest.findtext("version")}.data/data'
     assert 'gear_kinematics/py.typed' in names
     assert 'gear_kinematics/kinematics/__init__.py' in names
+    pages = [*tree.glob('gear_kinematics/**/*.css'), *tree.glob('gear_kinematics/**/*.js')]
+    assert len(pages) >= 5
+    assert {path.relative_to(tree).as_posix() for path in pages} <= names
     assert f'{data}/share/ament_index/resource_index/packages/gear_kinematics' in names
     shared = shared_files(tree)
     assert {'config/actuator.yaml', 'launch/gear_state_publisher.launch.py'} <= shared

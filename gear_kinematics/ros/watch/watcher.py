@@ -277,7 +277,7 @@ class Watcher:
         types = {topic: (kind, _CLASSES[kind]) for topic, kind in found.items()}
         self._recording = Recording(self._node, types, path, self._answers(found))
         self._failed = ''
-        words = f'Recording {len(found)} topics to {path}.'
+        words = f'Recording {len(found)} topics.'
         if self._gear and self._gear.running and self._gear.known:
             words += self._keep_parameters(self._gear, path)
         return Answer(words, done=True)
