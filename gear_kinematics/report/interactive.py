@@ -12,11 +12,11 @@ from gear_kinematics.report.document import (
     Array,
     Figure,
     Line,
-    MovingMechanism,
     Panel,
     Pen,
     number,
 )
+from gear_kinematics.report.drawn import MovingMechanism
 
 _GAP = 0.12
 """Gap between panels side by side / width of the figure."""

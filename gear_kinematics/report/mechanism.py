@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from gear_kinematics.report.document import Array, DrawnMechanism, MovingMechanism
+from gear_kinematics.report.drawn import Array, DrawnMechanism, MovingMechanism
 
 _RADIUS = 500.0
 """Radius of the drawing, in units of which no screen shows a tenth."""

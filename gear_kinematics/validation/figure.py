@@ -8,15 +8,13 @@ from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import (
     Array,
-    DrawnBranch,
-    DrawnMechanism,
     Figure,
     Line,
-    MovingMechanism,
     Panel,
     Pen,
     printable,
 )
+from gear_kinematics.report.drawn import DrawnBranch, DrawnMechanism, MovingMechanism
 from gear_kinematics.shape.outlines import NAMES, bodies
 from gear_kinematics.validation.report import (
     BagReport,

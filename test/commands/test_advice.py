@@ -53,6 +53,8 @@ def test_a_missing_package_is_told_before_any_work(
         monkeypatch.delitem(sys.modules, name)
     for name in [name for name in sys.modules if name.startswith('gear_kinematics.ros.')]:
         if name.endswith(('.live', '.replay', '.demo')):
+            module = sys.modules['gear_kinematics.ros']
+            monkeypatch.delattr(module, name.rpartition('.')[2], raising=False)
             monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     monkeypatch.setattr(Bag, 'messages', None)  # no work
