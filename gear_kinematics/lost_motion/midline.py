@@ -32,6 +32,8 @@ class Midlines:
     """N·m, of the spring."""
     friction: Array
     """N·m."""
+    pace: Array
+    """s/rad, time per angle, the mean of both ways; 0 without times."""
     centre: Array
     """(loops,), rad, the middles."""
     blur: float
@@ -41,10 +43,10 @@ class Midlines:
     def of(cls, loops: Sequence[Loop]) -> 'Midlines':
         """Read the middle lines of loops, at least one."""
         found = [_read(loop) for loop in loops]
-        angle, load, friction = (np.array([row[k] for row in found]) for k in range(3))
+        angle, load, friction, pace = (np.array([row[k] for row in found]) for k in range(4))
         centre = 0.5 * (angle[:, 0] + angle[:, -1])
         blur = float(np.mean([_blur(half) for loop in loops for half in (loop.fall, loop.rise)]))
-        return cls(angle - centre[:, None], load, friction, centre, blur)
+        return cls(angle - centre[:, None], load, friction, pace, centre, blur)
 
     @property
     def reach(self) -> float:
@@ -52,31 +54,35 @@ class Midlines:
         return 0.5 * float(np.mean(np.ptp(self.angle, axis=1)))
 
 
-def _read(loop: Loop) -> tuple[Array, Array, Array]:
-    """Return angles, loads and frictions."""
+def _read(loop: Loop) -> tuple[Array, Array, Array, Array]:
+    """Return angles, loads, frictions and paces."""
     fall, rise = loop.fall, loop.rise
     # A ramp may go on beyond the loop, to a larger amplitude.
     low = max(rise.angle[0], float(fall.angle_at(max(fall.end, rise.start))))
     high = min(fall.angle[0], float(rise.angle_at(min(rise.end, fall.start))))
     margin = _MARGIN * (high - low)
     angle = np.linspace(low + margin, high - margin, _LEVELS)
-    load = 0.5 * (_torque(fall, angle) + _torque(rise, angle))
+    load = 0.5 * (_passing(fall, angle, fall.torque) + _passing(rise, angle, rise.torque))
     inside = np.flatnonzero((load >= _BUILT_UP * load[0]) & (load <= _BUILT_UP * load[-1]))
     if len(inside):
         angle = np.linspace(angle[inside[0]], angle[inside[-1]], _LEVELS)
-    back, forth = _torque(fall, angle), _torque(rise, angle)
-    return angle, 0.5 * (forth + back), 0.5 * (forth - back)
+    back, forth = (_passing(half, angle, half.torque) for half in (fall, rise))
+    pace = np.zeros(_LEVELS)
+    if fall.time is not None:
+        times = (_passing(half, angle, half.times) for half in (fall, rise))
+        pace = np.mean([np.abs(np.gradient(time, angle)) for time in times], axis=0)
+    return angle, 0.5 * (forth + back), 0.5 * (forth - back), pace
 
 
 def _blur(half: HalfLoop) -> float:
     return max(half.blur, float(np.median(np.abs(np.diff(half.torque)))))
 
 
-def _torque(half: HalfLoop, angle: Array) -> Array:
-    """Torque at which a half loop passes angles: midway between the first and the last time."""
+def _passing(half: HalfLoop, angle: Array, values: Array) -> Array:
+    """Values where a half loop passes angles: midway between the first and the last time."""
     sign = 1.0 if half.rising else -1.0
     passed, wanted = sign * half.angle, sign * angle
     tie = _TIE * np.arange(len(passed))
-    first = np.interp(wanted, np.maximum.accumulate(passed) + tie, half.torque)
-    last = np.interp(wanted, np.minimum.accumulate(passed[::-1])[::-1] + tie, half.torque)
+    first = np.interp(wanted, np.maximum.accumulate(passed) + tie, values)
+    last = np.interp(wanted, np.minimum.accumulate(passed[::-1])[::-1] + tie, values)
     return 0.5 * (first + last)

@@ -161,7 +161,7 @@ def play_model(
         growth,
         float(np.sqrt(np.mean(rest**2))),
         max((middle.ratio for middle in middles.values()), default=0.0) or None,
-        residual_tests(rest, lines.load),
+        residual_tests(rest, lines.load, lines.pace),
         _candidates(tried, middles) if middles else (),
         angles + float(np.mean(lines.centre)),
         np.maximum.accumulate(np.mean(curves, axis=0)),
@@ -299,7 +299,7 @@ def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | 
     means = np.average(lines.friction, axis=1, weights=weight**2)
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
     uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
-    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(12.0))), None
+    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
 
 
 def _candidates(

@@ -22,8 +22,8 @@ class ResidualTest:
     """Of a statistic as far from that by chance."""
 
 
-def residual_tests(rest: Array, load: Array) -> tuple[ResidualTest, ...]:
-    """Test residuals for runs, for scatter that depends on the load, and for changes with time.
+def residual_tests(rest: Array, load: Array, pace: Array) -> tuple[ResidualTest, ...]:
+    """Test residuals for runs, and for a dependence on the load, the speed and the time.
 
     The residuals of a loop are correlated from angle to angle. Each loop therefore counts once,
     except for the runs, which show just that correlation in the mean of all loops.
@@ -31,13 +31,14 @@ def residual_tests(rest: Array, load: Array) -> tuple[ResidualTest, ...]:
     Args:
         rest: (loops, angles), N·m, in order of time.
         load: of the same shape, N·m.
+        pace: of the same shape, s/rad; 0 without times.
 
     Returns:
         Empty without at least three loops.
     """
     if len(rest) < 3:  # noqa: PLR2004, degrees of freedom
         return ()
-    found = [_runs(np.mean(rest, axis=0)), *_by_loop(rest, load)]
+    found = [_runs(np.mean(rest, axis=0)), *_by_loop(rest, load, pace)]
     return tuple(test for test in found if test)
 
 
@@ -56,12 +57,16 @@ def _runs(values: Array) -> ResidualTest | None:
     return ResidualTest('runs along the angle', count, expected, math.erfc(far / math.sqrt(2.0)))
 
 
-def _by_loop(rest: Array, load: Array) -> Iterator[ResidualTest | None]:
-    """Correlate residuals and their scatter with the load, and their scatter with time."""
+def _by_loop(rest: Array, load: Array, pace: Array) -> Iterator[ResidualTest | None]:
+    """Correlate residuals and their scatter with load, speed and time."""
     size = np.abs(load)
     scatter = np.abs(rest - np.mean(rest, axis=0))
     yield _mean_slope('scatter over the load', scatter, size)
     yield _mean_slope('residual over the load', rest * np.sign(load), size)
+    # By rank, as the gear jumps where it hardly holds.
+    speed = np.argsort(np.argsort(-pace, axis=1), axis=1).astype(float)
+    if np.any(pace):
+        yield _mean_slope('residual over the speed', rest * np.sign(load), speed)
     yield _trend('scatter over time', np.sqrt(np.mean(rest**2, axis=1)))
 
 

@@ -11,6 +11,7 @@ from gear_kinematics.lost_motion import models
 from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.recording import Loading
+from gear_kinematics.lost_motion.residuals import residual_tests
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 
@@ -126,3 +127,21 @@ def test_no_play_of_a_measured_actuator_is_negative_or_exceeds_its_hysteresis(sh
                 assert model.play.value > model.play.uncertainty, path.name
             if model.limit is not None:
                 assert 0.0 < model.limit < hysteresis, path.name
+
+
+def test_residuals_that_depend_on_load_or_speed_or_time_are_found():
+    random = np.random.default_rng(4)
+    load = np.linspace(-3.0, 3.0, 100) + np.zeros((6, 1))
+    pace = np.tile(np.linspace(1.0, 2.0, 100), (6, 1))
+    chance = 0.02 * random.standard_normal(load.shape)
+    cases = {
+        'runs along the angle': chance + 0.02 * np.sin(3.0 * load),
+        'scatter over the load': chance * (0.2 + np.abs(load)),
+        'residual over the load': chance + 0.02 * load,
+        'residual over the speed': chance - 0.05 * pace * np.sign(load),
+        'scatter over time': chance * np.arange(1.0, 7.0)[:, None],
+    }
+    for name, rest in cases.items():
+        found = {test.name: test.probability for test in residual_tests(rest, load, pace)}
+        assert found[name] < 0.01, name
+    assert all(test.probability > 0.02 for test in residual_tests(chance, load, pace))
