@@ -296,7 +296,7 @@ def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | 
     reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step))
     if growth.uncertainty is not None and growth.value > growth.uncertainty:
         return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
-    means = np.average(lines.friction, axis=1, weights=weight**2)
+    means = np.average(lines.friction, axis=1, weights=weight**4)
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
     uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
     return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
