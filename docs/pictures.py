@@ -62,8 +62,8 @@ def record() -> None:
     record_both_encoders(Path(), 'monday', 'tuesday')
 
 
-def photograph(pages: dict[str, list[str]]) -> None:
-    """Have each page made, and keep its upper part as a PNG."""
+def photograph(pages: dict[str, list[str]], live: str = '') -> None:
+    """Have each page made, and keep its upper part as a PNG; and the live page, if it is named."""
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which('chromium'))
         tab = browser.new_page(viewport=VIEW, color_scheme='light')
@@ -74,7 +74,8 @@ def photograph(pages: dict[str, list[str]]) -> None:
             tab.add_style_tag(content='footer { display: none; }')  # it has a date
             tab.wait_for_load_state('networkidle')
             keep(tab.screenshot(), DOCS / name)
-        photograph_live(tab, DOCS / 'pictures/watch.png')
+        if live:
+            photograph_live(tab, DOCS / live)
         browser.close()
 
 
@@ -83,7 +84,7 @@ def photograph_live(tab: Page, target: Path) -> None:
     program = [sys.executable, '-P', '-m', 'gear_kinematics']
     with ExitStack() as stack:
         stack.enter_context(running_node(stderr=subprocess.DEVNULL))
-        for arguments in (['replay', BAG, '--loop'], ['watch']):
+        for arguments in (['replay', str(ROOT / BAG), '--loop'], ['watch']):
             process = subprocess.Popen(  # noqa: S603, our own program
                 [*program, *arguments], stdout=subprocess.PIPE, text=True
             )
@@ -99,7 +100,7 @@ def photograph_live(tab: Page, target: Path) -> None:
 def keep(screenshot: bytes, target: Path) -> None:
     """Write a PNG with few colours."""
     picture = Image.open(BytesIO(screenshot))
-    picture.quantize(COLOURS).save(target, optimize=True)
+    picture.quantize(COLOURS).save(ROOT / target, optimize=True)
 
 
 def run(arguments: list[str]) -> None:
@@ -112,7 +113,7 @@ if __name__ == '__main__':
     os.chdir(ROOT)  # pages show the paths that they were made from
     for name, arguments in DRAWN.items():
         run([*arguments, str(DOCS / name), '--force'])
-    photograph(PAGES)
+    photograph(PAGES, live='pictures/watch.png')
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         record()
         photograph(OF_RECORDINGS)
