@@ -119,6 +119,7 @@ class Fitting:
         """Use the loops of one amplitude."""
         self._angle, self._load = lines.angle, lines.load
         self._reach = lines.reach
+        self._each: dict[Model, Springs] = {}
 
     def fit(self, model: Model) -> Fit | None:
         """Fit a model to all loops, and each loop by the others; None if it cannot be.
@@ -132,7 +133,12 @@ class Fitting:
         return search.found()
 
     def each(self, model: Model, start: Fit) -> Springs:
-        """Fit a model to each loop, by Gauss and Newton's method from a fit to all of them."""
+        """Fit a model to each loop, by Gauss and Newton's method from the fit to all of them."""
+        if model not in self._each:
+            self._each[model] = self._fitted(model, start)
+        return self._each[model]
+
+    def _fitted(self, model: Model, start: Fit) -> Springs:
         loops = len(self._load)
         places = np.array([[start.centre] * loops, [start.gap] * loops])
         free = [0, 1] if model.gap else [0]
