@@ -3,7 +3,6 @@
 """
 
 import math
-import shutil
 from dataclasses import replace
 from itertools import pairwise
 
@@ -11,6 +10,7 @@ import numpy as np
 import oracle
 import pytest
 import report_samples as samples
+from chromium import chromium
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.document import Document, Figure, Line, Panel, Pen, Section, Table
@@ -38,13 +38,8 @@ MECHANISMS = (
 
 @pytest.fixture(scope='module')
 def browser():
-    program = shutil.which('chromium') or shutil.which('google-chrome')
-    if program is None:
-        pytest.skip('no Chromium is installed')
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program)
+    with chromium() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope='module')

@@ -3,10 +3,10 @@
 import asyncio
 import math
 import re
-import shutil
 import threading
 
 import pytest
+from chromium import chromium
 from live import Listener
 from rclpy.parameter_client import AsyncParameterClient
 from steady_driver import RATIO
@@ -43,13 +43,8 @@ def browser():
     sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
     pytest.importorskip('tornado', reason='no tornado is installed')
     sync_api.expect.set_options(timeout=30_000.0)  # a machine can be busy
-    program = shutil.which('chromium') or shutil.which('google-chrome')
-    if program is None:
-        pytest.skip('no Chromium is installed')
-    with sync_api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program)
+    with chromium() as browser:
         yield browser
-        browser.close()
 
 
 @pytest.fixture(scope='module')

@@ -1,0 +1,20 @@
+"""The system's Chromium, driven by Playwright; a test that has none is skipped with the reason."""
+
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+
+@contextmanager
+def chromium() -> Iterator:
+    """Open the browser."""
+    sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
+    program = shutil.which('chromium') or shutil.which('google-chrome')
+    if program is None:
+        pytest.skip('no Chromium is installed')
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program)
+        yield browser
+        browser.close()
