@@ -22,6 +22,8 @@ LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 # A sourced ROS installation would be mixed with the wheels of the virtual environment.
 unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMPLEMENTATION \
 	_ROS_WHEELS_BOOTSTRAP_COMPLETE
+# Where it is set, each of the many processes that tests start would compile all that it imports.
+unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: help demo quick test coverage lint types docs format pictures soak fuzz lock clean
 
