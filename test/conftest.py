@@ -31,6 +31,7 @@ os.environ['FASTRTPS_DEFAULT_PROFILES_FILE'] = str(
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import math  # noqa: E402, see above
+from collections import Counter  # noqa: E402
 from collections.abc import Callable  # noqa: E402
 
 import hypothesis  # noqa: E402
@@ -51,6 +52,20 @@ hypothesis.settings.register_profile(
     'quick', parent=hypothesis.settings.get_profile('ci'), max_examples=20
 )
 hypothesis.settings.load_profile('ci' if 'CI' in os.environ else 'default')
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the files of live tests, and then of slow ones; the fewer a file has, the later.
+
+    Workers take the files in this order: others compute while live tests wait, and at the end no
+    worker is left alone with a long file.
+    """
+    marks: dict[Path, Counter[str]] = {}
+    for item in items:
+        marks.setdefault(item.path, Counter()).update(
+            mark for mark in ('live', 'slow') if item.get_closest_marker(mark)
+        )
+    items.sort(key=lambda item: (not marks[item.path]['live'], -marks[item.path].total()))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
