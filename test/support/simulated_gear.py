@@ -6,7 +6,9 @@ wind-up by friction is P. Dahl's bristle (The Aerospace Corporation, TOR-158, 19
 equation over the travel. All gears of a set step together: arrays are (time, gears).
 """
 
+import math
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -143,9 +145,13 @@ def simulate(
     rotor = ideal * s.ratio
     time = np.arange(len(motion)) / RATE
     torque = s.load * np.sin(ideal)
-    lost = _lost_motion(s, ideal, torque)
+    growth = s.load_friction if s.load else 0.0
+    lost = _lost_motion(
+        ideal.tobytes(), s.seeds, 0.5 * s.backlash, s.wind_up, growth, s.bristle_travel
+    )
     twist = s.compliance * torque
-    twist = twist + s.creep * _late(twist, s.creep_time)
+    if s.creep:
+        twist = twist + s.creep * _late(twist, s.creep_time)
     cam = abs(s.ratio)
     amplitude, phase = gear['amplitude'], gear['phase']
     errors = (
@@ -180,24 +186,37 @@ def simulate(
     )
 
 
-def _lost_motion(s: GearSet, ideal: np.ndarray, torque: np.ndarray) -> np.ndarray:
-    """Output less input: by the backlash, and by the bristles' wind-up."""
-    gap = np.zeros(s.seeds)  # input less output, in ±backlash/2
-    bristle = np.zeros(s.seeds)
+@lru_cache(maxsize=10)
+def _lost_motion(
+    motion: bytes, seeds: int, half: float, wind_up: float, growth: float, travel: float
+) -> np.ndarray:
+    """Output less input: by the backlash, and by the bristles' wind-up.
+
+    Sets of gears that differ in other things share it: one seed moves all of them in the same way.
+
+    Args:
+        motion: ideal angle, (time, gears).
+        seeds: number of gears.
+        half: of the backlash.
+        wind_up: when all bristles slide, without a load.
+        growth: relative, under the full load.
+        travel: of the bristles.
+    """
+    ideal = np.frombuffer(motion).reshape(-1, seeds)
+    tops = wind_up * (1.0 + growth * np.abs(np.sin(ideal)))
     lost = np.zeros(ideal.shape)
-    half = 0.5 * s.backlash
-    strength = 1.0 + s.load_friction * np.abs(torque) / s.load if s.load else np.ones(ideal.shape)
-    for k in range(1, len(ideal)):
-        step = ideal[k] - ideal[k - 1]
-        pushing = gap + step
-        moved = np.where(
-            pushing > half, pushing - half, np.where(pushing < -half, pushing + half, 0.0)
-        )
-        gap = pushing - moved  # the flank takes the output along
-        top = s.wind_up * strength[k]
-        # d bristle/d travel = (top · direction - bristle)/length, solved over the step
-        bristle += (np.sign(moved) * top - bristle) * -np.expm1(-np.abs(moved) / s.bristle_travel)
-        lost[k] = -gap - bristle
+    for number in range(seeds):
+        gap = bristle = 0.0  # gap: input less output, in ±half
+        steps = np.diff(ideal[:, number]).tolist()
+        for k, (step, top) in enumerate(zip(steps, tops[1:, number].tolist(), strict=True), 1):
+            pushing = gap + step
+            gap = min(max(pushing, -half), half)
+            if moved := pushing - gap:  # the flank takes the output along
+                # d bristle/d travel = (top · direction - bristle)/length, solved over the step
+                share = -math.expm1(-abs(moved) / travel)
+                bristle += (math.copysign(top, moved) - bristle) * share
+            lost[k, number] = -gap - bristle
+    lost.flags.writeable = False
     return lost
 
 
