@@ -44,6 +44,8 @@ class Selection:
             list(range(end - term.columns, end)) for term, end in zip(terms, ends, strict=True)
         ]
         self._weights = equations.counts / equations.counts.mean()
+        self._shares: dict[tuple[int, ...], float] = {}
+        """What `_unexplained` has found, which each further term asks for again."""
 
     def columns(self, chosen: Sequence[int] | None = None) -> list[int]:
         """The columns of terms; of those chosen, if none are given."""
@@ -147,6 +149,12 @@ class Selection:
 
     def _unexplained(self, k: int, others: Sequence[int]) -> float:
         """Share of the variance of a term's columns that others leave, at the least."""
+        key = (k, *others)
+        if key not in self._shares:
+            self._shares[key] = self._share_left(k, others)
+        return self._shares[key]
+
+    def _share_left(self, k: int, others: Sequence[int]) -> float:
         total = self._equations.total
         mine, theirs = self._places[k], self.columns(others)
         cross = total[np.ix_(theirs, mine)]
