@@ -217,9 +217,10 @@ def test_standstill_and_short_recordings_are_refused():
     [*((name, 'fast') for name in IN_CLASS), *((name, 'slow') for name in HARD_WHEN_SLOW)],
 )
 def test_interval_and_correction_hold_on_another_recording(name, motion):
-    found = judged(IN_CLASS[name], 8, motion=motion)
+    # Half of the gears each where there are two motions.
+    found = judged(IN_CLASS[name], 4 if name in HARD_WHEN_SLOW else 8, motion=motion)
     assert np.mean([one.relative_rms for one in found]) <= 1.1
-    # Of 200 gears, it is 0.93 to 0.97 (benchmark/calibration.py); 8 scatter more.
+    # Of 200 gears, it is 0.93 to 0.97 (benchmark/calibration.py); few scatter more.
     assert 0.91 <= np.mean([one.coverage for one in found]) <= 0.99
 
 
