@@ -19,7 +19,16 @@ from xml.etree import ElementTree as ET
 import jsonschema
 import pytest
 import replaying
-from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, running_gearkin, wait_until
+from blocked_bags import (
+    BAGS,
+    DEADLINE,
+    GEARKIN,
+    BlockedBag,
+    gearkin,
+    gearkin_here,
+    running_gearkin,
+    wait_until,
+)
 from calibrations import calibration
 from gear_recordings import old_recording
 from live import rotor_bytes
@@ -125,15 +134,15 @@ def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
 @pytest.mark.slow
 def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_only(tmp_path):
     rewrite(tmp_path / 'late', late={'/body_poses': 40})
-    done = gearkin('validate', '-v', 'late', cwd=tmp_path)
+    done = gearkin_here('validate', '-v', 'late', cwd=tmp_path)
     assert done.returncode == 0
     left_out = '40 before every topic was recorded'
     assert f'late: finding: not judged, as caused by the recorder: /body_poses {left_out}\n' in (
         done.stdout
     )
     assert 'late: /body_poses: left out: 40\n' in done.stdout
-    for options in ([], ['--jobs', '2']):
-        done = gearkin('validate', '--strict', *options, 'late', cwd=tmp_path)
+    for run, options in ((gearkin_here, []), (gearkin, ['--jobs', '2'])):
+        done = run('validate', '--strict', *options, 'late', cwd=tmp_path)
         assert done.returncode == 1
         assert 'late: finding: /body_poses: 40 messages missing, the first at ' in done.stdout
 
@@ -154,7 +163,7 @@ def test_the_worst_verdict_of_many_counts_and_their_order_is_kept(options, bags)
 
 
 def test_all_shipped_bags_pass_each_with_its_own_config():
-    done = gearkin('validate', '-v', 'bags', cwd=BAGS.parent)
+    done = gearkin_here('validate', '-v', 'bags', cwd=BAGS.parent)
     assert (done.returncode, done.stderr) == (0, '')
     configs = dict(re.findall(r'^bags/(\S+): config: (.+)$', done.stdout, re.MULTILINE))
     assert configs == {
@@ -168,16 +177,16 @@ def test_all_shipped_bags_pass_each_with_its_own_config():
 @pytest.mark.slow
 def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
     file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
-    done = gearkin('validate', '-v', file)
+    done = gearkin_here('validate', '-v', file)
     assert done.returncode == 0, done.stdout
     assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"}\n' in done.stdout
-    done = gearkin('validate', file, '--config', CONFIG)
+    done = gearkin_here('validate', file, '--config', CONFIG)
     assert done.returncode == 1
     assert f'{file}: config: {CONFIG}\n' in done.stdout
 
 
 def test_a_bag_that_is_given_twice_is_validated_once(bags):
-    done = gearkin('validate', 'good', './good', 'good/', 'g*d', cwd=bags)
+    done = gearkin_here('validate', 'good', './good', 'good/', 'g*d', cwd=bags)
     assert done.returncode == 0
     assert done.stdout.count('verdict') == 1
     assert 'summary' not in done.stdout
@@ -207,7 +216,7 @@ def test_options_decide(name, options, code, bags, capsys):
 
 
 def test_the_error_is_located(bags):
-    found = facts(gearkin('validate', bags / 'wrong').stdout)
+    found = facts(gearkin_here('validate', bags / 'wrong').stdout)
     assert found['verdict'] == 'failed'
     assert found['/output_state: compared'] == str(SAMPLES)
     error, unit = found['/output_state position: max error'].split()
@@ -354,7 +363,7 @@ def test_without_plotly_a_page_is_an_error_and_no_file(bags, tmp_path):
 def test_a_report_that_cannot_be_written_is_named_and_leaves_nothing(target, bags, tmp_path):
     (tmp_path / 'folder').mkdir()
     (tmp_path / 'file').write_text('kept', encoding='utf-8')
-    done = gearkin('validate', bags / 'good', '--json', tmp_path / target)
+    done = gearkin_here('validate', bags / 'good', '--json', tmp_path / target)
     assert done.returncode == 2
     assert done.stderr.count('\n') == 1
     assert str(tmp_path / target) in done.stderr
@@ -539,12 +548,12 @@ def test_processes_end_with_one_that_is_killed(bags, tmp_path):
 )
 def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
     out = tmp_path / 'out'
-    done = gearkin('compute', bags / name, out, *options)
+    done = gearkin_here('compute', bags / name, out, *options)
     assert (done.returncode, done.stderr) == (0, '')
     assert done.stdout == (
         f'{out}: {SAMPLES} outputs for {SAMPLES} rotor states, 0 other messages copied\n'
     )
-    done = gearkin('validate', '-v', out, *EXACT)
+    done = gearkin_here('validate', '-v', out, *EXACT)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     namespace = '/arm' if name == 'namespaced' else ''
@@ -565,10 +574,12 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_computed_and_validated(
     other_gear, bags, tmp_path
 ):
     out = tmp_path / 'out'
-    assert gearkin('compute', bags / 'rotor_only', out, '--config', other_gear).returncode == 0
+    assert (
+        gearkin_here('compute', bags / 'rotor_only', out, '--config', other_gear).returncode == 0
+    )
     with Bag(out) as bag:
         assert set(bag.topics) == {'/rotor_state', '/output_state'}
-    done = gearkin('validate', '-v', out, '--config', other_gear, *EXACT)
+    done = gearkin_here('validate', '-v', out, '--config', other_gear, *EXACT)
     assert (done.returncode, done.stderr) == (0, '')
     found = facts(done.stdout)
     assert found['gear ratio'] == '1457/26'
@@ -584,7 +595,7 @@ def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code
         for k in range(10):
             position = 1e17 if k < bad else 1.0
             writer.write('/rotor_state', k, rotor_bytes(k + 1, position=[position]))
-    done = gearkin('compute', source, tmp_path / 'out')
+    done = gearkin_here('compute', source, tmp_path / 'out')
     assert done.returncode == code
     assert f'{10 - bad} outputs for 10 rotor states' in done.stdout
     complaint = f'gearkin: {source}: most messages on /rotor_state were rejected\n'
@@ -605,7 +616,7 @@ def test_compute_says_what_it_left_out_and_what_it_did_not_understand(tmp_path):
         (['--topics'], ['left out: /grip, /nod']),
     )):  # fmt: skip
         out = tmp_path / f'out {number}'
-        done = gearkin('compute', bag, out, *options)
+        done = gearkin_here('compute', bag, out, *options)
         assert (done.returncode, done.stderr) == (0, '')
         assert done.stdout.splitlines() == [
             f'{out}: 1 outputs for 1 rotor states, {1 - number // 2} other messages copied',
@@ -621,21 +632,21 @@ def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
     with closing(sqlite3.connect(bag)) as rows, rows:
         rows.execute("UPDATE topics SET serialization_format = 'json' WHERE id = 2")
     given = ('compute', bag, tmp_path / 'out')
-    done = gearkin(*given)
+    done = gearkin_here(*given)
     assert (done.returncode, done.stdout) == (2, '')
     assert done.stderr == (
         f"gearkin: {bag}: /text cannot be copied: its messages are 'json', not CDR; "
         '--topics says which topics to copy\n'
     )
-    assert gearkin(*given, '--topics').returncode == 0
+    assert gearkin_here(*given, '--topics').returncode == 0
 
 
 @pytest.mark.slow
 def test_compute_uses_the_config_beside_the_bag(tmp_path):
     out = tmp_path / 'out'
-    assert gearkin('compute', SINGLE_TURN, out).returncode == 0
-    assert gearkin('validate', out).returncode == 0
-    assert gearkin('validate', out, '--config', CONFIG).returncode == 1
+    assert gearkin_here('compute', SINGLE_TURN, out).returncode == 0
+    assert gearkin_here('validate', out).returncode == 0
+    assert gearkin_here('validate', out, '--config', CONFIG).returncode == 1
     assert load(out / 'actuator.yaml') == load(SINGLE_TURN / 'actuator.yaml')
 
 
@@ -676,7 +687,7 @@ def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags
     (tmp_path / 'there').mkdir()
     before = sorted(tmp_path.rglob('*'))
     bag = (tmp_path if name == 'left_and_right' else bags) / name
-    done = gearkin('compute', bag, tmp_path / out)
+    done = gearkin_here('compute', bag, tmp_path / out)
     assert (done.returncode, done.stdout) == (2, '')
     assert done.stderr.count('\n') == 1
     assert cause in done.stderr

@@ -1,13 +1,16 @@
 """gearkin as a process, and bags in the midst of which it can be caught."""
 
+import io
 import os
 import shutil
 import signal
 import subprocess
 import sys
 import time
-from contextlib import contextmanager, suppress
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout, suppress
 from pathlib import Path
+
+from gear_kinematics.commands.cli import main
 
 BAGS = Path(__file__).resolve().parents[2] / 'bags'
 DEADLINE = 60.0  # s: far beyond anything but a failure
@@ -19,6 +22,15 @@ def gearkin(*arguments, code=GEARKIN, **options) -> subprocess.CompletedProcess[
     command = [sys.executable, '-c', code, *map(str, arguments)]
     options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': DEADLINE} | options
     return subprocess.run(command, text=True, check=False, **options)
+
+
+def gearkin_here(*arguments, cwd='.') -> subprocess.CompletedProcess[str]:
+    """Run a command in this process, which needs no time to start, where no process matters."""
+    words = [*map(str, arguments)]
+    output, errors = io.StringIO(), io.StringIO()
+    with chdir(cwd), redirect_stdout(output), redirect_stderr(errors):
+        code = main(words)
+    return subprocess.CompletedProcess(words, code, output.getvalue(), errors.getvalue())
 
 
 @contextmanager
