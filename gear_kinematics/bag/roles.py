@@ -112,6 +112,21 @@ def joints_on(bag: Bag, topic: str) -> list[str]:
     return []
 
 
+def _joints_on_each(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
+    """Return what `joints_on` gives for some topics, reading the recording once."""
+    joints: dict[str, list[str]] = {topic: [] for topic in topics}
+    left = set(topics)
+    with suppress(BagError):
+        for topic, _, data in bag.messages(topics):
+            if topic in left:
+                left.remove(topic)
+                with suppress(MalformedMessageError):
+                    joints[topic] = joints_of(data)
+            if not left:
+                break
+    return joints
+
+
 def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
     """Return the topic of the output encoder: the given one, or else by name; None without one.
 
@@ -162,7 +177,7 @@ def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str) -
         raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
     joints: dict[str, list[str]] = {}
     if len(candidates) > 1 and name == ROTOR_STATE:
-        joints = {topic: joints_on(bag, topic) for topic in candidates[:_PEEKED]}
+        joints = _joints_on_each(bag, candidates[:_PEEKED])
         candidates = [topic for topic in joints if joint in joints[topic]] or candidates
     return _only(bag.path, candidates, name, joints)
 
