@@ -4,18 +4,20 @@ Each bag goes through gearkin in a process of its own, whose processor time and 
 are measured. Bags are put together byte by byte here; most expand to gigabytes.
 """
 
+import json
 import re
 import sqlite3
 import struct
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import closing
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from blocked_bags import started
 from live import rotor_bytes
 from rosbags import rosbag1, rosbag2
 
@@ -34,16 +36,26 @@ MAX_MEMORY = 300 * MB  # of it, the program itself takes 60
 MAX_TIME = 20.0  # s
 EXPANSION = 20  # recordings compress by as much
 
-MEASURED = """
-import re, resource, sys
+# Begun once, it begins each program as a copy of itself, which has imported what all of them need.
+MEASURING = """
+import json, os, re, resource, sys
+from gear_kinematics.commands import compute, index, validate
 from gear_kinematics.commands.cli import main
-code = main(sys.argv[2:])
-usage = resource.getrusage(resource.RUSAGE_SELF)
-with open('/proc/self/status') as status:
-    memory = re.search(r'VmHWM:\\s*(\\d+) kB', status.read())[1]
-with open(sys.argv[1], 'w') as file:
-    print(usage.ru_utime + usage.ru_stime, 1024 * int(memory), file=file)
-sys.exit(code)
+def measure(result, output, *arguments):
+    for stream in (1, 2):
+        os.dup2(os.open(output, os.O_WRONLY | os.O_CREAT | os.O_APPEND), stream)
+    code = main(arguments)
+    sys.stdout.flush()
+    usage = resource.getrusage(resource.RUSAGE_SELF)
+    with open('/proc/self/status') as status:
+        memory = re.search(r'VmHWM:\\s*(\\d+) kB', status.read())[1]
+    with open(result, 'w') as file:
+        print(usage.ru_utime + usage.ru_stime, 1024 * int(memory), file=file)
+    return code
+for line in sys.stdin:
+    if not os.fork():
+        os._exit(measure(*json.loads(line)))
+    print(os.waitstatus_to_exitcode(os.wait()[1]), flush=True)
 """
 
 
@@ -59,15 +71,24 @@ class Measured(NamedTuple):
     """Its peak, bytes."""
 
 
-def measure(folder: Path, *arguments: object) -> Measured:
-    result = folder / 'measured'
-    done = subprocess.run(
-        [sys.executable, '-c', MEASURED, result, *map(str, arguments)],
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=280, check=False,
-    )  # fmt: skip
-    assert result.exists(), done.stdout
-    seconds, memory = result.read_text().split()
-    return Measured(done.returncode, done.stdout, float(seconds), int(memory))
+@pytest.fixture(scope='module')
+def measure() -> Iterator[Callable[..., Measured]]:
+    """Run gearkin as a process of its own, given a folder and the arguments."""
+    pipes = {'stdin': subprocess.PIPE, 'stdout': subprocess.PIPE}
+    with started([sys.executable, '-c', MEASURING], **pipes) as process:
+
+        def measure(folder: Path, *arguments: object) -> Measured:
+            result, output = folder / 'measured', folder / 'output'
+            words = json.dumps([*map(str, (result, output, *arguments))])
+            print(words, file=process.stdin, flush=True)
+            code = int(process.stdout.readline())
+            said = output.read_text('utf-8')
+            output.unlink()
+            assert result.exists(), said
+            seconds, memory = result.read_text().split()
+            return Measured(code, said, float(seconds), int(memory))
+
+        yield measure
 
 
 # mcap, by its specification.
@@ -407,7 +428,7 @@ def size_of(path: Path) -> int:
 
 @pytest.mark.parametrize('command', ['validate', 'compute'])
 @pytest.mark.parametrize('name', BAGS)
-def test_a_crafted_bag_is_refused_before_it_takes_much(crafted, name, command, tmp_path):
+def test_a_crafted_bag_is_refused_before_it_takes_much(crafted, measure, name, command, tmp_path):
     bag, cause = crafted(name), BAGS[name][0]
     out = [tmp_path / 'out'] if command == 'compute' else []
     measured = measure(tmp_path, command, bag, *out)
@@ -419,7 +440,7 @@ def test_a_crafted_bag_is_refused_before_it_takes_much(crafted, name, command, t
     assert {path.name for path in tmp_path.iterdir()} == {'measured'}
 
 
-def test_of_very_many_topics_some_can_be_chosen(tmp_path):
+def test_of_very_many_topics_some_can_be_chosen(measure, tmp_path):
     bag = wide_mcap(tmp_path / 'b.mcap')
     given = ('compute', bag, tmp_path / 'out', '--rotor-topic', '/rotor_state')
     refused = measure(tmp_path, *given)
@@ -434,7 +455,7 @@ def test_of_very_many_topics_some_can_be_chosen(tmp_path):
         assert measured.seconds <= MAX_TIME
 
 
-def test_a_very_long_definition_is_copied(tmp_path):
+def test_a_very_long_definition_is_copied(measure, tmp_path):
     definition = ''.join(f'float64 a{number}\n' for number in range(1_800_000))
     assert len(definition) > 28 * MB
     bag = mcap(tmp_path / 'b.mcap', schema(3, 'a/msg/A', definition), channel(4, 3, '/a'), STATES)
@@ -447,7 +468,7 @@ def test_a_very_long_definition_is_copied(tmp_path):
     assert copied == definition
 
 
-def test_neighbours_of_a_pin_setting_are_bounded(tmp_path):
+def test_neighbours_of_a_pin_setting_are_bounded(measure, tmp_path):
     given = ('index', '--angle', '0.01', '--neighbours')
     refused = measure(tmp_path, *given, 100_000)
     assert refused.code == 2
