@@ -69,6 +69,7 @@ def test_play_is_found_with_its_width():
     assert largest.term.radius == pytest.approx(1.5e-3, rel=0.1)
 
 
+@pytest.mark.slow
 def test_wind_up_is_told_from_orders_where_the_torque_is_no_function_of_the_angle():
     setting = replace(USUAL, compliance=2e-4)
     random = np.random.default_rng(3)
@@ -135,6 +136,7 @@ def test_trend_is_not_trusted_beyond_the_calibrated_angles():
     assert (beyond, within) == (result.outside_half_width, result.half_width)
 
 
+@pytest.mark.slow
 def test_late_stamps_are_told_from_play():
     simulated, _ = one_gear(replace(USUAL, delay=2e-3), duration=60.0)
     recording = recorded(simulated, 0)
@@ -146,6 +148,7 @@ def test_late_stamps_are_told_from_play():
     assert fit([recorded(simulated, 0, separate=False)], RATIO).recordings[0].delay is None
 
 
+@pytest.mark.slow
 def test_few_slow_strokes_tell_a_delay():
     setting, random = replace(USUAL, delay=2e-3), np.random.default_rng(1)
     motion = slow_strokes(60.0, random)
@@ -187,6 +190,7 @@ def test_nothing_is_corrected_where_there_is_only_noise():
     assert not fit([recorded(simulated, 0)], RATIO, MECHANISM).helps
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(('assumed', 'true'), [(Fraction(-20), -19.0), (Fraction(50), 1457 / 26)])
 def test_ratio_is_fitted(assumed, true):
     simulated, _ = one_gear(replace(USUAL, ratio=true))

@@ -94,6 +94,7 @@ def test_file_and_reports_are_written(recording, tmp_path, capsys):
     assert html.parse(page).xpath('//h1')
 
 
+@pytest.mark.slow
 def test_bag_and_csv_of_the_same_samples_agree(recording, bag, tmp_path):
     targets = [tmp_path / 'csv.yaml', tmp_path / 'bag.yaml']
     for source, target in zip((recording, bag), targets, strict=True):
@@ -115,6 +116,7 @@ def test_nothing_is_written_that_does_not_help(noise, tmp_path, capsys):
     assert 'Time was not recorded' in told
 
 
+@pytest.mark.slow
 def test_a_calibration_is_judged_by_another_recording(simulated_pair, tmp_path, capsys):
     (first, second), noise = simulated_pair
     target, report = tmp_path / 'calibration.yaml', tmp_path / 'report.json'

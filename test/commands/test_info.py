@@ -55,6 +55,7 @@ def test_every_topic_is_listed_on_demand(capsys):
     assert re.search(r'^/body_poses +poses +3000 +1000 Hz', shown, re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_real_recordings_are_described(shared_path, capsys):
     """Bags of others: servos of Feetech in ROS 2, and joints of a PR2 in ROS 1."""
     folder = shared_path('data/bags')

@@ -95,6 +95,7 @@ def test_rated_torque_and_ranges_can_be_told(recording, capsys):
     assert [(s['low'], round(s['high'], 3)) for s in stiffness] == [(0.0, 10.0), (10.0, 30.0)]
 
 
+@pytest.mark.slow
 def test_at_one_speed_a_delay_must_be_known(motion, capsys):
     assert main(['lost-motion', str(motion)]) == 0
     output = capsys.readouterr().out
@@ -106,6 +107,7 @@ def test_at_one_speed_a_delay_must_be_known(motion, capsys):
     assert found['transmission']['reversals']['value'] == pytest.approx(2e-3, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_transmission_error_of_both_encoders(motion, capsys):
     assert main(['lost-motion', str(motion), '--json', '-', '--delay', '0']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
@@ -351,6 +353,7 @@ def summary(output: str) -> str:
     return line
 
 
+@pytest.mark.slow
 def test_one_sentence_says_what_has_changed_and_what_has_not(worn, capsys):
     assert main(['lost-motion', worn[0], worn[2]]) == 0
     said = summary(capsys.readouterr().out)
@@ -365,6 +368,7 @@ def test_one_sentence_says_what_has_changed_and_what_has_not(worn, capsys):
     assert same.endswith('judged by the scatter within single recordings')
 
 
+@pytest.mark.slow
 def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsys):
     assert main(['lost-motion', worn[2], worn[0], '--json', '-']) == 0
     document = json.loads(capsys.readouterr().out)
@@ -386,6 +390,7 @@ def test_recordings_are_compared_at_the_least_of_their_rated_torques(worn, capsy
         assert found['hysteresis']['settings']['corners'] == [3.0, 10.0, 20.0]
 
 
+@pytest.mark.slow
 def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys):
     for patterns in (['_(new|worn)'], ['*_new.csv', '*_worn.csv']):
         options = [f'--group={pattern}' for pattern in patterns]
@@ -434,6 +439,7 @@ def test_what_cannot_be_compared_gets_one_line(worn, arguments, complaint, capsy
     assert line.startswith(f'gearkin: {complaint}')
 
 
+@pytest.mark.slow
 def test_trend_is_in_order_of_time(worn, capsys):
     shuffled = [worn[k] for k in (2, 0, 3, 1)]
     assert main(['lost-motion', *shuffled, '--trend', '--json', '-']) == 0
@@ -549,6 +555,7 @@ def test_ratio_is_estimated_and_the_gears_that_have_it_are_named(tmp_path, capsy
     assert 'a ratio: 61/58, 122/116, 183/174.' in output
 
 
+@pytest.mark.slow
 def test_fitted_ratio_of_the_config_keeps_the_orders_of_its_teeth(motion, capsys):
     assert main(['lost-motion', str(motion), '--fit-ratio', '--json', '-']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
@@ -577,6 +584,7 @@ def test_ratio_cannot_be_estimated_without_both_angles(recording, capsys):
     assert line.endswith('--fit-ratio needs the angles of rotor and output')
 
 
+@pytest.mark.slow
 def test_positions_of_two_gears_are_combined_and_compared(tmp_path, capsys):
     torque = ramps(*[(4.0, 60)] * 3, (40.0, 80))
     for name, play in {

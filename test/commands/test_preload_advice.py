@@ -37,6 +37,7 @@ def advice(recordings, tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_ramps_at_several_turns_tell_the_least_one_without_play(advice):
     found = json.loads(advice.read_text('utf-8'))['preload']
     assert (found['unit'], found['ring_turns'], found['cause']) == ('deg', True, None)
@@ -106,6 +107,7 @@ def test_settings_without_a_unit_cannot_be_pinned(advice, tmp_path, capsys):
     assert 'its settings are plain numbers' in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_report_and_picture_show_the_least_setting(recordings, tmp_path, capsys):
     page = tmp_path / 'page.html'
     options = ['--preloads', '--preload-unit', 'deg', '--html', str(page)]

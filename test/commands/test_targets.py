@@ -185,6 +185,7 @@ def test_an_option_needs_its_file(option, capsys):
     assert f'{option}: expected one argument' in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_a_page_is_not_written_to_a_terminal():
     with Terminal() as terminal:
         done = gearkin('describe', '--html', '-', stdout=terminal.other, env=ENVIRONMENT)

@@ -63,6 +63,7 @@ def test_stiffness_that_falls_with_the_preload_is_not_predicted():
     assert 'does not grow as that of two braced branches' in advice.cause
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('name', ['seven, turns', 'five twice, numbers', 'five, turns'])
 def test_intervals_hold(name):
     found = coverage(name, 500, 2.0)

@@ -52,6 +52,7 @@ def test_every_command_in_the_documentation_has_arguments_that_exist(page):
         make_parser().parse_args(words)
 
 
+@pytest.mark.slow
 def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     shutil.copytree(ROOT / 'bags/servo_point_to_point', tmp_path / 'logs/monday')
     shutil.copy(ROOT / 'docs/examples/ramps.csv', tmp_path)
