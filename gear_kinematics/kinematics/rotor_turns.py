@@ -59,19 +59,22 @@ def split_turns(angle: Any) -> Any:
     xp: ModuleType
     if isinstance(angle, np.ndarray):
         xp = np
-        in_range = np.abs(angle) <= LARGEST_ANGLE  # NaN compares false
-        if not in_range.all():
-            angle = np.where(in_range, angle, np.nan)
+        largest = np.abs(angle).max(initial=0.0)
+        if not largest <= LARGEST_ANGLE:  # NaN compares false
+            angle = np.where(np.abs(angle) <= LARGEST_ANGLE, angle, np.nan)
     else:
-        xp = math
-        if not abs(angle) <= LARGEST_ANGLE:
+        xp, largest = math, abs(angle)
+        if not largest <= LARGEST_ANGLE:
             raise ValueError(f'an angle is at most {LARGEST_ANGLE:g} rad, not {angle:g}')
     # Every step is exact. fmod by TURN alone would do, but is slow for angles beyond a turn.
-    rest = xp.fmod(angle, _MANY * TURN)
+    many, rest = 0, angle
+    if not largest < _MANY * TURN:  # else fmod changes nothing
+        rest = xp.fmod(angle, _MANY * TURN)
+        many = xp.floor((angle - rest) / TURN + 0.5)
     whole = xp.floor(rest / TURN + 0.5)  # off by one at most, by rounding
     rest = rest - whole * _TURN_HIGH - whole * _TURN_LOW
-    rest = rest - TURN * xp.floor(rest / TURN + 0.5)
-    turns = xp.floor((angle - rest) / TURN + 0.5)
+    wraps = xp.floor(rest / TURN + 0.5)
+    rest, turns = rest - TURN * wraps, many + whole + wraps
     return RotorPosition(turns, rest - turns * TURN_TAIL)
 
 
