@@ -179,7 +179,7 @@ def closed_form(mechanism: Mechanism) -> ClosedForm:
     return ClosedForm(mechanism)
 
 
-_CHUNK = 8192  # samples, so that the arrays of a chunk fit into the processor's cache
+_CHUNK = 12288  # samples, so that the arrays of a chunk fit into the processor's cache
 
 
 @np.errstate(invalid='ignore')  # values that are not finite give NaN
@@ -212,45 +212,48 @@ def solve(
     shape, branches = arrays[0].shape, len(mechanism.branches)
     turns, angle, velocity, acceleration = (array.reshape(-1) for array in arrays)
 
-    # The first axis is the order of the derivative.
+    # The first axis is the order of the derivative, the last the sample: rows are written fastest.
     orders, size = 3 if moving else 1, angle.size
     output, turn_angle = np.empty((orders, size)), np.empty(size)
-    satellite, oldham = np.empty((2, orders, size, branches, 2))
-    satellite_slide, arm_slide = np.empty((2, min(orders, 2), size, branches))
-    for start in range(0, size, _CHUNK):
-        part = slice(start, start + _CHUNK)
+    satellite, oldham = np.empty((2, orders, branches, 2, size))
+    satellite_slide, arm_slide = np.empty((2, min(orders, 2), branches, size))
+
+    def fill(part: slice) -> None:
         own_turns, rest = split_turns(angle[part])
         output_turns, output_rest = ratio.output_angle(turns[part] + own_turns, rest, np)
         turn_angle[part] = output_rest
         output[0, part] = TURN * output_turns + output_rest
         positions = form.branches(rest, output_rest, np)
         for k, position in enumerate(positions):
-            _put(satellite[0, part, k], position.satellite)
-            _put(oldham[0, part, k], position.oldham)
-            satellite_slide[0, part, k] = position.satellite_slide
-            arm_slide[0, part, k] = position.arm_slide
+            satellite[0, k, :, part] = position.satellite
+            oldham[0, k, :, part] = position.oldham
+            satellite_slide[0, k, part] = position.satellite_slide
+            arm_slide[0, k, part] = position.arm_slide
         if not moving:
-            continue
+            return
         w, a = velocity[part], acceleration[part]
         output[1, part], output[2, part] = ratio.output_rate(w), ratio.output_rate(a)
         for k, rates in enumerate(form.rates(positions, w, a)):
-            _put(satellite[1, part, k], rates.satellite_velocity)
-            _put(satellite[2, part, k], rates.satellite_acceleration)
-            _put(oldham[1, part, k], rates.oldham_velocity)
-            _put(oldham[2, part, k], rates.oldham_acceleration)
-            satellite_slide[1, part, k] = rates.satellite_slide_velocity
-            arm_slide[1, part, k] = rates.arm_slide_velocity
+            satellite[1, k, :, part] = rates.satellite_velocity
+            satellite[2, k, :, part] = rates.satellite_acceleration
+            oldham[1, k, :, part] = rates.oldham_velocity
+            oldham[2, k, :, part] = rates.oldham_acceleration
+            satellite_slide[1, k, part] = rates.satellite_slide_velocity
+            arm_slide[1, k, part] = rates.arm_slide_velocity
 
-    vectors, slides = (orders, *shape, branches, 2), (min(orders, 2), *shape, branches)
+    for start in range(0, size, _CHUNK):
+        fill(slice(start, start + _CHUNK))  # returning frees the arrays of the chunk
     return MotionState.from_orders(
         output=output.reshape(orders, *shape),
         output_turn_angle=turn_angle.reshape(shape),
-        satellite=satellite.reshape(vectors),
-        oldham=oldham.reshape(vectors),
-        satellite_slide=satellite_slide.reshape(slides),
-        arm_slide=arm_slide.reshape(slides),
+        satellite=_samples_first(satellite, shape),
+        oldham=_samples_first(oldham, shape),
+        satellite_slide=_samples_first(satellite_slide, shape),
+        arm_slide=_samples_first(arm_slide, shape),
     )
 
 
-def _put(points: Array, point: tuple[Array, Array]) -> None:
-    points[:, 0], points[:, 1] = point
+def _samples_first(rows: Array, shape: tuple[int, ...]) -> Array:
+    """View (order, ..., sample) as (order, *shape, ...)."""
+    inner, whole = rows.ndim - 2, rows.reshape(*rows.shape[:-1], *shape)
+    return whole.transpose(0, *range(inner + 1, whole.ndim), *range(1, inner + 1))

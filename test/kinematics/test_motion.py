@@ -274,7 +274,7 @@ def test_batches_longer_than_a_chunk_equal_their_parts(actuator):
     generator = np.random.default_rng(2)
     motion = generator.uniform(-1e3, 1e3, (3, 20_001))
     state = solve(actuator, *motion)
-    for part in (slice(0, 1), slice(8191, 8193), slice(16_383, 16_385), slice(19_990, None)):
+    for part in (slice(0, 1), slice(12_287, 12_289), slice(19_990, None)):
         alone = solve(actuator, *motion[:, part])
         assert_same(
             alone, MotionState(*(getattr(state, name)[part] for name in field_names(state)))
