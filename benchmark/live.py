@@ -1,27 +1,41 @@
-"""What the live node costs and how soon it answers, against a textbook rclpy node, in one run.
+"""What the live node costs and how soon it answers, against other nodes, in one run.
 
     python benchmark/live.py [--rates 500 1000 ...] [--seconds 5] [--rounds 5] [--json]
 
 Driver, node and listener are three processes on this machine. The driver sends rotor_state
 reliably at a steady rate, the listener takes output_state and body_poses, and the queues of both
 hold more than ever waits, so that every loss is the node's. Counting starts when probes have been
-answered on both topics. The nodes have their default parameters. They take turns, so that what
-else the machine does befalls all of them; values and ratios are medians over the rounds.
+answered on both topics. The other nodes do the same job as the tutorials teach it: one in Python
+and, where rclcpp is installed, one in C++, with the default profile of the middleware and with
+that of this node. All have default parameters. They take turns, so that what else the machine does
+befalls all of them; values and ratios are medians over the rounds.
 """
 
 import argparse
 import json
 import math
 import statistics
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from pathlib import Path
 from typing import Any, NamedTuple
 
+from compiled import NotBuiltError, rclcpp_node
 from processes import NODE, Program, Surroundings, private_surroundings, program
 
 _RATES = (500, 1000, 2000, 5000, 8000)  # Hz
 _QUIET = 2.0  # s of silence after which nothing more is to come
+_COMPLETE = (1000, 2000, 5000, 8000)  # Hz, at which every message is to be answered
 _REFERENCE_RATE = 1000  # Hz, at which cost and latency have targets
+_BOUNDS = (  # at that rate: the field, the other node, and the target for the ratio to it
+    ('cpu', 'textbook', 0.30),
+    ('cpu', 'C++', 1.0),
+    ('cpu', 'C++ profile', 1.4),
+    ('p50', 'textbook', 0.5),
+    ('p99', 'textbook', 0.7),
+)
+_PROFILE = Path(__file__).parents[1] / 'config' / 'fastdds.xml'
 
 
 class Run(NamedTuple):
@@ -45,8 +59,8 @@ class Run(NamedTuple):
 class Round(NamedTuple):
     """What was measured in turns."""
 
-    node: Run
-    textbook: Run
+    runs: dict[str, Run]
+    """By node; the first one is this node."""
     empty_start: float
     """s, from the start of the process of an empty node to its first message."""
 
@@ -80,9 +94,14 @@ def main() -> None:
     options = parser.parse_args()
     rounds: dict[int, list[Round]] = {rate: [] for rate in options.rates}
     with private_surroundings() as surroundings:
+        nodes = _nodes(surroundings)
         for _ in range(options.rounds):
             for rate in options.rates:
-                rounds[rate].append(_round(rate, options.seconds, surroundings))
+                runs = {
+                    name: _run(command, rate, options.seconds, around)
+                    for name, (command, around) in nodes.items()
+                }
+                rounds[rate].append(Round(runs, _start_of_empty_node(surroundings)))
     results = {rate: _summary(rounds[rate]) for rate in options.rates}
     start = _start([one for at_rate in rounds.values() for one in at_rate])
     targets = list(_targets(results, start))
@@ -93,12 +112,20 @@ def main() -> None:
         _print(results, start, targets)
 
 
-def _round(rate: int, seconds: float, surroundings: Surroundings) -> Round:
-    return Round(
-        _run(NODE, rate, seconds, surroundings),
-        _run(program('textbook_node.py'), rate, seconds, surroundings),
-        _start_of_empty_node(surroundings),
-    )
+def _nodes(surroundings: Surroundings) -> dict[str, tuple[Sequence[str], Surroundings]]:
+    """Give the command and the surroundings of each node; without rclcpp, say so."""
+    nodes: dict[str, tuple[Sequence[str], Surroundings]] = {
+        'node': (NODE, surroundings),
+        'textbook': (program('textbook_node.py'), surroundings),
+    }
+    try:
+        command = (str(rclcpp_node()),)
+    except NotBuiltError as error:
+        print(f'no C++ node: {error}', file=sys.stderr)
+        return nodes
+    profile = {'FASTRTPS_DEFAULT_PROFILES_FILE': str(_PROFILE)}
+    with_profile = surroundings._replace(environment=surroundings.environment | profile)
+    return nodes | {'C++': (command, surroundings), 'C++ profile': (command, with_profile)}
 
 
 def _run(command: Sequence[str], rate: int, seconds: float, surroundings: Surroundings) -> Run:
@@ -128,55 +155,59 @@ def _start_of_empty_node(surroundings: Surroundings) -> float:
             return (node.report()['heard'] - node.started) / 1e9
 
 
-def _summary(rounds: Sequence[Round]) -> dict[str, dict[str, float]]:
-    """Medians by field, for both nodes and for their ratio; what was delivered, in all."""
-    nodes, textbooks, _ = zip(*rounds, strict=True)
-    summary = {}
-    for name, runs in (('node', nodes), ('textbook', textbooks)):
-        delivered = sum(run.answered for run in runs) / sum(run.sent for run in runs)
-        summary[name] = {field: _median(runs, field) for field in Run._fields[2:]}
-        summary[name]['delivered'] = delivered
+def _summary(rounds: Sequence[Round]) -> dict[str, dict[str, Any]]:
+    """Medians by field, for each node and for the ratios to the others; what was delivered."""
+    summary: dict[str, dict[str, Any]] = {}
+    this, *others = rounds[0].runs
+    for name in (this, *others):
+        runs = [one.runs[name] for one in rounds]
+        summary[name] = {
+            field: statistics.median(getattr(run, field) for run in runs)
+            for field in Run._fields[2:]
+        }
+        summary[name]['delivered'] = sum(r.answered for r in runs) / sum(r.sent for r in runs)
     summary['ratio'] = {
-        field: statistics.median(
-            getattr(node, field) / getattr(textbook, field) for node, textbook, _ in rounds
-        )
-        for field in Run._fields[2:]
+        other: {
+            field: statistics.median(
+                getattr(one.runs[this], field) / getattr(one.runs[other], field) for one in rounds
+            )
+            for field in Run._fields[2:]
+        }
+        for other in others
     }
     return summary
 
 
-def _median(runs: Sequence[Run], field: str) -> float:
-    return statistics.median(getattr(run, field) for run in runs)
-
-
 def _start(rounds: Sequence[Round]) -> dict[str, float]:
-    return {
-        'node': statistics.median(one.node.start for one in rounds),
-        'textbook': statistics.median(one.textbook.start for one in rounds),
+    starts = {
+        name: statistics.median(one.runs[name].start for one in rounds) for name in rounds[0].runs
+    }
+    return starts | {
         'empty': statistics.median(one.empty_start for one in rounds),
-        'ratio': statistics.median(one.node.start / one.empty_start for one in rounds),
+        'ratio': statistics.median(one.runs['node'].start / one.empty_start for one in rounds),
     }
 
 
 def _targets(results: dict[int, dict[str, Any]], start: dict[str, float]) -> Iterator[Target]:
     if _REFERENCE_RATE in results:
         ratio = results[_REFERENCE_RATE]['ratio']
-        for field, bound in (('cpu', 0.33), ('p50', 0.65), ('p99', 0.7)):
-            what = f'{field} at {_REFERENCE_RATE} Hz, x textbook'
-            yield Target(what, ratio[field], at_most=bound)
-    for rate, bound in ((1000, 1.0), (2000, 1.0), (5000, 1.0), (8000, 0.999)):
+        for field, other, bound in _BOUNDS:
+            if other in ratio:
+                what = f'{field} at {_REFERENCE_RATE} Hz, x {other}'
+                yield Target(what, ratio[other][field], at_most=bound)
+    for rate in _COMPLETE:
         if rate in results:
             delivered = results[rate]['node']['delivered']
-            yield Target(f'delivered at {rate} Hz', delivered, at_least=bound)
+            yield Target(f'delivered at {rate} Hz', delivered, at_least=1.0)
     yield Target('start-up, x empty node', start['ratio'], at_most=1.5)
 
 
 def _print(
     results: dict[int, dict[str, Any]], start: dict[str, float], targets: Sequence[Target]
 ) -> None:
-    print(f'{"":20}{"node":>10}{"textbook":>10}{"ratio":>8}')
+    others = [*next(iter(results.values()))['ratio']]
+    print(f'{"":20}{"node":>10}' + ''.join(f'{name:>14}{"ratio":>8}' for name in others))
     for rate, result in results.items():
-        node, textbook, ratio = (result[name] for name in ('node', 'textbook', 'ratio'))
         for field, factor, unit in (
             ('cpu', 1e6, 'µs'),
             ('p50', 1e6, 'µs'),
@@ -185,9 +216,12 @@ def _print(
             ('delivered', 100.0, '%'),
             ('memory', 1e-6, 'MB'),
         ):
-            line = f'{rate:5} Hz {field:9} {unit:2}{factor * node[field]:10.6g}'
-            line += f'{factor * textbook[field]:10.6g}'
-            print(line + (f'{ratio[field]:8.2f}' if field in ratio else ''))
+            line = f'{rate:5} Hz {field:9} {unit:2}{factor * result["node"][field]:10.6g}'
+            for name in others:
+                ratio = result['ratio'][name].get(field)
+                line += f'{factor * result[name][field]:14.6g}'
+                line += f'{ratio:8.2f}' if ratio is not None else f'{"":8}'
+            print(line)
     print('start-up: ', ', '.join(f'{name} {value:.3g}' for name, value in start.items()))
     for target in targets:
         print(f'{"met" if target.met else "NOT MET":8}{target}')

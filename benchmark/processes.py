@@ -16,8 +16,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple, Self
 
-NODE = ('-m', 'gear_kinematics.ros')
-"""What Python runs as gear_state_publisher."""
+NODE = (sys.executable, '-m', 'gear_kinematics.ros')
+"""The command that runs gear_state_publisher."""
 
 _FOLDER = Path(__file__).parent
 _PAGE = os.sysconf('SC_PAGE_SIZE')
@@ -26,8 +26,8 @@ _ON_PROCESSOR = 2  # Linux's CPUCLOCK_SCHED
 
 
 def program(name: str) -> tuple[str, ...]:
-    """Give what Python runs as a program of this folder."""
-    return (str(_FOLDER / name),)
+    """Give the command that runs a Python program of this folder."""
+    return sys.executable, str(_FOLDER / name)
 
 
 class Surroundings(NamedTuple):
@@ -53,7 +53,7 @@ def private_surroundings() -> Iterator[Surroundings]:
 
 
 class Program:
-    """A running Python program; a context manager, which ends it."""
+    """A running program; a context manager, which ends it."""
 
     def __init__(self, command: Sequence[str], surroundings: Surroundings) -> None:
         """Start it."""
@@ -63,7 +63,7 @@ class Program:
         """When, ns."""
         with self._log.open('a', encoding='utf-8') as log:
             self._process = subprocess.Popen(  # noqa: S603, the project's own
-                [sys.executable, *command, *surroundings.arguments],
+                [*command, *surroundings.arguments],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 stderr=log,

@@ -5,14 +5,19 @@ import math
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import oracle
 import pytest
 import textbook_node
+from compiled import NotBuiltError, rclcpp_node
+from live import DEADLINE, Peer, rotor_state, stamp_of
 from mounts import with_mounts
+from processes import Program, private_surroundings, program
 
 BENCHMARK = Path(__file__).resolve().parents[2] / 'benchmark'
+ROTOR_ANGLES = [0.0, 1.0, -30.0, 314.0]
 ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
 
 
@@ -35,9 +40,58 @@ def test_benchmark_prints_its_results_as_json(arguments):
 @pytest.mark.live
 @pytest.mark.slow
 def test_benchmark_of_the_live_node_loses_none_of_a_hundred_messages():
-    results = results_of('live.py', '--rates', '1000', '--seconds', '0.1', '--rounds', '1')
+    done = run('live.py', '--rates', '1000', '--seconds', '0.1', '--rounds', '1')
+    results = json.loads(done.stdout)
     assert finite_numbers(results)
     assert results['rates']['1000']['node']['delivered'] == 1.0
+    # A line says why there is no C++ node if there is none.
+    lines = [] if 'C++' in results['rates']['1000'] else ['no C++ node: ']
+    assert [line[:13] for line in done.stderr.splitlines()] == lines
+
+
+def test_without_cmake_there_is_no_compiled_node(monkeypatch):
+    monkeypatch.setenv('PATH', '')
+    with pytest.raises(NotBuiltError, match='no cmake'):
+        rclcpp_node()
+
+
+@pytest.mark.live
+@pytest.mark.slow
+def test_compiled_node_publishes_what_the_textbook_node_does():
+    try:
+        compiled = (str(rclcpp_node()),)
+    except NotBuiltError as error:
+        pytest.skip(str(error))
+    assert answers(compiled) == answers(program('textbook_node.py'))
+
+
+def answers(command) -> list[tuple]:
+    """Let a node answer a message for each of ROTOR_ANGLES, and give what it publishes."""
+    with private_surroundings() as surroundings:
+        peer = Peer(surroundings.arguments[-1].removeprefix('__ns:='))
+        try:
+            with Program(command, surroundings):
+                probe = peer.stamp()
+                while not answer(peer, probe, 0.0, patience=0.1):
+                    pass
+                return [answer(peer, peer.stamp(), angle) for angle in ROTOR_ANGLES]
+        finally:
+            peer.close()
+
+
+def answer(peer, stamp, angle, patience=DEADLINE) -> tuple | None:
+    """Give output_state and body_poses for a message, or nothing if they do not come in time."""
+    peer.send(rotor_state(stamp, ['other', 'rotor'], *[[9.0, angle]] * 3))
+    deadline = time.monotonic() + patience
+    topics = [peer.received[topic] for topic in ('output_state', 'body_poses')]
+    answered = peer.wait_until(
+        lambda: (
+            all(messages and stamp_of(messages[-1]) == stamp for messages in topics)
+            or (time.monotonic() > deadline and 'late')
+        ),
+        'an answer',
+    )
+    return None if answered == 'late' else tuple(messages[-1] for messages in topics)
 
 
 @pytest.mark.live
@@ -55,11 +109,15 @@ def test_driver_runs_where_it_cannot_ask_for_exact_sleep(tmp_path):
 
 def results_of(program, *options):
     """Run a benchmark and take what it prints."""
-    done = subprocess.run(
+    return json.loads(run(program, *options).stdout)
+
+
+def run(program, *options) -> subprocess.CompletedProcess[str]:
+    """Run a benchmark."""
+    return subprocess.run(
         [sys.executable, str(BENCHMARK / program), *options, '--json'],
         check=True, capture_output=True, text=True, timeout=120.0,
     )  # fmt: skip
-    return json.loads(done.stdout)
 
 
 def finite_numbers(results) -> list[float]:
@@ -71,7 +129,7 @@ def finite_numbers(results) -> list[float]:
     return [] if isinstance(results, str) else [results]
 
 
-@pytest.mark.parametrize('rotor_angle', [0.0, 1.0, -30.0, 314.0])
+@pytest.mark.parametrize('rotor_angle', ROTOR_ANGLES)
 def test_textbook_node_moves_as_the_mechanism_does(rotor_angle):
     expected = oracle.expected_motion(ACTUATOR, oracle.rotor_angle_of(rotor_angle))
     output_angle = textbook_node.output_angle(rotor_angle)
