@@ -78,7 +78,8 @@ def main() -> None:
     with suppress(OSError):  # read-only in some containers, and then it is later
         Path('/proc/self/timerslack_ns').write_text('1', 'ascii')
     with peer('rotor_driver') as node, suppress(EOFError):
-        publisher = node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=DEPTH))
+        depth = node.declare_parameter('depth', DEPTH).value
+        publisher = node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=depth))
         message = RotorState()
         report()
         probes = 0

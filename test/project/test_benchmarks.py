@@ -8,13 +8,15 @@ import sys
 import time
 from pathlib import Path
 
+import lossy_link
 import oracle
 import pytest
 import textbook_node
 from compiled import NotBuiltError, rclcpp_node
-from live import DEADLINE, Peer, rotor_state, stamp_of
+from live import DEADLINE, SECOND, Peer, rotor_state, stamp_of
 from mounts import with_mounts
 from processes import Program, private_surroundings, program
+from rotor_driver import RotorState
 
 BENCHMARK = Path(__file__).resolve().parents[2] / 'benchmark'
 ROTOR_ANGLES = [0.0, 1.0, -30.0, 314.0]
@@ -92,6 +94,20 @@ def answer(peer, stamp, angle, patience=DEADLINE) -> tuple | None:
         'an answer',
     )
     return None if answered == 'late' else tuple(messages[-1] for messages in topics)
+
+
+def test_time_to_close_a_gap_counts_from_the_sending_of_the_lost_message(monkeypatch):
+    period, lost = 2_000_000, (10, 30)  # ns; numbers of messages
+    arrivals = lossy_link.Arrivals()
+    for number in range(50):
+        sent = SECOND + number * period
+        # Those that came meanwhile wait for the lost one, which is sent again after 40 ms.
+        closed = [SECOND + n * period + 40_000_000 for n in lost if n <= number]
+        now = max([sent + 500_000, *closed])
+        monkeypatch.setattr(lossy_link.time, 'time_ns', lambda t=now: t)
+        arrivals.add(RotorState().encode(sent, number))
+    assert len(arrivals) == 50
+    assert arrivals.gaps(500) == pytest.approx([0.04, 0.04])
 
 
 @pytest.mark.live
