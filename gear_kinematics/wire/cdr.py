@@ -12,7 +12,7 @@ ends at its first zero; bytes after the message are ignored.
 
 import struct
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 SECOND = 1_000_000_000  # ns
 STAMP_OFFSET = 4  # after the encapsulation
@@ -21,7 +21,7 @@ STAMP_BYTES = slice(STAMP_OFFSET, STAMP_OFFSET + STAMP.size)
 """Where the stamp is in the bytes of a message with a header."""
 LATEST = 2**31 * SECOND - 1
 """Latest stamp, ns, whose seconds fit into 32 bits."""
-_LITTLE_ENDIAN = b'\x00\x01'
+_ENCAPSULATION = b'\x00\x01\x00\x00'  # of what is written here: little endian
 _ENCAPSULATIONS = {
     bytes((0, kind + little)): ('><'[little], alignment)
     for kind, alignment in ((0, 8), (2, 8), (6, 4), (8, 4), (10, 4))
@@ -164,14 +164,10 @@ class Template:
     """A message laid out once; encoding only writes the stamp and the numbers."""
 
     def __init__(self, frame_id: str) -> None:
-        self._buffer = bytearray(_LITTLE_ENDIAN + bytes(2 + STAMP.size))
-        self._arrays: list[tuple[int, struct.Struct]] = []
-        self._string(frame_id)
-
-    @property
-    def arrays(self) -> list[tuple[int, int]]:
+        self._buffer = bytearray(_ENCAPSULATION + bytes(STAMP.size))
+        self.arrays: list[tuple[int, int]] = []
         """Offset and count of the float64 of each array."""
-        return [(offset, layout.size // 8) for offset, layout in self._arrays]
+        self._string(frame_id)
 
     def encode(self, stamp: int, *arrays: Sequence[float]) -> bytes:
         """Return the bytes of the message.
@@ -180,10 +176,22 @@ class Template:
             stamp: ns.
             arrays: the numbers of each array that was laid out.
         """
-        STAMP.pack_into(self._buffer, STAMP_OFFSET, *divmod(stamp, SECOND))
-        for (offset, layout), values in zip(self._arrays, arrays, strict=True):
-            layout.pack_into(self._buffer, offset, *values)
-        return bytes(self._buffer)
+        values: list[Any] = [_ENCAPSULATION, *divmod(stamp, SECOND)]
+        for text, array in zip(self._texts, arrays, strict=True):
+            values.append(text)
+            values += array
+        return self._pack(*values, self._end)
+
+    def _finish(self) -> None:
+        """Divide the message into numbers and the bytes between them, to pack it in one call."""
+        code, end = f'<{STAMP_OFFSET}siI', STAMP_BYTES.stop
+        self._texts = []
+        for offset, count in self.arrays:
+            code += f'{offset - end}s{count}d'
+            self._texts.append(bytes(self._buffer[end:offset]))
+            end = offset + 8 * count
+        self._end = bytes(self._buffer[end:])
+        self._pack = struct.Struct(f'{code}{len(self._end)}s').pack
 
     def _count(self, count: int) -> None:
         self._pad(4)
@@ -197,7 +205,7 @@ class Template:
     def _doubles(self, count: int) -> None:
         if count:
             self._pad(8)
-            self._arrays.append((len(self._buffer), struct.Struct(f'<{count}d')))
+            self.arrays.append((len(self._buffer), count))
             self._buffer += bytes(8 * count)
 
     def _pad(self, size: int) -> None:
@@ -219,6 +227,7 @@ class JointStateTemplate(Template):
             count = len(names) if present else 0
             self._count(count)
             self._doubles(count)
+        self._finish()
 
 
 class PoseArrayTemplate(Template):
@@ -229,3 +238,4 @@ class PoseArrayTemplate(Template):
         super().__init__(frame_id)
         self._count(poses)
         self._doubles(7 * poses)
+        self._finish()
