@@ -2,7 +2,7 @@
 
 import math
 import struct
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
 from functools import partial
 from operator import itemgetter
@@ -12,8 +12,8 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.wire.cdr import (
     LATEST,
     SECOND,
-    STAMP,
     STAMP_OFFSET,
+    Layout,
     MalformedMessageError,
     joint_index,
     joint_names,
@@ -93,9 +93,9 @@ class Settings:
 class JointReader:
     """Reads a joint from one message after another.
 
-    The messages of a driver all have the same layout. The last layout is kept as a struct whose
-    fields are the bytes that define it and the joint's numbers: each message is compared with it,
-    and parsed again if it differs.
+    The messages of a driver all have the same layout. The last layout is kept as two structs: of
+    the bytes that define it, with which each message is compared, and of the joint's numbers. A
+    message that differs is parsed again.
     """
 
     def __init__(self, joint: str) -> None:
@@ -118,15 +118,11 @@ class JointReader:
             RejectedInputError: if it has no usable position of the joint.
         """
         try:
-            if len(data) != self._size:
+            if len(data) != self._size or self._fixed_of(data) != self._fixed:
                 self._learn(data)
-            fields = (*self._struct.unpack(data), None)
-            if self._fixed_of(fields) != self._fixed:
-                self._learn(data)
-                fields = (*self._struct.unpack(data), None)
         except MalformedMessageError as error:
             raise RejectedInputError(MALFORMED) from error
-        seconds, nanoseconds, position, velocity, effort = self._numbers_of(fields)
+        seconds, nanoseconds, position, velocity, effort = self._numbers_of(data)
         stamp = seconds * SECOND + nanoseconds
         if stamp > LATEST:
             raise RejectedInputError(STAMP_OUT_OF_RANGE)
@@ -148,24 +144,36 @@ class JointReader:
         """Keep the layout of a message for the next ones."""
         layout = joint_state_layout(data)
         index = joint_index(layout, self._joint)
-        numbers = [
+        offsets = [
             offset + 8 * index if index is not None and index < count else None
             for offset, count in layout.arrays
         ]
-        # Offset, size and format of each part; all else is padding.
-        parts = [(STAMP_OFFSET, STAMP.size, 'iI')]
-        parts += [(start, end - start, f'{end - start}s') for start, end in layout.fixed]
-        parts += [(offset, 8, 'd') for offset in numbers if offset is not None]
-        code, end = layout.order, 0
-        field: dict[int | None, int] = {None: -1}  # an absent value is the None after the fields
-        for offset, size, item in sorted(parts):
-            field[offset] = len(field) - 1 + (offset > STAMP_OFFSET)  # the stamp is two fields
-            code += f'{offset - end}x{item}'
-            end = offset + size
-        self._struct = struct.Struct(f'{code}{layout.size - end}x')
-        stamp = field[STAMP_OFFSET]
-        self._numbers_of = itemgetter(stamp, stamp + 1, *(field[offset] for offset in numbers))
-        self._fixed_of = itemgetter(*(field[start] for start, _ in layout.fixed))
-        self._fixed = self._fixed_of(self._struct.unpack(data))
+        present = [offset for offset in offsets if offset is not None]
+        numbers = [(STAMP_OFFSET, 'iI'), *((offset, 'd') for offset in present)]
+        self._numbers_of = _unpacker(layout, numbers)
+        if None in offsets:
+            # After the stamp, which is two numbers; the None behind all stands for absent ones.
+            places = [-1 if offset is None else 2 + present.index(offset) for offset in offsets]
+            self._numbers_of = _with_none(self._numbers_of, itemgetter(0, 1, *places))
+        spans = [(start, f'{end - start}s') for start, end in layout.fixed]
+        self._fixed_of = _unpacker(layout, spans)
+        self._fixed = self._fixed_of(data)
         self._fault = JOINT_MISSING if index is None else POSITION_MISSING
         self._size = layout.size if layout.size <= _MAX_KEPT else -1
+
+
+_Unpack = Callable[[bytes], tuple[Any, ...]]
+
+
+def _unpacker(layout: Layout, items: Iterable[tuple[int, str]]) -> _Unpack:
+    """Make a function that takes items, given by offset and format, out of a message."""
+    code, end = layout.order, 0
+    for offset, item in items:
+        code += f'{offset - end}x{item}'
+        end = offset + struct.calcsize(layout.order + item)
+    return struct.Struct(f'{code}{layout.size - end}x').unpack
+
+
+def _with_none(unpack: _Unpack, pick: Callable[[tuple[Any, ...]], tuple[Any, ...]]) -> _Unpack:
+    """Make a function that picks from what is unpacked, followed by a None."""
+    return lambda data: pick((*unpack(data), None))
