@@ -9,7 +9,6 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.duration import Duration
 from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
@@ -25,6 +24,7 @@ from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.node_parameters import declare, fault_of
+from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.ros.unheard import UnheardTopic
 from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state import parameters
@@ -88,16 +88,15 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             else None
         )
         self._messages = state_messages(self._gear, **self._names())
-        self._outputs = {
+        outputs = *self._messages.topics, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
+        publishers = {
             topic: self._create_output(
                 _MESSAGE_TYPES[topics.TOPICS[topic].type], topic, QoSProfile(depth=DEPTH)
             )
-            for topic in (*self._messages.topics, *topics.CORRECTED_TOPICS)
+            for topic in outputs
         }
+        self._outputs = Outputs(publishers, self._note_unsent)
         self._note_listeners()  # only outputs with subscribers are computed
-        self._transmission_error = self._create_output(
-            JointState, topics.TRANSMISSION_ERROR, QoSProfile(depth=DEPTH)
-        )
         self._diagnostics = self._create_output(
             DiagnosticArray, topics.DIAGNOSTICS, QoSProfile(depth=10)
         )
@@ -158,11 +157,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return publisher
 
     def _note_listeners(self) -> None:
-        """Update the list of outputs with subscribers."""
-        self._listened_to, self._corrected_listened_to = (
-            [topic for topic in group if self._outputs[topic].get_subscription_count()]
-            for group in (self._messages.topics, topics.CORRECTED_TOPICS)
-        )
+        """Update the lists of outputs with subscribers."""
+        listened_to = self._outputs.listened_to
+        self._listened_to = listened_to(self._messages.topics)
+        self._corrected_listened_to = listened_to(topics.CORRECTED_TOPICS)
+        self._error_listened_to = listened_to([topics.TRANSMISSION_ERROR])
 
     def destroy_node(self) -> None:
         """Destroy the event handles too, which rclpy does not know."""
@@ -231,13 +230,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
-        for topic, message in self._messages.encode(sample, self._listened_to):
-            self._publish(self._outputs[topic], message)
+        self._outputs.send(self._messages.encode(sample, self._listened_to))
         if self._calibrated:  # also without a listener, to follow the motion
             correction = self._calibrated.correct(sample, self._input)
             wanted = self._corrected_listened_to
-            for topic, message in self._messages.encode_corrected(sample, correction, wanted):
-                self._publish(self._outputs[topic], message)
+            self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
         self._monitor.published += 1
         if self._encoder.received and self._input.referenced:
             self._publish_errors(self._encoder.follow(sample))
@@ -254,17 +251,19 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
         if self._calibrated:
             self._calibrated.compare(samples)
-        for sample in samples:
-            if self._transmission_error.get_subscription_count():
-                self._publish(self._transmission_error, self._messages.transmission_error(sample))
+        for topic in self._error_listened_to:
+            self._outputs.send((topic, self._messages.transmission_error(s)) for s in samples)
 
     def _publish(self, publisher: Publisher, message: Any) -> None:
         try:
             publisher.publish(message)
         except rclpy_implementation.RCLError as error:
-            # For example, with history keep_all and a blocked subscriber.
-            self._monitor.unsent += 1
-            self._warn(f'{publisher.topic_name} not sent: {error}')
+            self._note_unsent(publisher, error)
+
+    def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
+        # For example, with history keep_all and a blocked subscriber.
+        self._monitor.unsent += 1
+        self._warn(f'{publisher.topic_name} not sent: {error}')
 
     def _now(self) -> int:
         return int(self.get_clock().now().nanoseconds)
@@ -281,10 +280,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
-        deadline = time.monotonic() + timeout
-        for publisher in (*self._outputs.values(), self._transmission_error):
-            left = max(0.0, deadline - time.monotonic())
-            publisher.wait_for_all_acked(Duration(seconds=left))
+        self._outputs.wait_for_delivery(timeout)
 
     def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         home_angle = self._value('home_angle')

@@ -303,19 +303,28 @@ def test_nodes_may_live_together(context):
         node.destroy_node()
 
 
-def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(context, monkeypatch):
-    # As it does for history keep_all, when a listener is stuck and everything is full.
-    node = GearStatePublisher(context=context, namespace='refused')
+@pytest.mark.parametrize('direct', [True, False], ids=['publish_raw', 'publish'])
+def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(
+    context, monkeypatch, direct
+):
     published = {}
 
-    def publish(publisher, message):
-        if publisher.topic_name == '/refused/output_state':
+    def publish(topic, message):
+        # As it does for history keep_all, when a listener is stuck and everything is full.
+        if topic == '/refused/output_state':
             raise rclpy_implementation.RCLError('full')
-        published[publisher.topic_name] = message
+        published[topic] = message
 
-    monkeypatch.setattr(Publisher, 'publish', publish)
+    monkeypatch.setattr(Publisher, 'publish', lambda self, data: publish(self.topic_name, data))
+    handle = rclpy_implementation.Publisher
+    if direct:
+        monkeypatch.setattr(
+            handle, 'publish_raw', lambda self, data: publish(self.get_topic_name(), data)
+        )
+    else:  # as in a release of rclpy without it
+        monkeypatch.delattr(handle, 'publish_raw')
     monkeypatch.setattr(Publisher, 'get_subscription_count', lambda _: 1)
-    node._note_listeners()
+    node = GearStatePublisher(context=context, namespace='refused')
     node._on_rotor_state(rotor_bytes(1, position=[1.0]))
     assert {'/refused/body_poses', '/refused/mechanism_joint_states'} <= set(published)
     node._report()
@@ -451,10 +460,10 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(context, monk
     bodies = {'body_poses', 'mechanism_joint_states', 'robot_description', 'markers'}
     assert not {f'/ratio/{name}' for name in bodies} & topics
     published = []
-    monkeypatch.setattr(node, '_publish', lambda _, data: published.append(data))
+    monkeypatch.setattr(node._outputs, 'send', published.extend)
     node._listened_to = ['output_state']
     node._on_rotor_state(rotor_bytes(1, position=[1457.0], velocity=[5.6], effort=[2.0]))
-    [data] = published
+    [(_, data)] = published
     output = deserialize_message(data, JointState)
     assert output.position[0] == pytest.approx(26.0, abs=1e-13)
     assert output.velocity[0] == pytest.approx(5.6 * 26 / 1457, rel=1e-15)
@@ -462,7 +471,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(context, monk
     response = node._home(None, SimpleNamespace())
     assert response.success
     node._on_rotor_state(rotor_bytes(2, position=[1457.0]))
-    [position] = deserialize_message(published[-1], JointState).position
+    [position] = deserialize_message(published[-1][1], JointState).position
     assert position == pytest.approx(0.5, abs=1e-12)
     report = node._monitor.report(node._input, node._gear, 1.0, time.monotonic())
     assert report.values['loop-closure residual (m)'] == 'none'
