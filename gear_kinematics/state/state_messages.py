@@ -96,34 +96,34 @@ class OutputMessages:
         return self._output_states[False, False].encode(sample.stamp, (sample.error,))
 
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
-        present = sample.velocity is not None, sample.effort is not None
-        numbers = self._output_numbers(present, output_angle, sample.velocity, sample.effort)
-        template = self._output_states[present]
-        return template.encode(sample.stamp, *((number,) for number in numbers))
+        stamp, _, velocity, effort = sample
+        present = velocity is not None, effort is not None
+        arrays = self._output_arrays(present, output_angle, velocity, effort)
+        return self._output_states[present].encode(stamp, *arrays)
 
     def _output_states_of(self, samples: RotorSamples, output_angle: Array) -> list[bytes]:
         output_states = len(samples.stamp) * [b'']
         for present, template in self._output_states.items():
             absent = np.isnan([samples.velocity, samples.effort])
             rows = np.flatnonzero(np.all(present != absent.T, axis=1))
-            numbers = self._output_numbers(
+            arrays = self._output_arrays(
                 present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
             )
-            encoded = encode(template, samples.stamp[rows], *([number] for number in numbers))
+            encoded = encode(template, samples.stamp[rows], *arrays)
             for row, message in zip(rows.tolist(), encoded, strict=True):
                 output_states[row] = message
         return output_states
 
-    def _output_numbers(
+    def _output_arrays(
         self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any
-    ) -> list[Any]:
-        """The numbers of an output_state: floats or arrays."""
-        numbers = [output_angle]
+    ) -> list[tuple[Any]]:
+        """The arrays of an output_state, of one joint each: floats or numpy arrays."""
+        arrays = [(output_angle,)]
         if present[0]:
-            numbers.append(self._ratio.output_rate(velocity))
+            arrays.append((self._ratio.output_rate(velocity),))
         if present[1]:
-            numbers.append(self._torque_ratio * effort)
-        return numbers
+            arrays.append((self._torque_ratio * effort,))
+        return arrays
 
 
 class StateMessages(OutputMessages):
@@ -177,10 +177,9 @@ class StateMessages(OutputMessages):
         """The numbers of body_poses: floats or arrays."""
         # These bodies all have the angle φ5; within the turn, its quaternion has w >= 0.
         sine, cosine = xp.sin(0.5 * output_angle), xp.cos(0.5 * output_angle)
-        centres = [branch.satellite for branch in branches]
-        centres += [branch.oldham for branch in branches]
+        satellites, oldhams, *_ = zip(*branches, strict=True)
         numbers: list[Any] = []
-        for (x, y), z in zip(centres, self._axial_positions, strict=True):
+        for (x, y), z in zip(satellites + oldhams, self._axial_positions, strict=True):
             numbers += (x, y, z, 0.0, 0.0, sine, cosine)
         return numbers
 
