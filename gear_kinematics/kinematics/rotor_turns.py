@@ -57,7 +57,8 @@ def split_turns(angle: Any) -> Any:
         ValueError: if a float angle is not finite or too large.
     """
     xp: ModuleType
-    if isinstance(angle, np.ndarray):
+    # First what is quickly told of a float: the node calls this for every message.
+    if not isinstance(angle, float) and isinstance(angle, np.ndarray):
         xp = np
         largest = np.abs(angle).max(initial=0.0)
         if not largest <= LARGEST_ANGLE:  # NaN compares false
