@@ -9,7 +9,12 @@ import numpy as np
 
 from gear_kinematics.lost_motion.play import PlayModel
 from gear_kinematics.lost_motion.ramps import HalfLoop, Loop, RampError, Ramps
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+from gear_kinematics.state.uncertainty import (
+    Component,
+    Estimate,
+    hidden_resolution,
+    slope_resolution,
+)
 
 LOST_MOTION_SHARE = 0.03
 """Lost motion is measured between ± this share of the rated torque."""
@@ -123,13 +128,11 @@ def _still(ramps: Ramps, angle_step: float) -> float:
 
 
 def _hysteresis(loops: Sequence[Loop], settings: Settings) -> Estimate:
-    reading = resolution(settings.angle_step)
     widths = [loop.width(0.0) for loop in loops]
-    rounding = np.mean([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops])
     return Estimate.of_mean(
         widths,
-        Component(math.sqrt(2.0) * reading),
-        _rounded(rounding),
+        Component(hidden_resolution(settings.angle_step, widths, readings=2)),
+        _rounded([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops]),
         Component(_late(loops, settings.late)),
     )
 
@@ -146,9 +149,13 @@ def _late(loops: Sequence[Loop], late: float) -> float:
     return abs(float(np.mean(widths)))
 
 
-def _rounded(rounding: float | np.floating) -> Component:
-    """Take errors up to the rounding, rad, as equally likely (GUM 4.3.7)."""
-    return Component(abs(float(rounding)) / math.sqrt(3.0))
+def _rounded(roundings: Sequence[float]) -> Component:
+    """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7)."""
+    if len(roundings) == 1:
+        return Component(0.0)
+    # Noise adds its variance to the square of a mean.
+    square = np.mean(roundings) ** 2 - np.var(roundings, ddof=1) / len(roundings)
+    return Component(math.sqrt(max(0.0, float(square)) / 3.0))
 
 
 def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
@@ -160,10 +167,9 @@ def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
     if not all(ways):
         return None
     angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
-    rounding = [np.mean([b.rounding(torque) - b.rounding(-torque) for b in way]) for way in ways]
-    # Four readings, each weighted by 1/2.
-    reading = Component(resolution(settings.angle_step))
-    return Estimate.of_sum([(0.5, way) for way in angles], reading, _rounded(np.mean(rounding)))
+    readings = [Component(0.5 * hidden_resolution(settings.angle_step, a, 2)) for a in angles]
+    rounding = [b.rounding(torque) - b.rounding(-torque) for way in ways for b in way]
+    return Estimate.of_sum([(0.5, way) for way in angles], *readings, _rounded(rounding))
 
 
 # Stiffness
@@ -183,10 +189,11 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
         if pulls:
             positive, negative = zip(*pulls, strict=True)
             both = [0.5 * (a + b) for a, b in pulls]
-            reading = Component(math.sqrt(2.0) * resolution(settings.angle_step) / (high - low))
             compliances = (both, positive, negative)
-            if min(map(np.mean, compliances)) * (high - low) <= still:
+            least = min(float(np.mean(c)) for c in compliances)
+            if least * (high - low) <= still:
                 continue  # friction holds the gear throughout
+            reading = Component(slope_resolution(settings.angle_step, high - low, least))
             found.append(
                 Stiffness(
                     low, high, *(Estimate.of_mean(c, reading).inverse() for c in compliances)

@@ -68,7 +68,7 @@ def _read(loop: Loop) -> tuple[Array, Array, Array, Array]:
         angle = np.linspace(angle[inside[0]], angle[inside[-1]], _LEVELS)
     back, forth = (_passing(half, angle, half.torque) for half in (fall, rise))
     pace = np.zeros(_LEVELS)
-    if fall.time is not None:
+    if fall.time is not None and angle[-1] > angle[0]:
         times = (_passing(half, angle, half.times) for half in (fall, rise))
         pace = np.mean([np.abs(np.gradient(time, angle)) for time in times], axis=0)
     return angle, 0.5 * (forth + back), 0.5 * (forth - back), pace

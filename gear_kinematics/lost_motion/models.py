@@ -12,7 +12,7 @@ from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Ramps, find_ramps
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, slope_resolution
 
 _LOADED = 0.5
 """Share of the greatest load from which on the stiffness of the spring is taken."""
@@ -128,7 +128,7 @@ def _spring(ramps: Ramps, variants: Sequence[Ramps], angle_step: float) -> Sprin
     if min(compliances) <= 0.0:
         return None
     value = float(np.mean(compliances))
-    parts = [Component(np.sqrt(2.0) * resolution(angle_step) / (high - low))]
+    parts = [Component(slope_resolution(angle_step, high - low, value))]
     for variant in variants:
         changed = _compliances(Midlines.of(variant.whole), low, high)
         parts.append(Component(abs(float(np.mean(changed)) - value)))

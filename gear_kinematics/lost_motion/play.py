@@ -40,6 +40,9 @@ _BEYOND = 1.6
 """Share of half of a loop's angle up to which the curve of a model is drawn."""
 _LEVELS = 200
 """Torques of the loop of a model."""
+_FAMILY = [Model(shape, gap) for shape in SHAPES for gap in Gap]
+_FAMILY_OF_ONE = [Model(SHAPES[0], Gap.PLAY)]
+"""For a loop that no other predicts."""
 
 
 class Cause(StrEnum):
@@ -113,7 +116,7 @@ class PlayModel:
 def play_model(
     loops: Sequence[Loop], angle_step: float, hysteresis: float, late: float = 0.0
 ) -> PlayModel | None:
-    """Choose a model for loops of one amplitude; None if they have no middle line.
+    """Choose a model for loops of one amplitude; None if their middle line is no spring's.
 
     Args:
         loops: at least one.
@@ -122,23 +125,21 @@ def play_model(
         late: N·m, standard uncertainty of the torque by that of the encoder's lag.
     """
     lines = Midlines.of(loops)
-    if not (lines.reach and np.ptp(lines.load)):
+    if not (np.ptp(lines.angle, axis=1).all() and np.ptp(lines.load, axis=1).all()):
         return None
     fitting = Fitting(lines)
-    if len(loops) > 1:
-        tried = _tried(fitting, lines)
-        plausible = _plausible(tried, lines)
-        chosen = min(
-            plausible, key=lambda model: (model.size, float(np.mean(tried[model].errors)))
-        )
-    else:
-        chosen, plausible = Model(SHAPES[0], Gap.PLAY), []
-        found = fitting.fit(chosen)
-        tried = {chosen: found} if found else {}
+    repeated = len(loops) > 1
+    tried = _tried(fitting, lines, _FAMILY if repeated else _FAMILY_OF_ONE)
     if not tried:
         return None
+    plausible = _plausible(tried, lines) if repeated else []
+    chosen = min(
+        plausible or tried, key=lambda model: (model.size, float(np.mean(tried[model].errors)))
+    )
     springs = fitting.each(chosen, tried[chosen])
     stiffness = soft_middle(chosen, springs, fitting, lines, SOFTEST).beyond
+    if not stiffness:
+        return None
     rest = lines.load - fitting.load(chosen, springs, lines.angle)
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
     friction, growth = _friction(lines, angle_step)
@@ -184,15 +185,13 @@ def _common(rest: Array) -> float:
     return math.sqrt(max(0.0, float(np.mean(np.mean(rest, axis=0) ** 2)) - scatter))
 
 
-def _tried(fitting: Fitting, lines: Midlines) -> dict[Model, Fit]:
-    """Fit the family, without soft middles that noise can make by rounding the corners."""
+def _tried(fitting: Fitting, lines: Midlines, family: Sequence[Model]) -> dict[Model, Fit]:
+    """Fit a family, without soft middles that noise can make by rounding the corners."""
     tried = {}
-    for shape in SHAPES:
-        for gap in Gap:
-            model = Model(shape, gap)
-            found = fitting.fit(model)
-            if found and not (gap == Gap.SOFT and _rounded(fitting, model, found, lines)):
-                tried[model] = found
+    for model in family:
+        found = fitting.fit(model)
+        if found and not (model.gap == Gap.SOFT and _rounded(fitting, model, found, lines)):
+            tried[model] = found
     return tried
 
 
@@ -235,8 +234,9 @@ class _Middle:
             most = soft.most if soft.most < _FLANKS * 2.0 * lines.reach else math.inf
             return cls(soft.width, soft.least if math.isfinite(most) else 0.0, most, soft.ratio)
         vague = soft_middle(model, springs, fitting, lines, _HARDLY_SOFT)
-        springs = fitting.each(wider := Model(model.shape, Gap.PLAY), tried[wider])
-        gap = Estimate.of_mean(springs.gap.tolist())
+        wider, gap = Model(model.shape, Gap.PLAY), soft.width
+        if wider in tried:
+            gap = Estimate.of_mean(fitting.each(wider, tried[wider]).gap.tolist())
         most = max(gap.value + (gap.uncertainty or 0.0), vague.most)
         return cls(gap, 0.0, most, vague.ratio)
 
@@ -291,15 +291,18 @@ def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | 
         np.polynomial.polynomial.polyfit(x, f, 1, w=w)
         for x, f, w in zip(load, lines.friction, weight, strict=True)
     ]
+    turn = float(np.mean(np.ptp(lines.angle, axis=1)))
+    stiffness = float(np.mean(np.ptp(lines.load, axis=1))) / turn
+    # Half the difference of two torques, each over all steps of the encoder that are passed.
+    steps = max(1.0, turn / angle_step) if angle_step else 1.0
+    reading = Component(stiffness * resolution(angle_step) / math.sqrt(2.0 * steps))
+    free = Estimate.of_mean([float(fit[0]) for fit in fits], reading)
     growth = Estimate.of_mean([float(fit[1]) for fit in fits])
-    stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
-    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step))
     if growth.uncertainty is not None and growth.value > growth.uncertainty:
-        return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
-    means = np.average(lines.friction, axis=1, weights=weight**4)
+        return free, growth
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
-    uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
-    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
+    uneven = float(np.average(lines.friction, weights=weight**4)) - free.value
+    return free.joined(Component(uneven / math.sqrt(3.0))), None
 
 
 def _candidates(

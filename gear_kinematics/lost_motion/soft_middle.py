@@ -67,7 +67,7 @@ def soft_middle(
         found.append((width, float(np.sum(own[soft])), beyond))
     widths, within, stiffness = np.transpose(found)
     total, beyond = float(np.sum(widths)), float(np.mean(stiffness))
-    ratio = float(np.sum(within)) / total / beyond if total else 0.0
+    ratio = float(np.sum(within)) / total / beyond if total and beyond else 0.0
     return SoftMiddle(Estimate.of_mean(widths.tolist()), ratio, beyond)
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from gear_recordings import ramps
 from judging_ramps import judge
 from simulated_ramps import SCENARIOS, STEP, Scenario, simulate, truth
 
@@ -132,6 +133,22 @@ def test_no_play_of_a_measured_actuator_is_negative_or_exceeds_its_hysteresis(
                 assert model.play.value > model.play.uncertainty, path.name
             if model.limit is not None:
                 assert 0.0 < model.limit < hysteresis, path.name
+
+
+@pytest.mark.parametrize(
+    ('loops', 'curve'),
+    [
+        (1, lambda torque: torque + 3.0 * np.abs(torque)),
+        (4, lambda torque: torque**3 / 100.0 - 0.22 * np.sin(torque)),
+    ],
+    ids=['angle goes back', 'neither stiff nor soft'],
+)
+def test_what_is_no_spring_still_has_a_hysteresis(loops, curve):
+    torque = ramps(*[(10.0, 60)] * loops)
+    angle = 1e-3 * curve(torque)
+    found, _ = models.settled(Loading(torque, angle, Step(1e-5, Source.GIVEN), measured=True))
+    for model in models.models_of(found, 1e-5, None).plays:
+        assert model is None or model.play is None or model.play.value >= 0.0
 
 
 def test_residuals_that_depend_on_load_or_speed_or_time_are_found():
