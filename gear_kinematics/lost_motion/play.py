@@ -291,18 +291,15 @@ def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | 
         np.polynomial.polynomial.polyfit(x, f, 1, w=w)
         for x, f, w in zip(load, lines.friction, weight, strict=True)
     ]
-    turn = float(np.mean(np.ptp(lines.angle, axis=1)))
-    stiffness = float(np.mean(np.ptp(lines.load, axis=1))) / turn
-    # Half the difference of two torques, each over all steps of the encoder that are passed.
-    steps = max(1.0, turn / angle_step) if angle_step else 1.0
-    reading = Component(stiffness * resolution(angle_step) / math.sqrt(2.0 * steps))
-    free = Estimate.of_mean([float(fit[0]) for fit in fits], reading)
     growth = Estimate.of_mean([float(fit[1]) for fit in fits])
+    stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
+    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step))
     if growth.uncertainty is not None and growth.value > growth.uncertainty:
-        return free, growth
+        return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
+    means = np.average(lines.friction, axis=1, weights=weight**4)
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
-    uneven = float(np.average(lines.friction, weights=weight**4)) - free.value
-    return free.joined(Component(uneven / math.sqrt(3.0))), None
+    uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
+    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
 
 
 def _candidates(

@@ -20,6 +20,7 @@ VARIABLE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
 def _nothing_chosen(monkeypatch, tmp_path):
     monkeypatch.setenv(VARIABLE, 'to restore it in the end')
     monkeypatch.delenv(VARIABLE)
+    monkeypatch.delenv('SKIP_DEFAULT_XML_FILE', raising=False)
     monkeypatch.chdir(tmp_path)
 
 
