@@ -18,11 +18,10 @@ import statistics
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from compiled import NotBuiltError, rclcpp_node
-from processes import NODE, Program, Surroundings, private_surroundings, program
+from processes import NODE, PROFILE, Program, Surroundings, private_surroundings, program
 
 _RATES = (500, 1000, 2000, 5000, 8000)  # Hz
 _QUIET = 2.0  # s of silence after which nothing more is to come
@@ -35,7 +34,6 @@ _BOUNDS = (  # at that rate: the field, the other node, and the target for the r
     ('p50', 'textbook', 0.5),
     ('p99', 'textbook', 0.7),
 )
-_PROFILE = Path(__file__).parents[1] / 'config' / 'fastdds.xml'
 
 
 class Run(NamedTuple):
@@ -123,7 +121,7 @@ def _nodes(surroundings: Surroundings) -> dict[str, tuple[Sequence[str], Surroun
     except NotBuiltError as error:
         print(f'no C++ node: {error}', file=sys.stderr)
         return nodes
-    profile = {'FASTRTPS_DEFAULT_PROFILES_FILE': str(_PROFILE)}
+    profile = {'FASTRTPS_DEFAULT_PROFILES_FILE': str(PROFILE)}
     with_profile = surroundings._replace(environment=surroundings.environment | profile)
     return nodes | {'C++': (command, surroundings), 'C++ profile': (command, with_profile)}
 

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 from peer import peer
-from processes import NODE, Program, private_surroundings, program
+from processes import NODE, PROFILE, Program, private_surroundings, program
 from rotor_driver import SECOND
 from state_listener import Listener, receive_answers
 
@@ -33,7 +33,6 @@ DEPTH = 1000
 """Messages that the driver keeps to send them again."""
 _PAUSE = 0.01  # s
 _PAUSE_MESSAGES = 5
-_PROFILE = Path(__file__).resolve().parents[1] / 'config' / 'fastdds.xml'
 _QUIET = 10.0  # s without an answer, after which nothing more is to come
 
 
@@ -65,7 +64,7 @@ class Arrivals:
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument('--profile', type=Path, default=_PROFILE, help='of driver and node')
+    parser.add_argument('--profile', type=Path, default=PROFILE, help='of driver and node')
     parser.add_argument('--rate', type=int, default=500, metavar='HZ')
     parser.add_argument('--seconds', type=float, default=60.0)
     parser.add_argument('--loss', type=int, default=1, help='percent of the packets')

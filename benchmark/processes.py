@@ -19,7 +19,9 @@ from typing import Any, NamedTuple, Self
 NODE = (sys.executable, '-m', 'gear_kinematics.ros')
 """The command that runs gear_state_publisher."""
 
-_FOLDER = Path(__file__).parent
+_FOLDER = Path(__file__).resolve().parent
+PROFILE = _FOLDER.parent / 'config' / 'fastdds.xml'
+"""The profile of Fast DDS that the node uses by default."""
 _PAGE = os.sysconf('SC_PAGE_SIZE')
 _PATIENCE = 1.0  # s
 _ON_PROCESSOR = 2  # Linux's CPUCLOCK_SCHED

@@ -12,6 +12,7 @@ from gear_kinematics.lost_motion.ramps import HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.state.uncertainty import (
     Component,
     Estimate,
+    common_part,
     hidden_resolution,
     slope_resolution,
 )
@@ -151,11 +152,7 @@ def _late(loops: Sequence[Loop], late: float) -> float:
 
 def _rounded(roundings: Sequence[float]) -> Component:
     """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7)."""
-    if len(roundings) == 1:
-        return Component(0.0)
-    # Noise adds its variance to the square of a mean.
-    square = np.mean(roundings) ** 2 - np.var(roundings, ddof=1) / len(roundings)
-    return Component(math.sqrt(max(0.0, float(square)) / 3.0))
+    return Component(common_part(np.array(roundings)) / math.sqrt(3.0))
 
 
 def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:

@@ -18,7 +18,7 @@ from gear_kinematics.lost_motion.ramps import Array, Loop
 from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
 from gear_kinematics.lost_motion.soft_middle import soft_middle
 from gear_kinematics.lost_motion.springs import SHAPES, Fit, Fitting, Gap, Model, Springs
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, common_part, resolution
 
 SOFTEST = 0.2
 """Play: the gear yields at less than this share of its stiffness beyond."""
@@ -146,7 +146,7 @@ def play_model(
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
-        misfit = _common(rest) / stiffness
+        misfit = common_part(rest) / stiffness
         play, limit, cause = _verdict(chosen, middles, misfit, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
@@ -174,15 +174,6 @@ def _single(gap: float) -> tuple[Estimate | None, None, Cause]:
     if gap:
         return Estimate.of_mean([gap]), None, Cause.NONE
     return None, None, Cause.SINGLE
-
-
-def _common(rest: Array) -> float:
-    """Root mean square of what is the same in all loops, of (loops, levels)."""
-    count = len(rest)
-    if count < 2:  # noqa: PLR2004, nothing to compare
-        return 0.0
-    scatter = float(np.mean(np.var(rest, axis=0, ddof=1))) / count
-    return math.sqrt(max(0.0, float(np.mean(np.mean(rest, axis=0) ** 2)) - scatter))
 
 
 def _tried(fitting: Fitting, lines: Midlines, family: Sequence[Model]) -> dict[Model, Fit]:

@@ -7,6 +7,7 @@ from functools import cache
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 COVERAGE = 0.95
 """Coverage probability of expanded uncertainties."""
@@ -180,6 +181,19 @@ def slope_resolution(step: float, run: float, slope: float) -> float:
     if not step:
         return 0.0
     return resolution(step) / run * math.sqrt(12.0 / max(6.0, abs(slope) * run / step))
+
+
+def common_part(errors: NDArray[np.float64]) -> float:
+    """Root mean square of what is the same in all repeats, without what scatter adds to it.
+
+    Args:
+        errors: (repeats, ...); a single repeat shows nothing.
+    """
+    count = len(errors)
+    if count < 2:  # noqa: PLR2004, nothing to compare
+        return 0.0
+    scatter = float(np.mean(np.var(errors, axis=0, ddof=1))) / count
+    return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
 
 
 @cache
