@@ -21,7 +21,15 @@ from contextlib import ExitStack
 from typing import Any, NamedTuple
 
 from compiled import NotBuiltError, rclcpp_node
-from processes import NODE, PROFILE, Program, Surroundings, private_surroundings, program
+from processes import (
+    ANNOUNCING,
+    NODE,
+    PROFILE,
+    Program,
+    Surroundings,
+    private_surroundings,
+    program,
+)
 
 _RATES = (500, 1000, 2000, 5000, 8000)  # Hz
 _QUIET = 2.0  # s of silence after which nothing more is to come
@@ -121,16 +129,17 @@ def _nodes(surroundings: Surroundings) -> dict[str, tuple[Sequence[str], Surroun
     except NotBuiltError as error:
         print(f'no C++ node: {error}', file=sys.stderr)
         return nodes
-    profile = {'FASTRTPS_DEFAULT_PROFILES_FILE': str(PROFILE)}
-    with_profile = surroundings._replace(environment=surroundings.environment | profile)
-    return nodes | {'C++': (command, surroundings), 'C++ profile': (command, with_profile)}
+    return nodes | {
+        'C++': (command, surroundings),
+        'C++ profile': (command, surroundings.with_profile(PROFILE)),
+    }
 
 
 def _run(command: Sequence[str], rate: int, seconds: float, surroundings: Surroundings) -> Run:
     count = max(1, round(rate * seconds))
     with ExitStack() as programs:
         driver, listener = (
-            programs.enter_context(Program(program(name), surroundings))
+            programs.enter_context(Program(program(name), surroundings.with_profile(ANNOUNCING)))
             for name in ('rotor_driver.py', 'state_listener.py')
         )
         for peer in (driver, listener):
@@ -147,7 +156,7 @@ def _run(command: Sequence[str], rate: int, seconds: float, surroundings: Surrou
 
 
 def _start_of_empty_node(surroundings: Surroundings) -> float:
-    with Program(program('rotor_driver.py'), surroundings) as driver:
+    with Program(program('rotor_driver.py'), surroundings.with_profile(ANNOUNCING)) as driver:
         driver.report()
         with Program(program('empty_node.py'), surroundings) as node:
             return (node.report()['heard'] - node.started) / 1e9

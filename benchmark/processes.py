@@ -22,6 +22,12 @@ NODE = (sys.executable, '-m', 'gear_kinematics.ros')
 _FOLDER = Path(__file__).resolve().parent
 PROFILE = _FOLDER.parent / 'config' / 'fastdds.xml'
 """The profile of Fast DDS that the node uses by default."""
+ANNOUNCING = _FOLDER / 'announcing.xml'
+"""A profile for peers that every node discovers soon after its start.
+
+Otherwise some nodes wait up to 3 s for the peer's next announcement, as Fast DDS loses replies to
+the first announcement of a new participant.
+"""
 _PAGE = os.sysconf('SC_PAGE_SIZE')
 _PATIENCE = 1.0  # s
 _ON_PROCESSOR = 2  # Linux's CPUCLOCK_SCHED
@@ -38,6 +44,11 @@ class Surroundings(NamedTuple):
     log: Path
     arguments: list[str]
     environment: dict[str, str]
+
+    def with_profile(self, profile: Path) -> Self:
+        """Give the same with a profile for Fast DDS."""
+        chosen = {'FASTRTPS_DEFAULT_PROFILES_FILE': str(profile)}
+        return self._replace(environment=self.environment | chosen)
 
 
 @contextmanager
