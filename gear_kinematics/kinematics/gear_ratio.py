@@ -1,12 +1,13 @@
 """The gear ratio as an exact fraction, and what needs no more of a gear than that."""
 
+import math
 import re
 from collections.abc import Iterator
 from fractions import Fraction
 from types import ModuleType
 from typing import Any, Self
 
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.kinematics.rotor_turns import TURN, largest, nearest_turn
 
 _TEXT = re.compile(r'[-+]?\d{1,16}(/\d{1,16}|\.\d{1,16})?', re.ASCII)
 _LARGEST_PRODUCT = 2**53
@@ -23,10 +24,12 @@ class GearRatio(Fraction):
         ValueError: if it is 0, or its numerator × denominator exceeds 2^53.
     """
 
-    __slots__ = ('_p', '_q')
+    __slots__ = ('_cycle', '_inverse', '_p', '_q')
 
-    _p: float  # p/q = -1/i in lowest terms; a float, to round its products as an array does
+    _p: float  # p/q = 1/i in lowest terms; a float, to round its products as an array does
     _q: int
+    _inverse: float  # p/q, rounded
+    _cycle: int  # turns, a multiple of q; p times fewer turns is exact in float64
 
     def __new__(cls, numerator: int | Fraction, denominator: int | None = None) -> Self:
         """Create it like a Fraction."""
@@ -35,8 +38,10 @@ class GearRatio(Fraction):
             raise ValueError('a gear ratio must not be 0')
         if abs(self.numerator) * self.denominator > _LARGEST_PRODUCT:
             raise ValueError('numerator × denominator of a gear ratio must not exceed 2^53')
-        inverse = -1 / self
+        inverse = 1 / self
         self._p, self._q = float(inverse.numerator), inverse.denominator
+        self._inverse = self._p / self._q
+        self._cycle = self._q * max(1, 2**50 // (abs(inverse.numerator) * self._q))
         return self
 
     @classmethod
@@ -69,17 +74,21 @@ class GearRatio(Fraction):
 
         The rest depends on the whole turns modulo q only, so nothing cancels.
         """
-        p, q = self._p, self._q
-        cycles = xp.trunc(turns / q)
-        steps = p * (turns - q * cycles)
-        whole = xp.ceil(steps / q - 0.5)
-        rest = (TURN * (steps - q * whole) + p * angle) / -q
-        wraps = xp.floor(rest / TURN + 0.5)
-        return xp.trunc(wraps - (p * cycles + whole)), rest - TURN * wraps
+        p, q, cycle = self._p, self._q, self._cycle
+        few = (abs(turns) if xp is math else largest(turns)) < cycle
+        if not few:  # whole turns of the output as well
+            cycles = xp.trunc(turns / cycle)
+            turns = turns - cycle * cycles
+        whole = xp.floor((turns + angle / TURN) * self._inverse + 0.5)  # nearest but for rounding
+        rest = (TURN * (p * turns - q * whole) + p * angle) / q
+        whole, rest = nearest_turn(whole, rest, xp)
+        if not few:
+            whole = xp.trunc(whole + p * (cycle // q) * cycles)
+        return whole, rest
 
     def output_rate(self, rotor_rate: Any) -> Any:
         """ω5 = ω2/i (eq. 3), and likewise for the acceleration."""
-        return -self._p * rotor_rate / self._q
+        return self._p * rotor_rate / self._q
 
     def rotor_angle(self, output_angle: float) -> float:
         """φ2 = i φ5 (eq. 5), rad."""

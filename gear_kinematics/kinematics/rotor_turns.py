@@ -23,9 +23,10 @@ half a turn, so that an angle within the turn has no meaning."""
 MOST_TURNS = 2**52
 """Added to the turns of an angle up to `LARGEST_ANGLE`, these stay below 2^53, up to which a
 float64 holds every integer exactly."""
-_MANY = 2**25  # turns; the products of fewer with _TURN_HIGH or _TURN_LOW fit into 53 bits
+_MANY_TURNS = 2**25 * TURN  # rad; products of fewer with _TURN_HIGH or _TURN_LOW fit into 53 bits
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
+_BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
 
 
 class RotorPosition(NamedTuple):
@@ -56,27 +57,40 @@ def split_turns(angle: Any) -> Any:
     Raises:
         ValueError: if a float angle is not finite or too large.
     """
-    xp: ModuleType
     # First what is quickly told of a float: the node calls this for every message.
-    if not isinstance(angle, float) and isinstance(angle, np.ndarray):
-        xp = np
-        largest = np.abs(angle).max(initial=0.0)
-        if not largest <= LARGEST_ANGLE:  # NaN compares false
-            angle = np.where(np.abs(angle) <= LARGEST_ANGLE, angle, np.nan)
-    else:
-        xp, largest = math, abs(angle)
-        if not largest <= LARGEST_ANGLE:
+    xp = np if not isinstance(angle, float) and isinstance(angle, np.ndarray) else math
+    size = abs(angle) if xp is math else largest(angle)
+    if not size <= LARGEST_ANGLE:  # NaN compares false
+        if xp is math:
             raise ValueError(f'an angle is at most {LARGEST_ANGLE:g} rad, not {angle:g}')
+        angle = np.where(np.abs(angle) <= LARGEST_ANGLE, angle, np.nan)
     # Every step is exact. fmod by TURN alone would do, but is slow for angles beyond a turn.
-    many, rest = 0, angle
-    if not largest < _MANY * TURN:  # else fmod changes nothing
-        rest = xp.fmod(angle, _MANY * TURN)
+    rest, few = angle, size < _MANY_TURNS
+    if not few:  # else fmod changes nothing
+        rest = xp.fmod(angle, _MANY_TURNS)
         many = xp.floor((angle - rest) / TURN + 0.5)
-    whole = xp.floor(rest / TURN + 0.5)  # off by one at most, by rounding
-    rest = rest - whole * _TURN_HIGH - whole * _TURN_LOW
-    wraps = xp.floor(rest / TURN + 0.5)
-    rest, turns = rest - TURN * wraps, many + whole + wraps
+    turns = xp.floor(rest / TURN + 0.5)  # off by one at most, by rounding
+    turns, rest = nearest_turn(turns, rest - turns * _TURN_HIGH - turns * _TURN_LOW, xp)
+    if not few:
+        turns = many + turns
     return RotorPosition(turns, rest - turns * TURN_TAIL)
+
+
+def nearest_turn(turns: Any, rest: Any, xp: ModuleType) -> tuple[Any, Any]:
+    """Correct turns that a rounded quotient gave, where their rest, rad, is beyond half a turn.
+
+    `xp` is `math` for floats, else numpy. Most arrays need no correction, which is quickly seen.
+    """
+    if (abs(rest) if xp is math else largest(rest)) < _BELOW_HALF:
+        return turns, rest
+    more = xp.floor(rest / TURN + 0.5)
+    return turns + more, rest - TURN * more
+
+
+def largest(values: NDArray[np.float64]) -> np.float64:
+    """Return the largest magnitude in an array; NaN if it contains one, 0 if it is empty."""
+    magnitude: np.float64 = np.abs(values).max(initial=0.0)
+    return magnitude
 
 
 def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
@@ -87,7 +101,7 @@ def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
     """
     array = np.asarray(turns, np.float64)
     # Values that are not finite give NaN, which is true.
-    if np.fmod(array, 1.0).any() or np.abs(array).max(initial=0.0) > MOST_TURNS:
+    if np.fmod(array, 1.0).any() or largest(array) > MOST_TURNS:
         given = np.array2string(array, threshold=4)
         raise ValueError(f'rotor_turns must be integers up to ±2^52, not {given}')
     return array

@@ -92,6 +92,7 @@ def test_a_copy_is_a_ratio():
 @example(GearRatio(1457, 26), 2**52, 3.0)
 @example(GearRatio(-26, 1457), 2**40, -3.0)
 @example(GearRatio(1), 0, math.pi)
+@example(GearRatio(19), 20890720927753, 3.14159265358)  # just beyond half a turn of the output
 def test_output_angle_is_that_of_50_digits(ratio, turns, angle):
     output_turns, rest = ratio.output_angle(turns, angle, math)
     with mpmath.workdps(50):
@@ -107,6 +108,7 @@ def test_output_angle_is_that_of_50_digits(ratio, turns, angle):
 
 
 @given(RATIOS, st.integers(-(2**52), 2**52), st.floats(-math.pi, math.pi))
+@example(GearRatio(19), 20890720927753, 3.14159265358)
 def test_floats_and_arrays_agree_to_the_last_bit(ratio, turns, angle):
     many = ratio.output_angle(np.array([0.0, turns]), np.array([1.0, angle]), np)
     assert ratio.output_angle(turns, angle, math) == (many[0][1], many[1][1])
