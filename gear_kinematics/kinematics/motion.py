@@ -135,8 +135,9 @@ class ClosedForm:
         arm_x, arm_y = -xp.sin(output_angle), xp.cos(output_angle)  # u(φ5)
         positions = []
         for cam_x, cam_y in self._cams:
-            x = cosine * cam_x - sine * cam_y  # u(θ)
-            y = sine * cam_x + cosine * cam_y
+            x, y = -sine, cosine  # u(θ)
+            if cam_x or cam_y != 1.0:  # else θ = φ2
+                x, y = cosine * cam_x - sine * cam_y, sine * cam_x + cosine * cam_y
             satellite_slide = e * (y * arm_x - x * arm_y)  # eq. (19): e sin β, β = θ - φ5
             arm_slide = e * (x * arm_x + y * arm_y)  # eq. (20): e cos β
             oldham = arm_slide * arm_x, arm_slide * arm_y  # eqs. (21), (22): y u(φ5)
@@ -222,7 +223,7 @@ def solve(
         own_turns, rest = split_turns(angle[part])
         output_turns, output_rest = ratio.output_angle(turns[part] + own_turns, rest, np)
         turn_angle[part] = output_rest
-        output[0, part] = TURN * output_turns + output_rest
+        np.add(TURN * output_turns, output_rest, out=output[0, part])
         positions = form.branches(rest, output_rest, np)
         for k, position in enumerate(positions):
             satellite[0, k, :, part] = position.satellite
