@@ -1,14 +1,15 @@
 """What the live node costs and how soon it answers, against other nodes, in one run.
 
-    python benchmark/live.py [--rates 500 1000 ...] [--seconds 5] [--rounds 5] [--json]
+    python benchmark/live.py [--outputs output_state ...] [--rates 500 1000 ...] [--seconds 5]
+                             [--rounds 5] [--json]
 
 Driver, node and listener are three processes on this machine. The driver sends rotor_state
-reliably at a steady rate, the listener takes output_state and body_poses, and the queues of both
-hold more than ever waits, so that every loss is the node's. Counting starts when probes have been
-answered on both topics. The other nodes do the same job as the tutorials teach it: one in Python
-and, where rclcpp is installed, one in C++, with the default profile of the middleware and with
-that of this node. All have default parameters. They take turns, so that what else the machine does
-befalls all of them; values and ratios are medians over the rounds.
+reliably at a steady rate, the listener takes output_state and body_poses, or one of them, and the
+queues of both hold more than ever waits, so that every loss is the node's. Counting starts when
+probes have been answered on all topics. The other nodes do the same job as the tutorials teach it:
+one in Python and, where rclcpp is installed, one in C++, with the default profile of the
+middleware and with that of this node. All have default parameters. They take turns, so that what
+else the machine does befalls all of them; values and ratios are medians over the rounds.
 """
 
 import argparse
@@ -31,6 +32,7 @@ from processes import (
     program,
 )
 
+_OUTPUTS = ('output_state', 'body_poses')
 _RATES = (500, 1000, 2000, 5000, 8000)  # Hz
 _QUIET = 2.0  # s of silence after which nothing more is to come
 _COMPLETE = (1000, 2000, 5000, 8000)  # Hz, at which every message is to be answered
@@ -49,7 +51,7 @@ class Run(NamedTuple):
 
     sent: int
     answered: int
-    """Messages with an answer on both topics."""
+    """Messages with an answer on each topic."""
     cpu: float
     """Of the node, for each answered message."""
     p50: float
@@ -93,18 +95,23 @@ class Target(NamedTuple):
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        '--outputs', nargs='+', default=_OUTPUTS, choices=_OUTPUTS, help='that are listened to'
+    )
     parser.add_argument('--rates', type=int, nargs='+', default=_RATES, metavar='HZ')
     parser.add_argument('--seconds', type=float, default=5.0, help='of each node at each rate')
     parser.add_argument('--rounds', type=int, default=5)
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
     rounds: dict[int, list[Round]] = {rate: [] for rate in options.rates}
+    topics = ('--ros-args', '-p', f'outputs:=[{",".join(options.outputs)}]')
+    listener = (*program('state_listener.py'), *topics)
     with private_surroundings() as surroundings:
         nodes = _nodes(surroundings)
         for _ in range(options.rounds):
             for rate in options.rates:
                 runs = {
-                    name: _run(command, rate, options.seconds, around)
+                    name: _run(command, listener, rate, options.seconds, around)
                     for name, (command, around) in nodes.items()
                 }
                 rounds[rate].append(Round(runs, _start_of_empty_node(surroundings)))
@@ -135,12 +142,18 @@ def _nodes(surroundings: Surroundings) -> dict[str, tuple[Sequence[str], Surroun
     }
 
 
-def _run(command: Sequence[str], rate: int, seconds: float, surroundings: Surroundings) -> Run:
+def _run(
+    command: Sequence[str],
+    listening: Sequence[str],
+    rate: int,
+    seconds: float,
+    surroundings: Surroundings,
+) -> Run:
     count = max(1, round(rate * seconds))
     with ExitStack() as programs:
         driver, listener = (
-            programs.enter_context(Program(program(name), surroundings.with_profile(ANNOUNCING)))
-            for name in ('rotor_driver.py', 'state_listener.py')
+            programs.enter_context(Program(peer, surroundings.with_profile(ANNOUNCING)))
+            for peer in (program('rotor_driver.py'), listening)
         )
         for peer in (driver, listener):
             peer.report()

@@ -8,7 +8,7 @@ import struct
 import time
 from array import array
 from collections.abc import Callable, Mapping, Sequence, Sized
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from typing import Any, Self
 
 import numpy as np
@@ -112,13 +112,10 @@ class Answers:
 def main() -> None:
     """Follow the orders until the standard input ends."""
     obey_benchmark()
-    topics = {'output_state': Answers(), 'body_poses': Answers()}
-    callbacks = {topic: answers.add for topic, answers in topics.items()}
-    with (
-        peer('state_listener') as node,
-        Listener(node, callbacks) as listener,
-        suppress(EOFError),
-    ):
+    with peer('state_listener') as node, ExitStack() as stack, suppress(EOFError):
+        outputs = node.declare_parameter('outputs', ['output_state', 'body_poses']).value
+        topics = {topic: Answers() for topic in outputs}
+        listener = stack.enter_context(Listener(node, {t: a.add for t, a in topics.items()}))
         report()
         listener.wait_until_heard()
         report(heard=min(listener.heard.values()))

@@ -38,7 +38,8 @@ class Outputs:
 
     def send(self, messages: Iterable[tuple[str, bytes]]) -> None:
         """Send messages, given with their topics, and report what fails."""
-        for topic, message in messages:
+        # All are encoded first: a listener is still awake at the second if it follows at once.
+        for topic, message in list(messages):
             try:
                 self._senders[topic](message)
             except rclpy_implementation.RCLError as error:
