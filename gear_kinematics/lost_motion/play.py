@@ -12,13 +12,20 @@ from enum import StrEnum
 
 import numpy as np
 
+from gear_kinematics.lost_motion.build_up import without_build_up
 from gear_kinematics.lost_motion.creep import transmitted
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, Loop
 from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
 from gear_kinematics.lost_motion.soft_middle import soft_middle
 from gear_kinematics.lost_motion.springs import SHAPES, Fit, Fitting, Gap, Model, Springs
-from gear_kinematics.state.uncertainty import Component, Estimate, common_part, resolution
+from gear_kinematics.state.uncertainty import (
+    Component,
+    Estimate,
+    common_part,
+    end_resolution,
+    resolution,
+)
 
 SOFTEST = 0.2
 """Play: the gear yields at less than this share of its stiffness beyond."""
@@ -32,8 +39,6 @@ _CLEAR_OF_BLUR = 4.0
 """In a soft middle, the load rises by more than this many times the blur of corners."""
 _CLEAR_OF_LOAD = 0.02
 """And by more than this share of the greatest load."""
-_MISFIT = 2.0 / math.sqrt(3.0)
-"""Share of a misfit, at both ends of the gap, that counts as standard uncertainty (GUM 4.3.7)."""
 _ROUNDING = 1e-3
 """Share of the greatest load by which predictions may differ and still be as good."""
 _BEYOND = 1.6
@@ -127,6 +132,8 @@ def play_model(
     lines = Midlines.of(loops)
     if not (np.ptp(lines.angle, axis=1).all() and np.ptp(lines.load, axis=1).all()):
         return None
+    friction, growth = _friction(lines, angle_step)
+    lines = without_build_up(lines)
     fitting = Fitting(lines)
     repeated = len(loops) > 1
     tried = _tried(fitting, lines, _FAMILY if repeated else _FAMILY_OF_ONE)
@@ -142,12 +149,14 @@ def play_model(
         return None
     rest = lines.load - fitting.load(chosen, springs, lines.angle)
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
-    friction, growth = _friction(lines, angle_step)
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
-        misfit = common_part(rest) / stiffness
-        play, limit, cause = _verdict(chosen, middles, misfit, angle_step, hysteresis)
+        # Both ends of the gap may be off by the same misfit, but are read one by one.
+        misfit = 2.0 * _misfit(rest, springs, lines, stiffness)
+        flank = lines.reach - 0.5 * float(np.mean(springs.gap))
+        hidden = math.hypot(misfit, math.sqrt(2.0) * end_resolution(angle_step, flank))
+        play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
     angles = _BEYOND * lines.reach * np.linspace(-1.0, 1.0, _LEVELS)
@@ -167,6 +176,13 @@ def play_model(
         angles + float(np.mean(lines.centre)),
         np.maximum.accumulate(np.mean(curves, axis=0)),
     )
+
+
+def _misfit(rest: Array, springs: Springs, lines: Midlines, stiffness: float) -> float:
+    """Angle by which a model errs in all loops alike, rad, beyond the gap and its round corners."""
+    off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0))
+    beyond = off > 0.5 * float(np.mean(springs.gap)) + lines.blur / stiffness
+    return common_part(rest[:, beyond]) / stiffness if beyond.any() else math.inf
 
 
 def _single(gap: float) -> tuple[Estimate | None, None, Cause]:
@@ -208,7 +224,8 @@ def _plausible(tried: Mapping[Model, Fit], lines: Midlines) -> list[Model]:
 class _Middle:
     """What a plausible model tells of the play, rad."""
 
-    gap: Estimate
+    gaps: Array
+    """(loops,)."""
     least: float
     most: float
     ratio: float = 0.0
@@ -223,13 +240,18 @@ class _Middle:
         soft = soft_middle(model, springs, fitting, lines, SOFTEST)
         if soft.width.value and (model.gap == Gap.PLAY or soft.least > 0.0):
             most = soft.most if soft.most < _FLANKS * 2.0 * lines.reach else math.inf
-            return cls(soft.width, soft.least if math.isfinite(most) else 0.0, most, soft.ratio)
+            return cls(soft.widths, soft.least if math.isfinite(most) else 0.0, most, soft.ratio)
         vague = soft_middle(model, springs, fitting, lines, _HARDLY_SOFT)
-        wider, gap = Model(model.shape, Gap.PLAY), soft.width
-        if wider in tried:
-            gap = Estimate.of_mean(fitting.each(wider, tried[wider]).gap.tolist())
+        wider = Model(model.shape, Gap.PLAY)
+        gaps = fitting.each(wider, tried[wider]).gap if wider in tried else soft.widths
+        gap = Estimate.of_mean(gaps.tolist())
         most = max(gap.value + (gap.uncertainty or 0.0), vague.most)
-        return cls(gap, 0.0, most, vague.ratio)
+        return cls(gaps, 0.0, most, vague.ratio)
+
+    @property
+    def gap(self) -> Estimate:
+        """The mean of the gaps."""
+        return Estimate.of_mean(self.gaps.tolist())
 
 
 def _rise(model: Model, springs: Springs, lines: Midlines) -> float:
@@ -242,7 +264,7 @@ def _rise(model: Model, springs: Springs, lines: Midlines) -> float:
 def _verdict(
     chosen: Model,
     middles: Mapping[Model, _Middle],
-    misfit: float,
+    hidden: float,
     angle_step: float,
     hysteresis: float,
 ) -> tuple[Estimate | None, float | None, Cause]:
@@ -251,19 +273,20 @@ def _verdict(
     Args:
         chosen: the simplest plausible model.
         middles: of all plausible models.
-        misfit: rad, by which the chosen one errs in all loops alike, at either end of the gap.
+        hidden: rad, standard uncertainty of the gap that the repeats do not show.
         angle_step: rad, between readings of the encoder.
         hysteresis: rad.
     """
-    values = np.array([middle.gap.value for middle in middles.values()])
     own = middles[chosen].gap
-    choice = Component(float(np.sqrt(np.mean((values - own.value) ** 2))))
-    wider = own.joined(choice, Component(_MISFIT * misfit), Component(resolution(angle_step)))
+    others = np.stack([middle.gaps - middles[chosen].gaps for middle in middles.values()], -1)
+    # How far the models are apart is known by as many repeats.
+    choice = Component(common_part(others), own.repeats - 1)
+    wider = own.joined(choice, Component(hidden))
     if all(middle.least > 0.0 for middle in middles.values()) and (
         wider.value > (wider.uncertainty or 0.0)
     ):
         return wider, None, Cause.NONE
-    limit = max(middle.most for middle in middles.values()) + 2.0 * _MISFIT * misfit
+    limit = max(middle.most for middle in middles.values()) + 2.0 * hidden
     limit = max(limit, _ROUNDING * hysteresis)
     if math.isinf(limit):
         return None, None, Cause.FLANKS

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.midline import Midlines
+from gear_kinematics.lost_motion.ramps import Array
 from gear_kinematics.lost_motion.springs import Fitting, Model, Springs
 from gear_kinematics.state.uncertainty import Estimate
 
@@ -18,12 +19,17 @@ _ROUNDS = 4
 class SoftMiddle(NamedTuple):
     """The middle in which a spring is less stiff than a share of the rest of it."""
 
-    width: Estimate
-    """rad; 0 where there is none."""
+    widths: Array
+    """(loops,), rad; 0 where there is none."""
     ratio: float
     """Stiffness within over that beyond."""
     beyond: float
     """N·m/rad."""
+
+    @property
+    def width(self) -> Estimate:
+        """The mean of the widths, rad."""
+        return Estimate.of_mean(self.widths.tolist())
 
     @property
     def least(self) -> float:
@@ -68,7 +74,7 @@ def soft_middle(
     widths, within, stiffness = np.transpose(found)
     total, beyond = float(np.sum(widths)), float(np.mean(stiffness))
     ratio = float(np.sum(within)) / total / beyond if total and beyond else 0.0
-    return SoftMiddle(Estimate.of_mean(widths.tolist()), ratio, beyond)
+    return SoftMiddle(widths, ratio, beyond)
 
 
 def _around(marked: NDArray[np.bool_], middle: int) -> NDArray[np.bool_]:

@@ -66,6 +66,7 @@ def _sinh(scale: float) -> Shape:
 
 SHAPES = (
     Shape('linear', None, (0.0, 0.0), 0),
+    Shape('quadratic', lambda d: d * np.abs(d), (0.0, 2.0), 1),
     Shape('cubic', lambda d: d**3, (0.0, 3.0), 1),
     _tanh(0.3),
     _tanh(0.6),

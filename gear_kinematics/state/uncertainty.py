@@ -183,6 +183,18 @@ def slope_resolution(step: float, run: float, slope: float) -> float:
     return resolution(step) / run * math.sqrt(12.0 / max(6.0, abs(slope) * run / step))
 
 
+def end_resolution(step: float, run: float) -> float:
+    """Standard uncertainty of the end of a line by the steps of an encoder, in their unit.
+
+    The line goes through many readings, of which those within a step count as one.
+
+    Args:
+        step: of a reading.
+        run: difference of the readings at the ends of the line.
+    """
+    return resolution(step) * math.sqrt(4.0 / max(4.0, run / step)) if step else 0.0
+
+
 def common_part(errors: NDArray[np.float64]) -> float:
     """Root mean square of what is the same in all repeats, without what scatter adds to it.
 
