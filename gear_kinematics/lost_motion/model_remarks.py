@@ -27,6 +27,12 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
     yield from _play(model)
     if model.growth:
         yield f'The friction grows by {plus_minus(model.growth, 100.0)} % of the load.'
+    if model.missing:
+        yield (
+            'The friction builds up slowly after a reversal: near the peaks, '
+            f'{plus_minus(model.missing)} N·m of it are missing. This has been taken out of the '
+            'middle line.'
+        )
     yield from _tests(model)
 
 

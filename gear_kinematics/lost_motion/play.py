@@ -39,6 +39,8 @@ _CLEAR_OF_BLUR = 4.0
 """In a soft middle, the load rises by more than this many times the blur of corners."""
 _CLEAR_OF_LOAD = 0.02
 """And by more than this share of the greatest load."""
+_MISFIT = 2.0 / math.sqrt(3.0)
+"""Share of a misfit, at both ends of the gap, that counts as standard uncertainty (GUM 4.3.7)."""
 _ROUNDING = 1e-3
 """Share of the greatest load by which predictions may differ and still be as good."""
 _BEYOND = 1.6
@@ -93,6 +95,8 @@ class PlayModel:
     """N·m, at the output, without load."""
     growth: Estimate | None
     """Share of the load that adds to the friction; None if not significant."""
+    missing: Estimate | None
+    """N·m, of the friction near the peaks, as it builds up slowly; None if not significant."""
     residual: float
     """N·m, root mean square of the load on the middle lines minus the model's."""
     softness: float | None
@@ -133,7 +137,7 @@ def play_model(
     if not (np.ptp(lines.angle, axis=1).all() and np.ptp(lines.load, axis=1).all()):
         return None
     friction, growth = _friction(lines, angle_step)
-    lines = without_build_up(lines)
+    lines, missing = without_build_up(lines)
     fitting = Fitting(lines)
     repeated = len(loops) > 1
     tried = _tried(fitting, lines, _FAMILY if repeated else _FAMILY_OF_ONE)
@@ -152,10 +156,7 @@ def play_model(
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
-        # Both ends of the gap may be off by the same misfit, but are read one by one.
-        misfit = 2.0 * _misfit(rest, springs, lines, stiffness)
-        flank = lines.reach - 0.5 * float(np.mean(springs.gap))
-        hidden = math.hypot(misfit, math.sqrt(2.0) * end_resolution(angle_step, flank))
+        hidden = _hidden(rest, springs, lines, stiffness, angle_step)
         play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
@@ -169,6 +170,7 @@ def play_model(
         cause,
         friction.joined(Component(late)),
         growth,
+        missing,
         float(np.sqrt(np.mean(rest**2))),
         max((middle.ratio for middle in middles.values()), default=0.0) or None,
         residual_tests(rest, lines.load, lines.pace),
@@ -178,11 +180,27 @@ def play_model(
     )
 
 
-def _misfit(rest: Array, springs: Springs, lines: Midlines, stiffness: float) -> float:
-    """Angle by which a model errs in all loops alike, rad, beyond the gap and its round corners."""
+def _hidden(
+    rest: Array, springs: Springs, lines: Midlines, stiffness: float, angle_step: float
+) -> float:
+    """Standard uncertainty of the gap, rad, by what is the same in all loops.
+
+    Args:
+        rest: (loops, angles), N·m, what the model leaves.
+        springs: of the model.
+        lines: which it fits.
+        stiffness: N·m/rad, of the spring beyond the gap.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+    """
+    half = 0.5 * float(np.mean(springs.gap))
     off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0))
-    beyond = off > 0.5 * float(np.mean(springs.gap)) + lines.blur / stiffness
-    return common_part(rest[:, beyond]) / stiffness if beyond.any() else math.inf
+    beyond = off > half + lines.blur / stiffness  # the corners are rounded
+    if not beyond.any():
+        return math.inf
+    misfit = common_part(rest[:, beyond]) / stiffness
+    # The same misfit is at both ends of the gap, but each is found by readings of its own.
+    reading = math.sqrt(2.0) * end_resolution(angle_step, lines.reach - half)
+    return math.hypot(_MISFIT * misfit, reading)
 
 
 def _single(gap: float) -> tuple[Estimate | None, None, Cause]:

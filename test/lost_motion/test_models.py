@@ -9,7 +9,9 @@ from judging_ramps import judge
 from simulated_ramps import SCENARIOS, STEP, Scenario, simulate, truth
 
 from gear_kinematics.lost_motion import models
+from gear_kinematics.lost_motion.build_up import without_build_up
 from gear_kinematics.lost_motion.encoder_step import Source, Step
+from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.lost_motion.residuals import residual_tests
@@ -92,6 +94,41 @@ def test_friction_that_grows_with_the_load():
     model = models.models_of(ramps, STEP, None).plays[0]
     assert model.growth.value == pytest.approx(growing.load_friction, abs=0.03)
     assert model.friction.value == pytest.approx(growing.friction, abs=0.04)
+
+
+def dahl(missing: float, growth: float = 0.0) -> tuple[Midlines, np.ndarray]:
+    """Middle lines with 1 N·m of friction, of which the loads lack some; and the true loads."""
+    load = np.linspace(-3.0, 3.0, 101)
+    noise = 0.01 * np.random.default_rng(5).standard_normal((5, 101))
+    lacking = missing * np.exp((np.abs(load) - 3.0) / 0.5) + noise
+    angle = np.tile(load / 300.0, (5, 1))
+    friction = 1.0 + growth * np.abs(load) - lacking
+    read = load + np.sign(load) * lacking
+    return Midlines(angle, read, friction, np.zeros((5, 101)), np.zeros(5), 0.0), load
+
+
+def test_friction_that_builds_up_is_taken_out_of_the_load():
+    lines, load = dahl(missing=0.4)
+    corrected, missing = without_build_up(lines)
+    assert np.abs(np.mean(corrected.load, axis=0) - load)[3:-3].max() < 0.025
+    read = np.mean(lines.load, axis=0)
+    near_peaks = np.abs(read) > 0.825 * 3.4
+    assert missing.value == pytest.approx(np.mean(np.abs(read - load)[near_peaks]), rel=0.15)
+
+
+@pytest.mark.parametrize('growth', [0.0, 0.1])
+def test_friction_that_does_not_build_up_is_left(growth):
+    lines, _ = dahl(missing=0.0, growth=growth)
+    assert without_build_up(lines) == (lines, None)
+
+
+def test_friction_that_builds_up_leaves_the_play_right():
+    building = scenario('friction that builds up')
+    ramps, _ = models.settled(loading(building))
+    model = models.models_of(ramps, STEP, None).plays[0]
+    assert abs(model.play.value - building.play) < model.play.uncertainty
+    assert model.play.uncertainty < 0.5 * ARC_MINUTE
+    assert 0.1 < model.missing.value < 0.4
 
 
 def test_a_soft_middle_is_a_bound_and_says_why():

@@ -9,6 +9,7 @@ import pytest
 from gear_kinematics.state.uncertainty import (
     Component,
     Estimate,
+    end_resolution,
     hidden_resolution,
     resolution,
     slope_resolution,
@@ -145,6 +146,21 @@ def test_slope_over_few_steps_is_that_between_two_readings():
         math.sqrt(2.0) * resolution(0.3) / 2.0
     )
     assert slope_resolution(0.0, run=2.0, slope=0.1) == 0.0
+
+
+@pytest.mark.parametrize('steps', [5.0, 20.0, 130.0])
+def test_end_of_a_line_through_steps(steps):
+    """The true line goes on to its end; what is read is rounded, at any place of the steps."""
+    x = np.linspace(0.0, 1.0, 2001)
+    ends = [
+        np.polyval(np.polyfit(x, np.round(steps * x + zero), 1), 1.0) - steps - zero
+        for zero in np.linspace(0.0, 1.0, 40, endpoint=False)
+    ]
+    assert np.std(ends) <= end_resolution(1.0, run=steps)
+    assert end_resolution(0.5, run=0.5 * steps) == pytest.approx(
+        0.5 * end_resolution(1.0, run=steps)
+    )
+    assert end_resolution(0.0, run=1.0) == 0.0
 
 
 def test_intervals_hold_the_mean_as_often_as_they_say():
