@@ -128,7 +128,9 @@ def _spring(ramps: Ramps, variants: Sequence[Ramps], angle_step: float) -> Sprin
     if min(compliances) <= 0.0:
         return None
     value = float(np.mean(compliances))
-    parts = [Component(slope_resolution(angle_step, high - low, value))]
+    # What the steps do to the mean is no better known than what chance does.
+    known = len(compliances) - 1
+    parts = [Component(slope_resolution(angle_step, high - low, value), known)]
     for variant in variants:
         changed = _compliances(Midlines.of(variant.whole), low, high)
         parts.append(Component(abs(float(np.mean(changed)) - value)))

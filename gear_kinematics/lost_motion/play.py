@@ -325,7 +325,9 @@ def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | 
     ]
     growth = Estimate.of_mean([float(fit[1]) for fit in fits])
     stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
-    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step))
+    # What the steps do to the mean is no better known than what chance does.
+    known = len(fits) - 1
+    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step), known)
     if growth.uncertainty is not None and growth.value > growth.uncertainty:
         return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
     means = np.average(lines.friction, axis=1, weights=weight**4)
