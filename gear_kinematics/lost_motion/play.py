@@ -12,8 +12,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from gear_kinematics.lost_motion.build_up import without_build_up
 from gear_kinematics.lost_motion.creep import transmitted
+from gear_kinematics.lost_motion.friction import friction_of, without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, Loop
 from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
@@ -24,7 +24,6 @@ from gear_kinematics.state.uncertainty import (
     Estimate,
     common_part,
     end_resolution,
-    resolution,
 )
 
 SOFTEST = 0.2
@@ -136,7 +135,7 @@ def play_model(
     lines = Midlines.of(loops)
     if not (np.ptp(lines.angle, axis=1).all() and np.ptp(lines.load, axis=1).all()):
         return None
-    friction, growth = _friction(lines, angle_step)
+    friction, growth = friction_of(lines, angle_step)
     lines, missing = without_build_up(lines)
     fitting = Fitting(lines)
     repeated = len(loops) > 1
@@ -312,28 +311,6 @@ def _verdict(
         return None, None, Cause.MODELS
     soft = any(middle.ratio and middle.most for middle in middles.values())
     return None, max(limit, angle_step), Cause.SOFT if soft else Cause.ZERO
-
-
-def _friction(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | None]:
-    """Return the friction without load, and its growth with the load if that is significant."""
-    load = np.abs(lines.load)
-    # What is at no load counts most.
-    weight = 1.0 - load / (1.01 * np.max(load, axis=1, keepdims=True))
-    fits = [
-        np.polynomial.polynomial.polyfit(x, f, 1, w=w)
-        for x, f, w in zip(load, lines.friction, weight, strict=True)
-    ]
-    growth = Estimate.of_mean([float(fit[1]) for fit in fits])
-    stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
-    # What the steps do to the mean is no better known than what chance does.
-    known = len(fits) - 1
-    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step), known)
-    if growth.uncertainty is not None and growth.value > growth.uncertainty:
-        return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
-    means = np.average(lines.friction, axis=1, weights=weight**4)
-    # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
-    uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
-    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
 
 
 def _candidates(

@@ -9,8 +9,8 @@ from judging_ramps import judge
 from simulated_ramps import SCENARIOS, STEP, Scenario, simulate, truth
 
 from gear_kinematics.lost_motion import models
-from gear_kinematics.lost_motion.build_up import without_build_up
 from gear_kinematics.lost_motion.encoder_step import Source, Step
+from gear_kinematics.lost_motion.friction import without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.recording import Loading

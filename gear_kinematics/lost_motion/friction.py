@@ -1,17 +1,18 @@
-"""Friction that has not built up yet after a reversal, taken out of middle lines.
+"""The friction on middle lines, and what of it has not built up yet after a reversal.
 
 P. R. Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1 (1968): after a
 reversal, friction approaches its value over some way. Until then one half of a loop lies nearer
 to the spring than the other, so that the friction and the load that are read are off by the same.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array
-from gear_kinematics.state.uncertainty import Estimate
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 _SHARES = np.linspace(0.1, 0.95, 18)
 """Loads, as shares of the greatest load of a loop, at which the friction is compared."""
@@ -19,6 +20,36 @@ _FAR, _NEAR = slice(0, 9), slice(-3, None)
 """Up to half of the load, where friction has built up, and above 80 %, where it may not have."""
 _CLEAR = 0.02
 """Share of the friction that is missing there, if it builds up visibly."""
+
+
+def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | None]:
+    """Return the friction without load, and its growth with the load if that is significant.
+
+    Args:
+        lines: middle lines.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+
+    Returns:
+        The friction, N·m, and the share of the load that adds to it, or None.
+    """
+    load = np.abs(lines.load)
+    # What is at no load counts most.
+    weight = 1.0 - load / (1.01 * np.max(load, axis=1, keepdims=True))
+    fits = [
+        np.polynomial.polynomial.polyfit(x, f, 1, w=w)
+        for x, f, w in zip(load, lines.friction, weight, strict=True)
+    ]
+    growth = Estimate.of_mean([float(fit[1]) for fit in fits])
+    stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
+    # What the steps do to the mean is no better known than what chance does.
+    known = len(fits) - 1
+    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step), known)
+    if growth.uncertainty is not None and growth.value > growth.uncertainty:
+        return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
+    means = np.average(lines.friction, axis=1, weights=weight**4)
+    # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
+    uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
+    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
 
 
 def without_build_up(lines: Midlines) -> tuple[Midlines, Estimate | None]:
