@@ -190,7 +190,9 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
             least = min(float(np.mean(c)) for c in compliances)
             if least * (high - low) <= still:
                 continue  # friction holds the gear throughout
-            reading = Component(slope_resolution(settings.angle_step, high - low, least))
+            steps = slope_resolution(settings.angle_step, high - low, least)
+            # What they do to the mean is no better known than what chance does.
+            reading = Component(steps, len(pulls) - 1)
             found.append(
                 Stiffness(
                     low, high, *(Estimate.of_mean(c, reading).inverse() for c in compliances)
