@@ -16,6 +16,7 @@ from geometry_msgs.msg import PoseArray
 from peer import DEPTH, next_order, obey_benchmark, peer, report, wait_for_end
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 from sensor_msgs.msg import JointState
@@ -113,7 +114,7 @@ def main() -> None:
     """Follow the orders until the standard input ends."""
     obey_benchmark()
     with peer('state_listener') as node, ExitStack() as stack, suppress(EOFError):
-        outputs = node.declare_parameter('outputs', ['output_state', 'body_poses']).value
+        outputs = node.declare_parameter('outputs', Parameter.Type.STRING_ARRAY).value
         topics = {topic: Answers() for topic in outputs}
         listener = stack.enter_context(Listener(node, {t: a.add for t, a in topics.items()}))
         report()

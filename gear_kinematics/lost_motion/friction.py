@@ -12,7 +12,7 @@ import numpy as np
 
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, resolution
 
 _SHARES = np.linspace(0.1, 0.95, 18)
 """Loads, as shares of the greatest load of a loop, at which the friction is compared."""
@@ -41,9 +41,7 @@ def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate 
     ]
     growth = Estimate.of_mean([float(fit[1]) for fit in fits])
     stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
-    # What the steps do to the mean is no better known than what chance does.
-    known = len(fits) - 1
-    reading = Component(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step), known)
+    reading = by_steps(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step), len(fits))
     if growth.uncertainty is not None and growth.value > growth.uncertainty:
         return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
     means = np.average(lines.friction, axis=1, weights=weight**4)

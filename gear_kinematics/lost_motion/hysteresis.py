@@ -12,6 +12,7 @@ from gear_kinematics.lost_motion.ramps import HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.state.uncertainty import (
     Component,
     Estimate,
+    by_steps,
     common_part,
     hidden_resolution,
     slope_resolution,
@@ -191,8 +192,7 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
             if least * (high - low) <= still:
                 continue  # friction holds the gear throughout
             steps = slope_resolution(settings.angle_step, high - low, least)
-            # What they do to the mean is no better known than what chance does.
-            reading = Component(steps, len(pulls) - 1)
+            reading = by_steps(steps, len(pulls))
             found.append(
                 Stiffness(
                     low, high, *(Estimate.of_mean(c, reading).inverse() for c in compliances)

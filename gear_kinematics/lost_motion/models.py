@@ -12,7 +12,7 @@ from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Ramps, find_ramps
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Component, Estimate, slope_resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, slope_resolution
 
 _LOADED = 0.5
 """Share of the greatest load from which on the stiffness of the spring is taken."""
@@ -128,9 +128,7 @@ def _spring(ramps: Ramps, variants: Sequence[Ramps], angle_step: float) -> Sprin
     if min(compliances) <= 0.0:
         return None
     value = float(np.mean(compliances))
-    # What the steps do to the mean is no better known than what chance does.
-    known = len(compliances) - 1
-    parts = [Component(slope_resolution(angle_step, high - low, value), known)]
+    parts = [by_steps(slope_resolution(angle_step, high - low, value), len(compliances))]
     for variant in variants:
         changed = _compliances(Midlines.of(variant.whole), low, high)
         parts.append(Component(abs(float(np.mean(changed)) - value)))

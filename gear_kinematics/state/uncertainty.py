@@ -195,6 +195,18 @@ def end_resolution(step: float, run: float) -> float:
     return resolution(step) * math.sqrt(4.0 / max(4.0, run / step)) if step else 0.0
 
 
+def by_steps(standard: float, repeats: int) -> Component:
+    """Give what the steps of an encoder add to the uncertainty of a mean over repeats.
+
+    It is no better known than what chance does to the mean.
+
+    Args:
+        standard: uncertainty by the steps.
+        repeats: number of the values whose mean is taken.
+    """
+    return Component(standard, repeats - 1)
+
+
 def common_part(errors: NDArray[np.float64]) -> float:
     """Root mean square of what is the same in all repeats, without what scatter adds to it.
 
