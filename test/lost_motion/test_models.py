@@ -15,6 +15,7 @@ from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.lost_motion.residuals import residual_tests
+from gear_kinematics.lost_motion.springs import SHAPES, Fitting, Gap, Model, Springs
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 
@@ -104,7 +105,7 @@ def dahl(missing: float, growth: float = 0.0) -> tuple[Midlines, np.ndarray]:
     angle = np.tile(load / 300.0, (5, 1))
     friction = 1.0 + growth * np.abs(load) - lacking
     read = load + np.sign(load) * lacking
-    return Midlines(angle, read, friction, np.zeros((5, 101)), np.zeros(5), 0.0), load
+    return Midlines(angle, read, friction, np.zeros((5, 101)), np.zeros(5), 0.0, 0.0), load
 
 
 def test_friction_that_builds_up_is_taken_out_of_the_load():
@@ -129,6 +130,44 @@ def test_friction_that_builds_up_leaves_the_play_right():
     assert abs(model.play.value - building.play) < model.play.uncertainty
     assert model.play.uncertainty < 0.5 * ARC_MINUTE
     assert 0.1 < model.missing.value < 0.4
+
+
+def test_the_steps_of_stick_slip_do_not_come_and_go_in_the_stiffness():
+    ramps, effects = models.settled(loading(scenario('stick-slip')))
+    spring = models.models_of(ramps, STEP, effects.lag).spring
+    assert spring.stiffness.value == pytest.approx(300.0, rel=2e-3)
+    assert spring.stiffness.uncertainty < 3e-3 * 300.0
+
+
+def test_a_gear_that_speeds_up_in_its_backlash_has_wider_intervals():
+    fast = scenario('inertia, play')
+    ramps, effects = models.settled(loading(fast))
+    model = models.models_of(ramps, STEP, effects.lag).plays[0]
+    assert model.more.value > 0.1
+    assert abs(model.play.value - fast.play) < model.play.uncertainty
+    assert abs(model.friction.value - fast.friction) < model.friction.uncertainty
+
+
+@pytest.mark.parametrize('name', ['play, linear spring', 'stick-slip'])
+def test_friction_that_is_the_same_within_the_backlash_adds_nothing(name):
+    ramps, effects = models.settled(loading(scenario(name)))
+    assert models.models_of(ramps, STEP, effects.lag).plays[0].more is None
+
+
+@pytest.mark.parametrize(
+    ('centre', 'gap'), [(0.0, 0.0), (0.001, 0.0), (0.002, 0.0103), (0.0, 0.003)]
+)
+def test_a_model_has_the_mean_of_the_angle_beyond_the_gap(centre, gap):
+    """Against the mean of many angles around each."""
+    angle = np.linspace(-0.02, 0.02, 41)[None]
+    near = angle[..., None] + 1e-3 * ((np.arange(2000) + 0.5) / 2000.0 - 0.5)
+    off = near - centre
+    beyond = np.sign(off) * np.maximum(np.abs(off) - 0.5 * gap, 0.0)
+    springs = Springs(np.array([centre]), np.array([gap]), np.array([[0.0, 3.0, 2.0]]))
+    lines = Midlines(angle, angle, angle, angle, np.zeros(1), 0.0, 0.0)
+    load = Fitting(lines).load(Model(SHAPES[0], Gap.PLAY), springs, angle)
+    expected = np.mean(np.where(beyond > 0.0, 3.0, 2.0) * beyond, axis=-1) / 0.02
+    assert load == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_soft_middle_is_a_bound_and_says_why():

@@ -2,7 +2,8 @@
 
 The load on the spring is the state: friction holds it until the torque differs from it by more
 than the friction, and then lets it follow just so far. Play is a step of the spring's curve, a
-table. All recordings of a scenario step together: arrays are (time, recordings).
+table. Gears with inertia move by Newton's law instead, and speed up in their play. All recordings
+of a scenario step together: arrays are (time, recordings).
 """
 
 import math
@@ -63,6 +64,10 @@ class Scenario:
     """N·m over which friction builds up after a reversal."""
     slip: float = 0.0
     """Share of the friction by which it falls once the gear moves (stick-slip)."""
+    inertia: float = 0.0
+    """kg·m², at the output."""
+    damping: float = 0.0
+    """N·m·s/rad; of gears with inertia."""
     drift: float = 0.0
     """rad/s, of the encoder."""
     thermal: tuple[float, float] = (0.0, 60.0)
@@ -102,6 +107,8 @@ SCENARIOS = (
         load_friction=0.05,
         drift=2e-5,
     ),
+    Scenario('inertia, no play', contained=False, inertia=0.01, damping=0.5),
+    Scenario('inertia, play', contained=False, play=0.01, inertia=0.01, damping=0.5),
 )
 
 
@@ -179,6 +186,8 @@ def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
     loads = np.linspace(-1.5 * LARGE, 1.5 * LARGE, 240001)
     twists = s.spring(loads) + 0.5 * s.play * np.sign(loads)
     strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(LOOPS), count)))
+    if s.inertia:
+        return _moved(s, torque, strength, lambda twist: np.interp(twist, twists, loads))
     loop = _loops_of_rows()
     twist = np.zeros(count)
     load = np.zeros(count)
@@ -202,6 +211,29 @@ def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
         for j, (share, constant) in enumerate(s.creeps):
             late[j] += (share * s.spring(load) - late[j]) * -math.expm1(-INTERVAL / constant)
         angles[k] = twist + late.sum(axis=0)
+    return angles
+
+
+def _moved(s: Scenario, torque: np.ndarray, strength: np.ndarray, spring: Spring) -> np.ndarray:
+    """Angle of a gear with inertia, and friction by Haessig and Friedland's bristles."""
+    substeps, bristle = 10, 2e4  # N·m/rad
+    step = INTERVAL / substeps
+    loop = _loops_of_rows()
+    damping = s.damping + math.sqrt(bristle * s.inertia)  # of the bristles as well
+    angle, speed, bent = np.zeros((3, strength.shape[1]))
+    angles = np.empty((len(torque), len(angle)))
+    for k in range(len(torque)):
+        angles[k] = angle
+        most = strength[loop[k]] / bristle
+        ahead = np.interp(k + np.arange(substeps) / substeps, np.arange(len(torque)), torque)
+        for applied in ahead:
+            before = bent
+            bent = np.clip(bent + step * speed, -most, most)
+            sticking = bent != before
+            net = applied - spring(angle) - bristle * bent
+            net -= np.where(sticking, damping, s.damping) * speed
+            speed = speed + step / s.inertia * net
+            angle = angle + step * speed
     return angles
 
 
