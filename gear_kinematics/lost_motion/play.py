@@ -153,21 +153,18 @@ def play_model(
     if not stiffness:
         return None
     rest = lines.load - fitting.load(chosen, springs, lines.angle)
-    off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0))
     half = 0.5 * float(np.mean(springs.gap))
+    off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0)) - half
     corner = lines.blur / stiffness  # corners are rounded
-    beyond = off > half + corner
-    more = more_within(lines, off < half - corner, beyond)
+    beyond = off > corner
+    more = more_within(lines, off < -corner, beyond)
+    excess = more.value if more else 0.0
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
-        hidden = math.inf
-        if beyond.any():
-            # The same misfit is at both ends of the gap, but each is found by readings of its own.
-            misfit = _MISFIT * common_part(rest[:, beyond]) / stiffness
-            reading = math.sqrt(2.0) * end_resolution(angle_step, lines.reach - half)
-            hidden = math.hypot(misfit, reading, 2.0 * (more.value if more else 0.0) / stiffness)
+        reading = end_resolution(angle_step, lines.reach - half)
+        hidden = _hidden(rest[:, beyond] / stiffness, excess / stiffness, reading)
         play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
@@ -179,7 +176,7 @@ def play_model(
         play,
         limit,
         cause,
-        friction.joined(Component(late), Component(more.value / math.sqrt(3.0) if more else 0.0)),
+        friction.joined(Component(late), Component(excess / math.sqrt(3.0))),
         growth,
         missing,
         more,
@@ -190,6 +187,20 @@ def play_model(
         angles + float(np.mean(lines.centre)),
         np.maximum.accumulate(np.mean(curves, axis=0)),
     )
+
+
+def _hidden(misfit: Array, excess: float, reading: float) -> float:
+    """Standard uncertainty of the gap by what repeats do not show, rad.
+
+    Args:
+        misfit: (loops, angles), rad, what the model leaves beyond the gap.
+        excess: rad, by which the friction within the gap moves each of its ends.
+        reading: rad, standard uncertainty of an end by the steps of the encoder.
+    """
+    if not misfit.size:
+        return math.inf
+    # Both ends have the same misfit and the same excess, but readings of their own.
+    return math.hypot(_MISFIT * common_part(misfit), 2.0 * excess, math.sqrt(2.0) * reading)
 
 
 def _single(gap: float) -> tuple[Estimate | None, None, Cause]:
