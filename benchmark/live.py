@@ -8,8 +8,10 @@ reliably at a steady rate, the listener takes output_state and body_poses, or on
 queues of both hold more than ever waits, so that every loss is the node's. Counting starts when
 probes have been answered on all topics. The other nodes do the same job as the tutorials teach it:
 one in Python and, where rclcpp is installed, one in C++, with the default profile of the
-middleware and with that of this node. All have default parameters. They take turns, so that what
-else the machine does befalls all of them; values and ratios are medians over the rounds.
+middleware and with that of this node. All have default parameters. What the driver sends goes
+straight to a listener as well: what a node adds to the median of that is its own. They take turns,
+so that what else the machine does befalls all of them; values and ratios are medians over the
+rounds.
 """
 
 import argparse
@@ -18,7 +20,7 @@ import math
 import statistics
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import contextmanager
 from typing import Any, NamedTuple
 
 from compiled import NotBuiltError, rclcpp_node
@@ -71,6 +73,8 @@ class Round(NamedTuple):
     """By node; the first one is this node."""
     empty_start: float
     """s, from the start of the process of an empty node to its first message."""
+    direct: float
+    """s, median of the time from the driver to a listener, without a node between them."""
 
 
 class Target(NamedTuple):
@@ -104,8 +108,7 @@ def main() -> None:
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
     rounds: dict[int, list[Round]] = {rate: [] for rate in options.rates}
-    topics = ('--ros-args', '-p', f'outputs:=[{",".join(options.outputs)}]')
-    listener = (*program('state_listener.py'), *topics)
+    listener = _listener(*options.outputs)
     with private_surroundings() as surroundings:
         nodes = _nodes(surroundings)
         for _ in range(options.rounds):
@@ -114,7 +117,9 @@ def main() -> None:
                     name: _run(command, listener, rate, options.seconds, around)
                     for name, (command, around) in nodes.items()
                 }
-                rounds[rate].append(Round(runs, _start_of_empty_node(surroundings)))
+                empty_start = _start_of_empty_node(surroundings)
+                direct = _direct(rate, options.seconds, surroundings)
+                rounds[rate].append(Round(runs, empty_start, direct))
     results = {rate: _summary(rounds[rate]) for rate in options.rates}
     start = _start([one for at_rate in rounds.values() for one in at_rate])
     targets = list(_targets(results, start))
@@ -142,6 +147,12 @@ def _nodes(surroundings: Surroundings) -> dict[str, tuple[Sequence[str], Surroun
     }
 
 
+def _listener(*topics: str) -> tuple[str, ...]:
+    """Give the command that runs a listener to topics."""
+    arguments = '--ros-args', '-p', f'outputs:=[{",".join(topics)}]'
+    return *program('state_listener.py'), *arguments
+
+
 def _run(
     command: Sequence[str],
     listening: Sequence[str],
@@ -149,23 +160,48 @@ def _run(
     seconds: float,
     surroundings: Surroundings,
 ) -> Run:
-    count = max(1, round(rate * seconds))
-    with ExitStack() as programs:
-        driver, listener = (
-            programs.enter_context(Program(peer, surroundings.with_profile(ANNOUNCING)))
-            for peer in (program('rotor_driver.py'), listening)
-        )
-        for peer in (driver, listener):
-            peer.report()
-        node = programs.enter_context(Program(command, surroundings))
+    with (
+        _peers(listening, surroundings) as (driver, listener),
+        Program(command, surroundings) as node,
+    ):
         start = (listener.report()['heard'] - node.started) / 1e9
-        listener.tell(count=count, quiet=_QUIET)
-        listener.report()
         before = node.cpu_time()
-        driver.tell(rate=rate, count=count, allowed=count, counted=False)
-        sent, answers = driver.report()['sent'], listener.report()
+        sent, answers = _drive(driver, listener, rate, seconds)
         cpu = (node.cpu_time() - before) / answers['answered']
         return Run(sent=sent, cpu=cpu, start=start, memory=node.memory(), **answers)
+
+
+def _direct(rate: int, seconds: float, surroundings: Surroundings) -> float:
+    with _peers(_listener('rotor_state'), surroundings) as (driver, listener):
+        listener.report()
+        _, answers = _drive(driver, listener, rate, seconds)
+        return float(answers['p50'])
+
+
+@contextmanager
+def _peers(
+    listening: Sequence[str], surroundings: Surroundings
+) -> Iterator[tuple[Program, Program]]:
+    """Run a driver and a listener, which are ready."""
+    announcing = surroundings.with_profile(ANNOUNCING)
+    with (
+        Program(program('rotor_driver.py'), announcing) as driver,
+        Program(listening, announcing) as listener,
+    ):
+        for peer in (driver, listener):
+            peer.report()
+        yield driver, listener
+
+
+def _drive(
+    driver: Program, listener: Program, rate: int, seconds: float
+) -> tuple[int, dict[str, Any]]:
+    """Have the driver drive; returns how many messages it sent, and the listener's report."""
+    count = max(1, round(rate * seconds))
+    listener.tell(count=count, quiet=_QUIET)
+    listener.report()
+    driver.tell(rate=rate, count=count, allowed=count, counted=False)
+    return driver.report()['sent'], listener.report()
 
 
 def _start_of_empty_node(surroundings: Surroundings) -> float:
@@ -185,6 +221,9 @@ def _summary(rounds: Sequence[Round]) -> dict[str, dict[str, Any]]:
             field: statistics.median(getattr(run, field) for run in runs)
             for field in Run._fields[2:]
         }
+        summary[name]['added'] = statistics.median(
+            one.runs[name].p50 - one.direct for one in rounds
+        )
         summary[name]['delivered'] = sum(r.answered for r in runs) / sum(r.sent for r in runs)
     summary['ratio'] = {
         other: {
@@ -193,6 +232,7 @@ def _summary(rounds: Sequence[Round]) -> dict[str, dict[str, Any]]:
             )
             for field in Run._fields[2:]
         }
+        | {'added': summary[this]['added'] / summary[other]['added']}
         for other in others
     }
     return summary
@@ -231,6 +271,7 @@ def _print(
         for field, factor, unit in (
             ('cpu', 1e6, 'µs'),
             ('p50', 1e6, 'µs'),
+            ('added', 1e6, 'µs'),
             ('p99', 1e6, 'µs'),
             ('max', 1e6, 'µs'),
             ('delivered', 100.0, '%'),

@@ -25,6 +25,7 @@ _TYPES = {
     'output_state': JointState,
     'body_poses': PoseArray,
     'mechanism_joint_states': JointState,
+    'rotor_state': JointState,
 }
 _SECOND = 1_000_000_000  # ns
 _PROBE_SECOND = bytes(4)  # of the stamps of probes, as messages have it
