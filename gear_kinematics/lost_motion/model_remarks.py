@@ -46,7 +46,7 @@ def _effects(found: HysteresisReport) -> Iterator[str]:
     if lag := found.effects.lag:
         yield (
             f'The angle was read {plus_minus(lag, 1e3)} ms later than the torque. This lag has '
-            'been taken out of the recording.'
+            'been taken out of the recording. Inertia and viscous friction look the same.'
         )
     for drift, figures in zip(found.effects.drifts, found.figures, strict=True):
         if drift:
