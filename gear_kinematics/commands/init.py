@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--wait',
         type=arguments.positive,
-        default=3.0,
+        default=4.0,  # a driver may find this listener only when it announces itself, every 3 s
         metavar='S',
         help='time to listen (default: %(default)g)',
     )

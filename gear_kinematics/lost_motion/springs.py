@@ -114,6 +114,16 @@ class Springs(NamedTuple):
     """(loops, parameters)."""
 
 
+class Angles(NamedTuple):
+    """Angles of loops as shares of half of a loop's, (places, loops, angles)."""
+
+    off: Array
+    """From the middle of the gap."""
+    above: Array
+    """Beyond the gap on the positive side; 0 elsewhere. Then those on the negative side."""
+    below: Array
+
+
 class Fitting:
     """Fits models to middle lines."""
 
@@ -122,6 +132,7 @@ class Fitting:
         self._angle, self._load = lines.angle, lines.load
         self._reach = lines.reach
         self._each: dict[Model, Springs] = {}
+        self._first: dict[bool, tuple[Array, Angles]] = {}
 
     def fit(self, model: Model) -> Fit | None:
         """Fit a model to all loops, and each loop by the others; None if it cannot be.
@@ -148,7 +159,7 @@ class Fitting:
         damping = np.full(loops, 1e-3)
         step = 1e-4 * self._reach
         for _ in range(_ITERATIONS):
-            moved = [self._columns(model, *_shifted(places, k, step)) for k in free]
+            moved = [_columns(model, self.angles(*_shifted(places, k, step))) for k in free]
             slopes = [
                 np.einsum('knp,kp->kn', (columns[0] - state.columns) / step, state.factors)
                 for columns in moved
@@ -166,13 +177,13 @@ class Fitting:
     def load(self, model: Model, springs: Springs, angle: Array) -> Array:
         """Loads of the springs of loops, (loops, angles), N·m, at angles of the same shape."""
         places = springs.centre[None], springs.gap[None]
-        columns = _columns(model, angle[None], *places, self._reach)
+        columns = _columns(model, _angles(angle[None], *places, self._reach))
         load: Array = np.einsum('knp,kp->kn', columns[0], springs.factors)
         return load
 
-    def normal(self, model: Model, centre: Array, gap: Array) -> tuple[Array, Array]:
+    def normal(self, model: Model, angles: Angles) -> tuple[Array, Array]:
         """Return normal equations for each place and loop: matrices and right sides."""
-        columns = self._columns(model, centre[:, None], gap[:, None])
+        columns = _columns(model, angles)
         transposed = columns.swapaxes(2, 3)
         return transposed @ columns, (transposed @ self._load[None, :, :, None])[..., 0]
 
@@ -188,26 +199,30 @@ class Fitting:
         )
         return factors, np.where(_rises(model, factors), cost, np.inf)
 
-    def places(self, model: Model) -> tuple[Array, Array]:
-        """Centres and gaps to try first, rad."""
-        return _CENTRES * self._reach, (_GAPS if model.gap else np.zeros(1)) * self._reach
+    def first(self, model: Model) -> tuple[Array, Angles]:
+        """Return the places to try first, centres and gaps in rad, and the angles there."""
+        wide = bool(model.gap)
+        if wide not in self._first:  # the same for all shapes
+            places = self._reach * _grid(_CENTRES, _GAPS if wide else np.zeros(1))
+            self._first[wide] = places, self.angles(*places[..., None])
+        return self._first[wide]
+
+    def angles(self, centre: Array, gap: Array) -> Angles:
+        """Return the angles of the loops at places, (places, loops) or (places, 1), rad."""
+        return _angles(self._angle[None], centre, gap, self._reach)
 
     @property
     def squares(self) -> Array:
         """(loops,), sums of the squares of the loads."""
-        squares: Array = np.sum(self._load**2, axis=1)
-        return squares
+        return np.asarray(np.sum(self._load**2, axis=1))
 
     @property
     def levels(self) -> int:
         """Number of angles of a loop."""
         return int(self._load.shape[1])
 
-    def _columns(self, model: Model, centre: Array, gap: Array) -> Array:
-        return _columns(model, self._angle[None], centre, gap, self._reach)
-
     def _one_by_one(self, model: Model, places: Array) -> '_State':
-        columns = self._columns(model, places[:1], places[1:])[0]
+        columns = _columns(model, self.angles(places[:1], places[1:]))[0]
         transposed = columns.swapaxes(1, 2)
         factors = _solved(transposed @ columns, (transposed @ self._load[:, :, None])[..., 0])
         rest = self._load - np.einsum('knp,kp->kn', columns, factors)
@@ -228,14 +243,13 @@ class _Search:
 
     def __init__(self, fitting: Fitting, model: Model) -> None:
         self._fitting, self._model = fitting, model
-        centres, gaps = fitting.places(model)
-        self._steps = [float(np.ptp(values[:2])) for values in (centres, gaps)]
         self._parts: list[tuple[Array, Array, Array]] = []
-        self._try(centres, gaps)
+        places, angles = fitting.first(model)
+        self._steps = [float(np.ptp(np.unique(values)[:2])) for values in places]
+        self._try(places, angles)
 
-    def _try(self, centres: Array, gaps: Array) -> None:
-        places = np.array(np.meshgrid(centres, gaps)).reshape(2, -1)
-        self._parts.append((*self._fitting.normal(self._model, *places), places.T))
+    def _try(self, places: Array, angles: Angles) -> None:
+        self._parts.append((*self._fitting.normal(self._model, angles), places.T))
 
     def refine(self) -> bool:
         """Try places around the best one; returns whether there is one."""
@@ -249,7 +263,8 @@ class _Search:
         centres, gaps = (
             np.unique(value + step * _FINER) for value, step in zip(best, self._steps, strict=True)
         )
-        self._try(centres, np.unique(np.maximum(gaps, 0.0)))
+        nearby = _grid(centres, np.unique(np.maximum(gaps, 0.0)))
+        self._try(nearby, self._fitting.angles(*nearby[..., None]))
         self._steps = [0.3 * step for step in self._steps]
         return True
 
@@ -271,26 +286,32 @@ class _Search:
         return Fit(np.array(errors) / fitting.levels, centre, gap)
 
 
-def _columns(model: Model, angle: Array, centre: Array, gap: Array, reach: float) -> Array:
-    """Return what the factors of a model multiply, (places, loops, angles, parameters)."""
+def _grid(centres: Array, gaps: Array) -> Array:
+    return np.array(np.meshgrid(centres, gaps)).reshape(2, -1)
+
+
+def _angles(angle: Array, centre: Array, gap: Array, reach: float) -> Angles:
     off = angle - centre[..., None]
     half, width = 0.5 * gap[..., None], np.mean(np.diff(angle), axis=-1, keepdims=True)
     above, below = _mean_beyond(off - half, width), -_mean_beyond(-off - half, width)
-    above, below = above / reach, below / reach
-    beyond = above + below
-    columns = [np.ones_like(beyond), above, below]
+    return Angles(off / reach, above / reach, below / reach)
+
+
+def _columns(model: Model, angles: Angles) -> Array:
+    """Return what the factors of a model multiply, (places, loops, angles, parameters)."""
+    beyond = angles.above + angles.below
+    columns = [np.ones_like(beyond), angles.above, angles.below]
     if model.shape.function:
         columns.append(model.shape.function(beyond))
     if model.gap == Gap.SOFT:
-        columns.append(off / reach - beyond)
+        columns.append(angles.off - beyond)
     return np.stack(columns, -1)
 
 
 def _mean_beyond(angle: Array, width: Array) -> Array:
     """Mean of the positive part of an angle over a width around it."""
     near = np.clip(angle, -0.5 * width, 0.5 * width)
-    mean: Array = (near + 0.5 * width) ** 2 / (2.0 * width) + np.maximum(angle - near, 0.0)
-    return mean
+    return np.asarray((near + 0.5 * width) ** 2 / (2.0 * width) + np.maximum(angle - near, 0.0))
 
 
 def _rises(model: Model, factors: Array) -> NDArray[np.bool_]:

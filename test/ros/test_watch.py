@@ -294,7 +294,7 @@ def listening(monkeypatch, tmp_path):
             ['--topic', 'motor/joint_state'],
             'no topic /motor/joint_state of type JointState; did you mean `/motor/joint_states`?',
         ),
-        (['--topic', '/odd'], 'no message with joints in 3 s'),
+        (['--topic', '/odd'], 'no message with joints in 4 s'),
         (['-o', 'nowhere/a.yaml', '--joint', 'm1'], 'nowhere/a.yaml: No such file or directory'),
     ],
 )
