@@ -172,6 +172,7 @@ def _run(
 
 
 def _direct(rate: int, seconds: float, surroundings: Surroundings) -> float:
+    """Median time from the driver to a listener, s."""
     with _peers(_listener('rotor_state'), surroundings) as (driver, listener):
         listener.report()
         _, answers = _drive(driver, listener, rate, seconds)

@@ -1,4 +1,4 @@
-"""The friction on middle lines, and what of it has not built up yet after a reversal.
+"""The friction on middle lines: what of it has not built up yet, and what a gap adds to it.
 
 P. R. Dahl, A solid friction model, Aerospace Corporation TOR-0158(3107-18)-1 (1968): after a
 reversal, friction approaches its value over some way. Until then one half of a loop lies nearer
@@ -19,10 +19,10 @@ _SHARES = np.linspace(0.1, 0.95, 18)
 """Loads, as shares of the greatest load of a loop, at which the friction is compared."""
 _FAR, _NEAR = slice(0, 9), slice(-3, None)
 """Up to half of the load, where friction has built up, and above 80 %, where it may not have."""
-_HALF_DIFFERENCE = math.sqrt(0.5)
-"""Standard uncertainty of half of the difference of two readings, over that of a reading."""
 _CLEAR = 0.02
 """Share of the friction that is missing there, if it builds up visibly."""
+_HALF_DIFFERENCE = math.sqrt(0.5)
+"""Standard uncertainty of half of the difference of two readings, over that of a reading."""
 
 
 def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate | None]:
@@ -42,13 +42,13 @@ def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate 
         np.polynomial.polynomial.polyfit(x, f, 1, w=w)
         for x, f, w in zip(load, lines.friction, weight, strict=True)
     ]
-    growth = Estimate.of_mean([float(fit[1]) for fit in fits])
+    growth = _significant(Estimate.of_mean([float(fit[1]) for fit in fits]))
     stiffness = float(np.mean(np.ptp(lines.load, axis=1) / np.ptp(lines.angle, axis=1)))
     # The gear is read at so many steps of its encoder, but between the same samples of the torque.
     angles = max(1.0, 2.0 * lines.reach / angle_step) if angle_step else 1.0
     angle = _HALF_DIFFERENCE * stiffness * resolution(angle_step) / math.sqrt(angles)
     reading = by_steps(math.hypot(angle, _between_samples(lines)), len(fits))
-    if growth.uncertainty is not None and growth.value > growth.uncertainty:
+    if growth:
         return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
     means = np.average(lines.friction, axis=1, weights=weight**4)
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
@@ -78,7 +78,11 @@ def more_within(
         return None
     friction = lines.friction
     more = np.mean(friction[:, within], axis=1) - np.mean(friction[:, beyond], axis=1)
-    found = Estimate.of_mean(more.tolist(), Component(_between_samples(lines)))
+    return _significant(Estimate.of_mean(more.tolist(), Component(_between_samples(lines))))
+
+
+def _significant(found: Estimate) -> Estimate | None:
+    """Return an estimate whose interval lies above zero, else None."""
     return found if found.uncertainty is not None and found.value > found.uncertainty else None
 
 

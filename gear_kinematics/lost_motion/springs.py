@@ -292,7 +292,7 @@ def _grid(centres: Array, gaps: Array) -> Array:
 
 def _angles(angle: Array, centre: Array, gap: Array, reach: float) -> Angles:
     off = angle - centre[..., None]
-    half, width = 0.5 * gap[..., None], np.mean(np.diff(angle), axis=-1, keepdims=True)
+    half, width = 0.5 * gap[..., None], np.ptp(angle, -1, keepdims=True) / (angle.shape[-1] - 1)
     above, below = _mean_beyond(off - half, width), -_mean_beyond(-off - half, width)
     return Angles(off / reach, above / reach, below / reach)
 
