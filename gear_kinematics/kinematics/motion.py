@@ -226,8 +226,9 @@ def solve(
         np.add(TURN * output_turns, output_rest, out=output[0, part])
         positions = form.branches(rest, output_rest, np)
         for k, position in enumerate(positions):
-            satellite[0, k, :, part] = position.satellite
-            oldham[0, k, :, part] = position.oldham
+            for axis in (0, 1):  # one by one: numpy would first copy a pair into an array
+                satellite[0, k, axis, part] = position.satellite[axis]
+                oldham[0, k, axis, part] = position.oldham[axis]
             satellite_slide[0, k, part] = position.satellite_slide
             arm_slide[0, k, part] = position.arm_slide
         if not moving:

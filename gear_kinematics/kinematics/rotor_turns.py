@@ -89,7 +89,7 @@ def nearest_turn(turns: Any, rest: Any, xp: ModuleType) -> tuple[Any, Any]:
 
 def largest(values: NDArray[np.float64]) -> np.float64:
     """Return the largest magnitude in an array; NaN if it contains one, 0 if it is empty."""
-    magnitude: np.float64 = np.abs(values).max(initial=0.0)
+    magnitude: np.float64 = max(values.max(initial=0.0), -values.min(initial=0.0))
     return magnitude
 
 
