@@ -1,7 +1,8 @@
 """Models of the ramps of a recording: the spring, its play and friction, and what time does."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +13,12 @@ from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, slope_resolution
+from gear_kinematics.state.uncertainty import (
+    Component,
+    Estimate,
+    by_steps,
+    mean_slope_resolution,
+)
 
 _LOADED = 0.5
 """Share of the greatest load from which on the stiffness of the spring is taken."""
@@ -138,7 +144,7 @@ def _spring(
         return None
     likely = [own, *(_compliances(Midlines.of(other.whole), low, high) for other in others)]
     loops = np.mean(likely, axis=0)
-    steps = slope_resolution(angle_step, high - low, float(np.mean(loops)))
+    steps = mean_slope_resolution(angle_step, high - low, float(np.mean(loops)))
     parts = [
         by_steps(steps, len(loops)),
         Component(float(np.std(np.mean(likely, axis=1)))),
@@ -146,7 +152,22 @@ def _spring(
     if steeper:
         more = _compliances(Midlines.of(steeper.whole), low, high)
         parts.append(Component(abs(float(np.mean(more - own)))))
-    return Spring(low, high, Estimate.of_mean(loops.tolist(), *parts).inverse())
+    return Spring(
+        low, high, mean_of_loops(loops, completed=ramps.completed).joined(*parts).inverse()
+    )
+
+
+def mean_of_loops(loops: Array, *, completed: bool) -> Estimate:
+    """Return the mean of loops, of which two have a quarter in common if one was completed.
+
+    With σ² of each of n loops and the covariance σ²/4 of these two, the variance of the mean is
+    σ² (1 + 1/(2 n))/n, and that of the sample is expected to be σ² (1 - 1/(2 n (n - 1))).
+    """
+    mean, count = Estimate.of_mean(loops.tolist()), len(loops)
+    if not completed or mean.standard is None:
+        return mean
+    hidden = (1.0 + 0.5 / count) / (1.0 - 0.5 / (count * (count - 1)))
+    return replace(mean, standard=math.sqrt(hidden) * mean.standard)
 
 
 def _compliances(lines: Midlines, low: float, high: float) -> Array:

@@ -132,6 +132,8 @@ class Ramps:
     """All half loops of the recording in order of time, also those of other amplitudes."""
     whole: tuple[Loop, ...]
     """The loops, where a recording ends before one is closed with the end of the one before it."""
+    completed: bool
+    """Whether one was closed so; it has about a quarter in common with the one before it."""
 
     def halves(self) -> Iterator[HalfLoop]:
         """Yield the half loops of all loops."""
@@ -182,12 +184,15 @@ def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLo
     largest = group[-1].amplitude
     alike = [b for b in halves if smallest / _ALIKE <= abs(b.end) <= largest * _ALIKE]
     rises, falls = ([b for b in alike if b.rising == up] for up in (True, False))
+    own = tuple(loop for loop in loops if loop in group)
+    whole = tuple(_whole(loop, halves) for loop in own)
     return Ramps(
         float(np.mean([loop.amplitude for loop in group])),
-        tuple(loop for loop in loops if loop in group),
+        own,
         tuple(zip(rises, falls, strict=False)),
         tuple(halves),
-        tuple(_whole(loop, halves) for loop in loops if loop in group),
+        whole,
+        whole != own,
     )
 
 

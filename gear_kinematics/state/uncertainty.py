@@ -183,6 +183,22 @@ def slope_resolution(step: float, run: float, slope: float) -> float:
     return resolution(step) / run * math.sqrt(12.0 / max(6.0, abs(slope) * run / step))
 
 
+def mean_slope_resolution(step: float, run: float, slope: float) -> float:
+    """Standard uncertainty of the slope of means by the steps of an encoder.
+
+    Means contain all errors of a step, which cancel, but for the steps at the ends of the line;
+    over less than six steps, the line counts as one through its ends.
+
+    Args:
+        step: of a reading.
+        run: length of the line on the other axis.
+        slope: of the line, in the unit of the step over that of the run.
+    """
+    if not step:
+        return 0.0
+    return resolution(step) / run * math.sqrt(2.0) * min(1.0, 6.0 * step / abs(slope * run))
+
+
 def end_resolution(step: float, run: float) -> float:
     """Standard uncertainty of the end of a line by the steps of an encoder, in their unit.
 

@@ -23,6 +23,17 @@ ARC_MINUTE = math.radians(1.0 / 60.0)
 FEW = SCENARIOS[1:14:3]  # benchmark/lost_motion.py has them all
 
 
+def test_the_mean_of_loops_holds_although_two_share_a_quarter():
+    quarters = np.random.default_rng(5).normal(3.0, 0.7, (2000, 3, 4))
+    quarters[:, 2, 3] = quarters[:, 1, 3]
+    means = [models.mean_of_loops(loops, completed=True) for loops in quarters.mean(axis=2)]
+    held = sum(abs(mean.value - 3.0) <= mean.uncertainty for mean in means)
+    # Within four standard deviations of a binomial count; without the quarter, 93 % hold.
+    assert abs(held - 0.95 * len(means)) < 4 * math.sqrt(len(means) * 0.95 * 0.05)
+    single = models.mean_of_loops(np.array([3.0]), completed=True)
+    assert (single.value, single.standard) == (3.0, None)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize('scenario', FEW, ids=lambda scenario: scenario.name)
 def test_figures_hold(scenario: Scenario):

@@ -53,6 +53,17 @@ def test_ramps_are_told_apart_by_their_amplitude(noise):
     assert starts == [[-1, 10], [-10, 10]]
 
 
+def test_only_the_loops_at_the_end_of_a_recording_are_completed():
+    torque = ramps((4.0, 300), (4.0, 300), (40.0, 900), (40.0, 900))
+    small, large = find_ramps(torque, creep(GEAR, torque))
+    assert (small.completed, large.completed) == (False, True)
+    assert small.whole == small.loops
+    assert large.whole[0] == large.loops[0]
+    first, last = (loop.rise for loop in large.whole)
+    end = round(len(last.torque) / 4)  # half of the rise: a quarter of the loop
+    np.testing.assert_array_equal(last.angle[-end:], first.angle[-end:])
+
+
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_first_side_does_not_matter(sign):
     torque = sign * ramps((5.0, 200), (5.0, 200))

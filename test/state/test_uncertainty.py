@@ -11,6 +11,7 @@ from gear_kinematics.state.uncertainty import (
     Estimate,
     end_resolution,
     hidden_resolution,
+    mean_slope_resolution,
     resolution,
     slope_resolution,
     student_t,
@@ -146,6 +147,23 @@ def test_slope_over_few_steps_is_that_between_two_readings():
         math.sqrt(2.0) * resolution(0.3) / 2.0
     )
     assert slope_resolution(0.0, run=2.0, slope=0.1) == 0.0
+
+
+@pytest.mark.parametrize('steps', [3.0, 20.0, 130.0])
+def test_slope_of_means_is_as_uncertain_as_the_steps_at_its_ends(steps):
+    """Of the steps, each of 100 means contains ten readings, at any place of the steps."""
+    x = np.linspace(0.0, 1.0, 1000)
+    means = [
+        np.mean((np.round(steps * x + zero) - steps * x).reshape(100, 10), axis=1)
+        for zero in np.linspace(0.0, 1.0, 40, endpoint=False)
+    ]
+    slopes = np.polynomial.polynomial.polyfit(
+        x.reshape(100, 10).mean(axis=1), np.transpose(means), 1
+    )[1]
+    stated = mean_slope_resolution(0.5, run=2.0, slope=-0.25 * steps)
+    assert 0.2 * stated <= 0.25 * np.std(slopes) <= stated
+    assert stated <= slope_resolution(0.5, run=2.0, slope=-0.25 * steps)
+    assert mean_slope_resolution(0.0, run=2.0, slope=0.1) == 0.0
 
 
 @pytest.mark.parametrize('steps', [5.0, 20.0, 130.0])
