@@ -1,11 +1,11 @@
-"""An encoder that reads later than the torque: its corners at reversals come late."""
+"""An angle that reverses later than the torque, by a late encoder or by the gear's inertia."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from gear_kinematics.lost_motion.ramps import Array, Ramps
-from gear_kinematics.state.uncertainty import Estimate
+from gear_kinematics.state.uncertainty import Component, Estimate
 
 STANDSTILL = 1.5
 """The torque goes back by this times the friction while the gear certainly stands still."""
@@ -18,6 +18,9 @@ _ROWS = 10
 _ITERATIONS = 6
 _NEAR = 0.3
 """Share of the window within which a corner has to be."""
+_OF_GEAR = 0.01
+"""s, up to which it may well be the gear that is late. Its inertia moves it on after a reversal,
+for about an eighth of the period with which it swings on its spring: at 10 ms, that is 12 Hz."""
 
 
 def encoder_lag(
@@ -45,6 +48,16 @@ def encoder_lag(
             if late is not None:
                 found.append(late)
     return Estimate.of_mean(found) if len(found) > 1 else None
+
+
+def of_encoder(lag: Estimate) -> Estimate:
+    """Return how much of a lag is ascribed to the encoder, s: half of one that may be the gear's.
+
+    Its uncertainty contains that it may be all or nothing of that.
+    """
+    if lag.value > _OF_GEAR:
+        return lag
+    return lag.times(0.5).joined(Component(0.5 * lag.value))
 
 
 def _late(time: Array, torque: Array, angle: Array, span: float) -> float | None:

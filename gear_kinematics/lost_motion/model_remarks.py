@@ -44,10 +44,17 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
 
 def _effects(found: HysteresisReport) -> Iterator[str]:
     if lag := found.effects.lag:
-        yield (
-            f'The angle was read {plus_minus(lag, 1e3)} ms later than the torque. This lag has '
-            'been taken out of the recording. Inertia and viscous friction look the same.'
+        late = (
+            f'The angle reverses {plus_minus(lag, 1e3)} ms later than the torque: its encoder is '
+            'late, or inertia moves the gear on.'
         )
+        if found.effects.removed == lag:
+            yield f'{late} This has been taken out as a lag of the encoder.'
+        else:
+            yield (
+                f'{late} Half of this has been taken out; the ± of hysteresis and friction '
+                'contain both.'
+            )
     for drift, figures in zip(found.effects.drifts, found.figures, strict=True):
         if drift:
             yield (

@@ -8,7 +8,7 @@ import numpy as np
 
 from gear_kinematics.lost_motion.creep import Creep, Loads, creep_of, without_creep
 from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
-from gear_kinematics.lost_motion.lag import encoder_lag, without_lag
+from gear_kinematics.lost_motion.lag import encoder_lag, of_encoder, without_lag
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
@@ -43,7 +43,9 @@ class Effects:
     """What time does to a recording; None where it does not show, or without times."""
 
     lag: Estimate | None
-    """s, by which the encoder is late; taken out."""
+    """s, by which corners of the angle come later than those of the torque."""
+    removed: Estimate | None
+    """s, what of it is ascribed to the encoder; taken out."""
     drifts: tuple[Drift | None, ...]
     """Of the ramps of each amplitude; taken out."""
 
@@ -68,10 +70,12 @@ def settled(loading: Loading) -> tuple[tuple[Ramps, ...], Effects]:
     torque, angle, time = loading.torque, loading.angle, loading.time
     ramps = find_ramps(torque, angle, time)
     if time is None:
-        return ramps, Effects(None, (None,) * len(ramps))
+        return ramps, Effects(None, None, (None,) * len(ramps))
     lag = encoder_lag(time, torque, angle, ramps, _friction(ramps))
+    removed = None
     if lag and lag.value > (lag.uncertainty or 0.0):
-        ramps = find_ramps(torque, without_lag(time, angle, lag.value), time)
+        removed = of_encoder(lag)
+        ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
     else:
         lag = None
     drifts = tuple(map(drift_of, ramps))
@@ -79,7 +83,7 @@ def settled(loading: Loading) -> tuple[tuple[Ramps, ...], Effects]:
         without_drift(group, drift) if drift else group
         for group, drift in zip(ramps, drifts, strict=True)
     )
-    return tuple(still), Effects(lag, drifts)
+    return tuple(still), Effects(lag, removed, drifts)
 
 
 def _friction(ramps: Sequence[Ramps]) -> float:
@@ -87,13 +91,13 @@ def _friction(ramps: Sequence[Ramps]) -> float:
     return float(np.median(Midlines.of(ramps[0].whole).friction))
 
 
-def models_of(ramps: Sequence[Ramps], angle_step: float, lag: Estimate | None) -> Models:
+def models_of(ramps: Sequence[Ramps], angle_step: float, removed: Estimate | None) -> Models:
     """Model ramps.
 
     Args:
         ramps: of a recording, in ascending order of amplitude.
         angle_step: rad, between readings of the encoder; 0 if unknown.
-        lag: s, that has been taken out.
+        removed: s, lag of the encoder that has been taken out.
     """
     creep, steeper, others = None, None, []
     if ramps[0].history[0].time is not None:
@@ -111,7 +115,7 @@ def models_of(ramps: Sequence[Ramps], angle_step: float, lag: Estimate | None) -
                 without_creep(group, loads, creep.compliance.value, creep.constant)
                 for group in ramps
             ]
-    late = lag.standard or 0.0 if lag else 0.0
+    late = removed.standard or 0.0 if removed else 0.0
     return Models(
         tuple(_play(group, angle_step, late) for group in ramps),
         _spring(ramps[-1], steeper, others, angle_step),

@@ -109,11 +109,11 @@ def _hysteresis(
     ramps, effects = settled(loading)
     step = loading.angle_step.size
     hysteresis.check(ramps[-1], step)
-    models = models_of(ramps, step, effects.lag)
+    models = models_of(ramps, step, effects.removed)
     rated = ramps[-1].amplitude if rated_torque is None else rated_torque
     if corners is None:
         corners = tuple(share * rated for share in STIFFNESS_SHARES)
-    late = effects.lag.standard or 0.0 if effects.lag else 0.0
+    late = effects.removed.standard or 0.0 if effects.removed else 0.0
     settings = Settings(rated, corners, step, late)
     return HysteresisReport(
         settings,

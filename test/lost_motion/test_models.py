@@ -73,8 +73,18 @@ def test_a_late_encoder_is_found_and_taken_out():
     ramps, effects = models.settled(loading(late))
     assert effects.lag.value == pytest.approx(late.lag, abs=0.003)
     assert effects.lag.uncertainty < 0.003
+    assert effects.removed == effects.lag
     widths = [loop.width(0.0) for loop in ramps[0].loops]
     assert np.mean(widths) == pytest.approx(truth(late).hysteresis, abs=0.5 * ARC_MINUTE)
+
+
+def test_a_lag_that_may_be_the_gears_is_half_taken_out():
+    _, effects = models.settled(loading(scenario('inertia, no play')))
+    lag, removed = effects.lag.value, effects.removed
+    assert 0.002 < lag < 0.008  # about sqrt(0.01 kg·m² / 300 N·m/rad)
+    assert removed.value == pytest.approx(0.5 * lag)
+    assert removed.value - removed.uncertainty < 0.0
+    assert removed.value + removed.uncertainty > lag
 
 
 def test_a_drift_is_found_and_taken_out():
@@ -87,7 +97,7 @@ def test_a_drift_is_found_and_taken_out():
 def test_creep_is_found_where_the_gear_stands_still():
     creeping = scenario('creep of 10 %')
     ramps, effects = models.settled(loading(creeping))
-    creep = models.models_of(ramps, STEP, effects.lag).creep
+    creep = models.models_of(ramps, STEP, effects.removed).creep
     share, constant = creeping.creeps[0]
     likely = {creep.constant: creep.compliance.value, **dict(creep.others)}
     assert 300.0 * likely[constant] == pytest.approx(share, rel=0.15)
@@ -145,7 +155,7 @@ def test_friction_that_builds_up_leaves_the_play_right():
 
 def test_the_steps_of_stick_slip_do_not_come_and_go_in_the_stiffness():
     ramps, effects = models.settled(loading(scenario('stick-slip')))
-    spring = models.models_of(ramps, STEP, effects.lag).spring
+    spring = models.models_of(ramps, STEP, effects.removed).spring
     assert spring.stiffness.value == pytest.approx(300.0, rel=2e-3)
     assert spring.stiffness.uncertainty < 3e-3 * 300.0
 
@@ -153,7 +163,7 @@ def test_the_steps_of_stick_slip_do_not_come_and_go_in_the_stiffness():
 def test_a_gear_that_speeds_up_in_its_backlash_has_wider_intervals():
     fast = scenario('inertia, play')
     ramps, effects = models.settled(loading(fast))
-    model = models.models_of(ramps, STEP, effects.lag).plays[0]
+    model = models.models_of(ramps, STEP, effects.removed).plays[0]
     assert model.more.value > 0.1
     assert abs(model.play.value - fast.play) < model.play.uncertainty
     assert abs(model.friction.value - fast.friction) < model.friction.uncertainty
@@ -162,7 +172,7 @@ def test_a_gear_that_speeds_up_in_its_backlash_has_wider_intervals():
 @pytest.mark.parametrize('name', ['play, linear spring', 'stick-slip'])
 def test_friction_that_is_the_same_within_the_backlash_adds_nothing(name):
     ramps, effects = models.settled(loading(scenario(name)))
-    assert models.models_of(ramps, STEP, effects.lag).plays[0].more is None
+    assert models.models_of(ramps, STEP, effects.removed).plays[0].more is None
 
 
 @pytest.mark.parametrize(
