@@ -1,16 +1,31 @@
-"""A zero that drifts, as by warming up: what changes slowly or evenly from loop to loop."""
+"""A zero that drifts, as by warming up: what changes slowly or evenly from loop to loop.
+
+On the way up, and on the way down, a gear passes a torque at the same angle in each loop, but for
+its zero, and for its friction if that differs from loop to loop.
+"""
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Loop, Ramps
+from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 
 _LEAST_LOOPS = 3
-"""Number of loops in which a drift shows."""
-_LEVELS = 100
-"""Torques at which the middle of a loop is taken."""
+"""Number of loops in which an even drift shows; an uneven one needs one more."""
+_LEVELS = 10
+"""Torques at which loops are compared."""
+_REACH = 0.95
+"""Share of the least peak up to which they are."""
+_KNOTS = 4
+"""Knots of the zero for each loop, between which it moves evenly."""
+_MOST_KNOTS = 60
+_STIFFNESSES = (1e4, 1e2, 1.0)
+"""Weights of the bends at the knots."""
+_RIDGE = 1e-6
+"""Weight that decides between equal fits."""
 _CLEARLY = 0.4
 """A drift is taken out if it leaves less than this share of the squares of the changes."""
 
@@ -24,9 +39,9 @@ class Drift:
     steady: bool
     """Whether it moves evenly."""
     time: Array
-    """(loops,), s, of the middles of the loops."""
+    """(knots,), s."""
     zero: Array
-    """(loops,), rad."""
+    """(knots,), rad."""
 
     def at(self, time: Array) -> Array:
         """Return the zero at times, (n,), rad."""
@@ -44,48 +59,99 @@ class Drift:
 
 
 def drift_of(ramps: Ramps) -> Drift | None:
-    """Find how the middles of the loops move; None if not evenly or slowly."""
-    count = len(ramps.loops)
-    if count < _LEAST_LOOPS:
+    """Find how the zero moves; None if not evenly or slowly."""
+    if len(ramps.loops) < _LEAST_LOOPS:
         return None
-    zero = np.array([_middle(loop) for loop in ramps.whole])
-    time = np.reshape([_time_at_zero(half) for half in ramps.halves()], (count, 2)).mean(axis=1)
-    missed = np.square([_missed(time, zero, k) for k in range(count)])
-    kept = 0
-    for way in (1, 2):
-        gain = missed[:, kept] - missed[:, way]
-        error = float(np.std(gain, ddof=1)) / math.sqrt(count)
-        if np.mean(gain) > error and np.sum(missed[:, way]) < _CLEARLY * np.sum(missed[:, kept]):
-            kept = way
-    if not kept:
+    passages = _Passages(ramps)
+    time = passages.knots
+    count = len(time)
+    still, line = _Zero(np.empty((count, 0))), _Zero((time - np.mean(time))[:, None])
+    kept, missed = still, passages.missed(still)
+    uneven = _STIFFNESSES if len(ramps.loops) > _LEAST_LOOPS else ()
+    for zero in (line, *(_Zero(np.eye(count), stiffness) for stiffness in uneven)):
+        fewer = passages.missed(zero)
+        gain = missed - fewer
+        error = float(np.std(gain, ddof=1)) / math.sqrt(len(gain))
+        if np.mean(gain) > error and np.sum(fewer) < _CLEARLY * np.sum(missed):
+            kept, missed = zero, fewer
+    if kept is still:
         return None
-    if kept == 1:
-        zero = np.polynomial.Polynomial.fit(time, zero, 1)(time)
-    rate = float((zero[-1] - zero[0]) / (time[-1] - time[0]))
-    return Drift(rate, kept == 1, time, zero)
+    values = passages.fitted(kept)
+    rate = float((values[-1] - values[0]) / (time[-1] - time[0]))
+    return Drift(rate, kept is line, time, values)
 
 
-def _missed(time: Array, zero: Array, own: int) -> list[float]:
-    """Errors of a loop's middle by the others: their mean, their line, and the neighbours'."""
-    others = np.delete(np.arange(len(time)), own)
-    near = others[:2] if own == 0 else others[-2:] if own == len(time) - 1 else [own - 1, own + 1]
-    off = time - time[own]
-    lines = [
-        np.polynomial.polynomial.polyfit(off[rows], zero[rows], 1)[0] for rows in (others, near)
-    ]
-    return [float(zero[own] - value) for value in (np.mean(zero[others]), *lines)]
+class _Zero(NamedTuple):
+    """How a zero may move."""
+
+    basis: Array
+    """(knots, parameters)."""
+    stiffness: float = 0.0
+    """Weight of the bends at the knots."""
 
 
-def _middle(loop: Loop) -> float:
-    """Mean angle of a loop over the torques of both halves, rad."""
-    reach = min(loop.fall.start, -loop.fall.end, -loop.rise.start, loop.rise.end)
-    torque = np.linspace(-reach, reach, _LEVELS) if reach > 0.0 else np.zeros(1)
-    return 0.5 * float(np.mean(loop.fall.angle_at(torque) + loop.rise.angle_at(torque)))
+class _Passages:
+    """The angles at which half loops pass torques, as linear equations for the zero.
+
+    Unknown are the zero at its knots, the angle of either way at each torque, and by how much
+    friction holds back both ways of each loop.
+    """
+
+    def __init__(self, ramps: Ramps) -> None:
+        """Take torques that all loops reach."""
+        count = len(ramps.loops)
+        reach = _REACH * min(loop.amplitude for loop in ramps.loops)
+        torques = np.linspace(-reach, reach, _LEVELS)
+        found = [
+            (loop, way, level, _time_at(half, torque), float(half.angle_at(torque)))
+            for loop, both in enumerate(ramps.loops)
+            for way, half in enumerate((both.fall, both.rise))
+            for level, torque in enumerate(torques.tolist())
+            if half.reaches(torque)
+        ]
+        loop, way, level = np.array([row[:3] for row in found]).T
+        time, self._angle = np.array([row[3:] for row in found]).T
+        self.knots = np.linspace(min(time), max(time), min(_KNOTS * count, _MOST_KNOTS) + 1)
+        self._half = 2 * loop + way
+        apart = np.abs(np.subtract.outer(time, self.knots)) / (self.knots[1] - self.knots[0])
+        self._at_knots = np.maximum(0.0, 1.0 - apart)
+        angle = np.eye(2 * _LEVELS)[way * _LEVELS + level]
+        friction = (1.0 - 2.0 * way)[:, None] * np.eye(count)[loop]
+        self._fixed = np.hstack([angle, friction])
+
+    def missed(self, zero: _Zero) -> Array:
+        """Mean square error of each half loop, predicted by the others, rad²."""
+        found = []
+        columns = self._with(zero)
+        for half in np.unique(self._half):
+            own = self._half == half
+            error = self._angle[own] - columns[own] @ self._solved(zero, columns, ~own)
+            found.append(np.mean(error**2))
+        return np.array(found)
+
+    def fitted(self, zero: _Zero) -> Array:
+        """Return the zero at the knots, rad."""
+        parameters = zero.basis.shape[1]
+        columns = self._with(zero)
+        solved = self._solved(zero, columns, np.ones_like(self._half, np.bool_))
+        return np.asarray(zero.basis @ solved[-parameters:])
+
+    def _with(self, zero: _Zero) -> Array:
+        return np.hstack([self._fixed, self._at_knots @ zero.basis])
+
+    def _solved(self, zero: _Zero, columns: Array, rows: NDArray[np.bool_]) -> Array:
+        used = columns[rows]
+        bends = math.sqrt(zero.stiffness) * np.diff(zero.basis, 2, axis=0)
+        matrix = used.T @ used + _RIDGE * np.eye(columns.shape[1])
+        own = slice(self._fixed.shape[1], None)
+        matrix[own, own] += bends.T @ bends
+        solved: Array = np.linalg.solve(matrix, used.T @ self._angle[rows])
+        return solved
 
 
-def _time_at_zero(half: HalfLoop) -> float:
+def _time_at(half: HalfLoop, torque: float) -> float:
     sign = 1.0 if half.rising else -1.0
-    return float(np.interp(0.0, sign * half.torque, half.times))
+    return float(np.interp(sign * torque, sign * half.torque, half.times))
 
 
 def without_drift(ramps: Ramps, drift: Drift) -> Ramps:

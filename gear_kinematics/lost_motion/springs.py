@@ -315,13 +315,13 @@ def _mean_beyond(angle: Array, width: Array) -> Array:
 
 
 def _rises(model: Model, factors: Array) -> NDArray[np.bool_]:
-    """Whether the loads grow with the angle everywhere."""
-    bent = factors[..., _SIDES] if model.shape.function else 0.0
-    rises = np.ones(factors.shape[:-1], np.bool_)
-    for side in range(1, _SIDES):
-        for slope in model.shape.slopes:
-            rises &= factors[..., side] + slope * bent >= 0.0
-    return rises & (factors[..., -1] >= 0.0) if model.gap == Gap.SOFT else rises
+    """Whether the loads grow with the angle everywhere, and in a gap no faster than beside it."""
+    bent = factors[..., [_SIDES]] if model.shape.function else 0.0
+    first, last = (factors[..., 1:_SIDES] + slope * bent for slope in model.shape.slopes)
+    slopes = [first, last]
+    if model.gap == Gap.SOFT:
+        slopes += [factors[..., [-1]], first - factors[..., [-1]]]
+    return np.asarray(np.all(np.concatenate(slopes, -1) >= 0.0, axis=-1))
 
 
 def _solved(matrix: Array, right: Array) -> Array:

@@ -1,6 +1,7 @@
 """Models of torque ramps: of simulated gears that are known, and of a measured actuator."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -53,8 +54,8 @@ def test_figures_hold(scenario: Scenario):
         assert abs(found.play_bias) < 0.3 * ARC_MINUTE
 
 
-def loading(scenario: Scenario, *, times: bool = True) -> Loading:
-    recorded = simulate(scenario, 1, np.random.default_rng(3))
+def loading(scenario: Scenario, *, times: bool = True, seed: int = 3) -> Loading:
+    recorded = simulate(scenario, 1, np.random.default_rng(seed))
     return Loading(
         recorded.torque[:, 0],
         recorded.angle[:, 0],
@@ -92,6 +93,24 @@ def test_a_drift_is_found_and_taken_out():
     _, effects = models.settled(loading(drifting))
     assert effects.lag is None
     assert effects.drifts[0].rate == pytest.approx(drifting.drift, rel=0.2)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_no_drift_is_found_where_there_is_none(seed):
+    _, effects = models.settled(loading(scenario('play, linear spring'), seed=seed))
+    assert effects.drifts == (None, None)
+
+
+def test_an_uneven_drift_is_followed():
+    """The zero goes through a period in 12 loops."""
+    wandering = replace(scenario('thermal sine'), thermal=(3e-3, 48.0))
+    ramps, effects = models.settled(loading(wandering))
+    assert not effects.drifts[0].steady
+    assert not effects.drifts[1]  # not in three loops of 20 s
+    middles = [loop.middle(0.0) for loop in ramps[0].loops]
+    before, _ = models.settled(loading(wandering, times=False))
+    wandered = [loop.middle(0.0) for loop in before[0].loops]
+    assert np.ptp(middles) < 0.1 * np.ptp(wandered)
 
 
 def test_creep_is_found_where_the_gear_stands_still():
@@ -197,6 +216,15 @@ def test_a_soft_middle_is_a_bound_and_says_why():
     assert model.play is None
     assert model.cause == Cause.SOFT
     assert 0.2 < model.softness < 0.6
+
+
+def test_a_soft_middle_is_no_stiff_one():
+    """The middle of these lines is ten times as stiff as the rest."""
+    angle = np.tile(np.linspace(-0.02, 0.02, 100), (3, 1))
+    load = 100.0 * angle + 900.0 * np.clip(angle, -0.002, 0.002)
+    fitting = Fitting(Midlines(angle, load, load, load, np.zeros(3), 0.0, 0.0))
+    straight, soft = (fitting.fit(Model(SHAPES[0], gap)) for gap in (Gap.NONE, Gap.SOFT))
+    assert soft.errors == pytest.approx(straight.errors, rel=0.01)
 
 
 def test_rejected_models_have_their_scores():
