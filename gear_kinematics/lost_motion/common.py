@@ -112,7 +112,7 @@ def quantities(reports: Sequence[LostMotionReport], common: Basis | None) -> lis
         small, loaded = chosen(reports, common.small), chosen(reports, common.loaded)
         listed += [
             _angle('hysteresis', small, lambda figures: figures.hysteresis),
-            _angle('backlash', small, lambda figures: figures.play),
+            _angle('backlash', leaving(reports, common), lambda figures: figures.play),
             _of(small, lambda figures: figures.friction, 'friction', 'N·m'),
             _angle(LOST_MOTION, loaded, lambda figures: figures.lost_motion),
             *(_stiffness(loaded, low, high) for low, high in _ranges(loaded, common.reach)),
@@ -156,11 +156,11 @@ def without_play(
     reports: Sequence[LostMotionReport], common: Basis, members: Sequence[int]
 ) -> list[tuple[str, str]]:
     """Return which recordings of some, by number, have no value of backlash, and what instead."""
-    small = chosen(reports, common.small)
+    found = leaving(reports, common)
     return [
         (reports[number].recording.name, play(figures.play_model))
         for number in members
-        if (figures := small[number]) and figures.play_model and not figures.play
+        if (figures := found[number]) and figures.play_model and not figures.play
     ]
 
 
@@ -209,6 +209,14 @@ def chosen(
     return [
         report.hysteresis.figures[place] if report.hysteresis and place is not None else None
         for report, place in zip(reports, places, strict=True)
+    ]
+
+
+def leaving(reports: Sequence[LostMotionReport], common: Basis) -> list[Figures | None]:
+    """Return the figures of the small ramps, or where these stay within the backlash, larger."""
+    return [
+        report.hysteresis.leaving if report.hysteresis and figures and figures.within else figures
+        for report, figures in zip(reports, chosen(reports, common.small), strict=True)
     ]
 
 

@@ -10,8 +10,8 @@ from gear_kinematics.lost_motion.common import (
     Basis,
     Quantity,
     basis,
-    chosen,
     doubts,
+    leaving,
     quantities,
     rate_doubts,
     without_play,
@@ -125,8 +125,8 @@ def _limits(
 
 def _plays(reports: Sequence[LostMotionReport], common: Basis, group: Group) -> str:
     """List the backlashes of a group, in arc minutes: values and bounds."""
-    small = chosen(reports, common.small)
-    found = [play(figures.play_model) for number in group.members if (figures := small[number])]
+    plays = leaving(reports, common)
+    found = [play(figures.play_model) for number in group.members if (figures := plays[number])]
     return ' / '.join(filter(None, found)) or 'unknown'
 
 

@@ -19,6 +19,8 @@ _SHARES = np.linspace(0.1, 0.95, 18)
 """Loads, as shares of the greatest load of a loop, at which the friction is compared."""
 _FAR, _NEAR = slice(0, 9), slice(-3, None)
 """Up to half of the load, where friction has built up, and above 80 %, where it may not have."""
+_HARDLY = 20
+"""Power of a weight that falls along a straight line; its mean is at a twentieth of the load."""
 _CLEAR = 0.02
 """Share of the friction that is missing there, if it builds up visibly."""
 _HALF_DIFFERENCE = math.sqrt(0.5)
@@ -49,7 +51,11 @@ def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate 
     angle = _HALF_DIFFERENCE * stiffness * resolution(angle_step) / math.sqrt(angles)
     reading = by_steps(math.hypot(angle, _between_samples(lines)), len(fits))
     if growth:
-        return Estimate.of_mean([float(fit[0]) for fit in fits], reading), growth
+        # Friction may be the same at small loads, and grow from somewhere on.
+        hardly = np.average(lines.friction, axis=1, weights=weight**_HARDLY)
+        more = 0.5 * (hardly - [fit[0] for fit in fits])
+        bend = Component(abs(float(np.mean(more))))
+        return Estimate.of_mean((hardly - more).tolist(), reading, bend), growth
     means = np.average(lines.friction, axis=1, weights=weight**4)
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
     uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))

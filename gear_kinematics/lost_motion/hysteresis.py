@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gear_kinematics.lost_motion.play import PlayModel
+from gear_kinematics.lost_motion.play import Cause, PlayModel
 from gear_kinematics.lost_motion.ramps import HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.state.uncertainty import (
     Component,
@@ -65,6 +65,11 @@ class Figures:
     def play(self) -> Estimate | None:
         """rad, by the play model; None where it has no value."""
         return self.play_model.play if self.play_model else None
+
+    @property
+    def within(self) -> bool:
+        """Whether the ramps stay within the play."""
+        return self.play_model is not None and self.play_model.cause == Cause.WITHIN
 
     @property
     def friction(self) -> Estimate | None:

@@ -19,12 +19,14 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
     if not model:
         yield 'There is no play model, as the ramps have no middle line.'
         return
-    yield (
-        f'Backlash and friction are those of the simplest plausible model: {model.name}, '
-        f'{number(model.stiffness, 4)} N·m/rad, with a residual of {number(model.residual)} N·m '
-        '(root mean square) on the middle line of the hysteresis curve.'
-    )
-    yield from _play(model)
+    if found.smallest.within:
+        yield (
+            f'The ramps to {torque(found.smallest.amplitude)} N·m stay within the backlash: the '
+            f'gear yields to them at {number(model.stiffness)} N·m/rad, less than a fifth of the '
+            f'stiffness of its spring. Those to {torque(found.leaving.amplitude)} N·m leave it.'
+        )
+    if beyond := found.leaving.play_model:
+        yield from _backlash(beyond)
     if model.growth:
         yield f'The friction grows by {plus_minus(model.growth, 100.0)} % of the load.'
     if model.missing:
@@ -33,13 +35,6 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
             f'{plus_minus(model.missing)} N·m of it are missing. This has been taken out of the '
             'middle line.'
         )
-    if model.more:
-        yield (
-            f'The friction within the backlash exceeds that beyond it by {plus_minus(model.more)} '
-            'N·m, as where a gear moves faster. The ± of backlash and friction contain that. '
-            'Slower ramps have less of it.'
-        )
-    yield from _tests(model)
 
 
 def _effects(found: HysteresisReport) -> Iterator[str]:
@@ -77,6 +72,22 @@ def _effects(found: HysteresisReport) -> Iterator[str]:
         )
 
 
+def _backlash(model: PlayModel) -> Iterator[str]:
+    yield (
+        f'The backlash is that of the simplest plausible model: {model.name}, '
+        f'{number(model.stiffness, 4)} N·m/rad, with a residual of {number(model.residual)} N·m '
+        '(root mean square) on the middle line of the hysteresis curve.'
+    )
+    yield from _play(model)
+    if model.more:
+        yield (
+            f'The friction within the backlash exceeds that beyond it by {plus_minus(model.more)} '
+            'N·m, as where a gear moves faster. The ± of backlash and friction contain that. '
+            'Slower ramps have less of it.'
+        )
+    yield from _tests(model)
+
+
 def _play(model: PlayModel) -> Iterator[str]:
     soft = (
         f'Over it the gear yields at {number(model.softness, 2)} of its stiffness beyond'
@@ -88,8 +99,8 @@ def _play(model: PlayModel) -> Iterator[str]:
             yield f'{soft}; below {SOFTEST:g} this counts as backlash.'
         case Cause.ZERO:
             yield (
-                f'The backlash is an upper bound ({PERCENT}): models without any describe the '
-                'ramps as well.'
+                f'The backlash is an upper bound ({PERCENT}): zero is within the interval of a '
+                'model that describes the ramps as well.'
             )
         case Cause.SOFT:
             yield (
@@ -100,9 +111,9 @@ def _play(model: PlayModel) -> Iterator[str]:
             )
         case Cause.MODELS:
             yield (
-                'The backlash is not separable from the spring, because models that describe the '
-                'ramps equally well have anything from no backlash to one as large as the '
-                'hysteresis. Repeat the small ramps more often, and more slowly.'
+                'The backlash is not separable from the spring, because the interval of a model '
+                'that describes the ramps equally well reaches the hysteresis. More repeats, and '
+                'slower ramps, tell the models apart.'
             )
         case Cause.FLANKS:
             yield (

@@ -116,11 +116,12 @@ def models_of(ramps: Sequence[Ramps], angle_step: float, removed: Estimate | Non
                 for group in ramps
             ]
     late = removed.standard or 0.0 if removed else 0.0
-    return Models(
-        tuple(_play(group, angle_step, late) for group in ramps),
-        _spring(ramps[-1], steeper, others, angle_step),
-        creep,
-    )
+    plays = [_play(group, angle_step, late) for group in ramps]
+    spring = _spring(ramps[-1], steeper, others, angle_step)
+    if spring:
+        stiffness = spring.stiffness.value
+        plays = [play and play.under(stiffness) for play in plays[:-1]] + plays[-1:]
+    return Models(tuple(plays), spring, creep)
 
 
 def _play(ramps: Ramps, angle_step: float, late: float) -> PlayModel | None:

@@ -7,8 +7,9 @@ it.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Self
 
 import numpy as np
 
@@ -61,6 +62,7 @@ class Cause(StrEnum):
     MODELS = 'models differ'
     """Neither value nor limit, as is the following."""
     FLANKS = 'ramps too small'
+    WITHIN = 'ramps within the play'
     SINGLE = 'not repeated'
 
 
@@ -110,6 +112,15 @@ class PlayModel:
     """(n,), rad, ascending: the curve of the model."""
     loads: Array
     """(n,), N·m, ascending, at these angles."""
+
+    def under(self, stiffness: float) -> Self:
+        """Return what the model tells of the play if more load finds this stiffness, N·m/rad.
+
+        Ramps that yield at less than a fifth of it everywhere stay within the play.
+        """
+        if self.stiffness >= SOFTEST * stiffness:
+            return self
+        return replace(self, play=None, limit=None, cause=Cause.WITHIN)
 
     def loop(self, amplitude: float) -> tuple[Array, Array]:
         """Torques and angles of the model's hysteresis loop, from one peak back to it."""

@@ -37,8 +37,13 @@ class HysteresisReport:
 
     @property
     def smallest(self) -> Figures:
-        """Figures of the smallest ramps, for the play."""
+        """Figures of the smallest ramps, for hysteresis and friction."""
         return self.figures[0]
+
+    @property
+    def leaving(self) -> Figures:
+        """Figures of the smallest ramps that leave the backlash, for its size."""
+        return next(figures for figures in self.figures if not figures.within)
 
     @property
     def largest(self) -> Figures:

@@ -62,8 +62,8 @@ def soft_middle(
         rises, steps, springs.centre, angle[:, 0], springs.gap, strict=True
     ):
         middle = int(np.clip((centre - start) / step, 0, len(own) - 1))
-        # The stiffer half is beyond, if anything is.
-        soft = own < np.median(own)
+        # The stiffest quarter is beyond, if anything is.
+        soft = own < np.quantile(own, 0.75)
         for _ in range(_ROUNDS):
             beyond = float(np.sum(own[~soft])) / (max(np.count_nonzero(~soft), 1) * step)
             soft = _around(own < share * beyond * step, middle)

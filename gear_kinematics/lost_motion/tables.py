@@ -67,7 +67,7 @@ def tables(report: LostMotionReport) -> Iterator[Table]:
         if len(found.figures) > 1:
             yield _amplitude_table(found)
         yield _stiffness_table(found)
-        if (model := found.smallest.play_model) and model.candidates:
+        if (model := found.leaving.play_model) and model.candidates:
             yield _candidate_table(model.candidates)
     if report.transmission:
         yield _transmission_table(report.transmission, in_rows=_in_rows(report))
@@ -75,13 +75,15 @@ def tables(report: LostMotionReport) -> Iterator[Table]:
 
 
 def _figure_table(found: HysteresisReport) -> Table:
-    """Return the figures: of the play from the smallest ramps, others from the largest."""
-    smallest, largest = found.smallest, found.largest
-    small, large = (f'{_loops(f)} to {torque(f.amplitude)} N·m' for f in (smallest, largest))
+    """Return the figures: of play and friction from small ramps, others from the largest."""
+    smallest, leaving, largest = found.smallest, found.leaving, found.largest
+    small, least, large = (
+        f'{_loops(f)} to {torque(f.amplitude)} N·m' for f in (smallest, leaving, largest)
+    )
     at = torque(LOST_MOTION_SHARE * found.settings.rated_torque)
     rows = [
         _angle('hysteresis at zero torque', smallest.hysteresis, small),
-        _play_row(smallest, small),
+        _play_row(leaving, least),
         _row('friction (play model)', 'N·m', smallest.friction, small),
         _angle(f'lost motion at ±{at} N·m', largest.lost_motion, large),
         *(
@@ -115,7 +117,7 @@ def _spring_rows(found: HysteresisReport, source: str) -> Iterator[tuple[Cell, .
 
 
 def _candidate_table(candidates: Sequence[Candidate]) -> Table:
-    """Return the models that were tried for the smallest ramps, the best first."""
+    """Return the models that were tried for the backlash, the best first."""
     return Table.of_items(
         {
             'model': lambda candidate: candidate.name,
@@ -218,7 +220,7 @@ def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
     if error := report.transmission:
         lost_motion, accuracy = error.lost_motion, error.forward
     if found := report.hysteresis:
-        hysteresis, model = found.smallest.hysteresis, found.smallest.play_model
+        hysteresis, model = found.smallest.hysteresis, found.leaving.play_model
         lost_motion = found.largest.lost_motion
         spring = found.largest.stiffness[-1].both if found.largest.stiffness else None
     angles = (arc_minutes(hysteresis), play(model), arc_minutes(lost_motion))

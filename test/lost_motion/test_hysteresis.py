@@ -260,7 +260,7 @@ def test_preload_shows_in_the_hysteresis_of_the_actuator(actuator_test):
         assert limit is None or np.degrees(limit) > 0.5
     else:
         assert width + spread < 1.0
-        assert np.degrees(limit) < 0.5
+        assert np.degrees(limit) < width
 
 
 @pytest.mark.slow

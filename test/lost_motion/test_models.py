@@ -11,7 +11,7 @@ from simulated_ramps import SCENARIOS, STEP, Scenario, simulate, truth
 
 from gear_kinematics.lost_motion import models
 from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.lost_motion.friction import without_build_up
+from gear_kinematics.lost_motion.friction import friction_of, without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.recording import Loading
@@ -148,6 +148,17 @@ def dahl(missing: float, growth: float = 0.0) -> tuple[Midlines, np.ndarray]:
     return Midlines(angle, read, friction, np.zeros((5, 101)), np.zeros(5), 0.0, 0.0), load
 
 
+@pytest.mark.parametrize('start', [0.0, 2.0])
+def test_friction_may_grow_from_some_load_on(start):
+    load = np.tile(np.linspace(-10.0, 10.0, 100), (5, 1))
+    scatter = np.random.default_rng(7).normal(1.0, 0.01, (5, 1))
+    friction = scatter + 0.3 * np.maximum(np.abs(load) - start, 0.0)
+    lines = Midlines(load / 300.0, load, friction, 0.0 * load, np.zeros(5), 0.0, 0.0)
+    found, growth = friction_of(lines, STEP)
+    assert abs(found.value - 1.0) < found.uncertainty < 0.4
+    assert 0.2 < growth.value < 0.31
+
+
 def test_friction_that_builds_up_is_taken_out_of_the_load():
     lines, load = dahl(missing=0.4)
     corrected, missing = without_build_up(lines)
@@ -225,6 +236,18 @@ def test_a_soft_middle_is_no_stiff_one():
     fitting = Fitting(Midlines(angle, load, load, load, np.zeros(3), 0.0, 0.0))
     straight, soft = (fitting.fit(Model(SHAPES[0], gap)) for gap in (Gap.NONE, Gap.SOFT))
     assert soft.errors == pytest.approx(straight.errors, rel=0.01)
+
+
+def test_ramps_that_stay_within_the_backlash_say_so():
+    """Up to 6 N·m the gear yields at a tenth of its stiffness beyond: over 2 · 0.1 rad."""
+
+    def spring(load: np.ndarray) -> np.ndarray:
+        return load / 600.0 + 0.015 * np.clip(load, -6.0, 6.0)
+
+    ramps, _ = models.settled(loading(Scenario('soft', spring=spring)))
+    small, large = models.models_of(ramps, STEP, None).plays
+    assert (small.cause, small.play, small.limit) == (Cause.WITHIN, None, None)
+    assert large.play.value == pytest.approx(0.2, rel=0.01)
 
 
 def test_rejected_models_have_their_scores():
