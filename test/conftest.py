@@ -38,6 +38,7 @@ import hypothesis  # noqa: E402
 import pytest  # noqa: E402
 
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
+from gear_kinematics.state import parameters  # noqa: E402
 
 pytest_plugins = ['hanging']
 
@@ -99,6 +100,12 @@ def actuator() -> Mechanism:
         Branch('b', cam_phase=math.pi, axial_position=-0.04),
     )
     return Mechanism(80, 76, 0.0011, branches)
+
+
+@pytest.fixture(scope='module')
+def config() -> dict:
+    """Return the default parameters of the node."""
+    return parameters.load(parameters.default_config())
 
 
 @pytest.fixture(

@@ -2,17 +2,16 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import mcap.reader
 import pytest
 import yaml
 from rosbags import rosbag2
+from shipped_bags import BAGS, TYPES, read_bag
 
 from gear_kinematics.bag import Bag, BagError, LiveBagWriter
 
-ROOT = Path(__file__).resolve().parents[2]
-TOPICS = ('/rotor_state', '/output_state', '/body_poses')
+SERVO = BAGS / 'servo_point_to_point'
 
 RECORD_AND_DIE = """
 import os, sys
@@ -31,9 +30,7 @@ with Bag(sys.argv[1]) as source, LiveBagWriter(sys.argv[2]) as bag:
 
 @pytest.fixture(scope='module')
 def recorded():
-    with rosbag2.Reader(ROOT / 'bags/servo_point_to_point') as reader:
-        messages = [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
-    return messages[:900]
+    return read_bag(SERVO)[:900]
 
 
 def read(path):
@@ -42,15 +39,14 @@ def read(path):
 
 
 def write(bag, messages):
-    for topic in TOPICS:
-        kind = 'geometry_msgs/msg/PoseArray' if 'poses' in topic else 'sensor_msgs/msg/JointState'
+    for topic, kind in TYPES.items():
         bag.add_topic(topic, kind)
     bag.write_all(messages)
 
 
 def test_what_was_flushed_is_read_after_the_process_was_killed(tmp_path, recorded):
     path = tmp_path / 'killed'
-    command = [sys.executable, '-c', RECORD_AND_DIE, ROOT / 'bags/servo_point_to_point', path]
+    command = [sys.executable, '-c', RECORD_AND_DIE, SERVO, path]
     assert subprocess.run(command, check=False).returncode == -9
     assert not (path / 'metadata.yaml').exists()
     assert read(path) == recorded[:630]
@@ -74,7 +70,7 @@ def test_finished_recording_is_one_to_others(tmp_path, recorded):
     with (path / 'live_0.mcap').open('rb') as file:
         summary = mcap.reader.make_reader(file).get_summary()
     assert summary.statistics.message_count == 900
-    assert {channel.topic for channel in summary.channels.values()} == set(TOPICS)
+    assert {channel.topic for channel in summary.channels.values()} == set(TYPES)
 
 
 def test_recording_stays_after_an_error(tmp_path, recorded):

@@ -4,12 +4,10 @@ from pathlib import Path
 
 import pytest
 from live import rotor_bytes
+from shipped_bags import BAGS, JOINT_STATE
 
 from gear_kinematics.bag import Bag, BagError, BagWriter
 from gear_kinematics.bag.summary import summarise
-
-BAGS = Path(__file__).resolve().parents[2] / 'bags'
-JOINT_STATE = 'sensor_msgs/msg/JointState'
 
 
 def write(path, *topics, names=('m1', 'm2'), lost=()) -> Path:

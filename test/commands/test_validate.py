@@ -32,16 +32,15 @@ from blocked_bags import (
 from calibrations import calibration
 from gear_recordings import old_recording
 from live import rotor_bytes
+from shipped_bags import CONFIGS, JOINT_STATE, TYPES
 from terminals import ENVIRONMENT, Terminal
 
 from gear_kinematics.bag import Bag, BagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.state.parameters import load
 
-JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
-TYPES = {'/rotor_state': JOINT_STATE, '/output_state': JOINT_STATE, '/body_poses': POSE_ARRAY}
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
-CONFIG = BAGS.parent / 'config' / 'actuator.yaml'
+CONFIG = CONFIGS / 'actuator.yaml'
 SAMPLES = 300
 CHANGED = 100
 """Which output is changed, if one is."""

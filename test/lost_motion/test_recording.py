@@ -9,7 +9,6 @@ from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, w
 from gear_kinematics.bag import BagError
 from gear_kinematics.lost_motion import Columns, CsvError, measure, read_bag, read_csv
 from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.state import parameters
 
 TURN = 2.0 * math.pi
 MS = 10**6
@@ -22,11 +21,6 @@ TORQUE = ramps(*[(5.0, 200)] * 3)
 @pytest.fixture(scope='module')
 def angle():
     return creep(GEAR, TORQUE)
-
-
-@pytest.fixture(scope='module')
-def config():
-    return parameters.load(parameters.default_config())
 
 
 def read(path, actuator, **columns):

@@ -12,7 +12,6 @@ from gear_kinematics.lost_motion import Columns, measure, read_bag, read_csv
 from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.motion import Motion, MotionError
 from gear_kinematics.lost_motion.transmission import figures, marked_orders
-from gear_kinematics.state import parameters
 
 TURN = 2.0 * math.pi
 MS = 10**6
@@ -52,11 +51,6 @@ def bag_of(path, ideal, *, rotor_counts=2**16, output_counts=2**20, efforts=None
     later = ideal[:-1] + np.diff(ideal) / 3.0
     measured = quantised((output_of(later) + offset) % TURN, TURN / output_counts)
     return write_recording(path, rotor, Samples(stamps[:-1] + MS // 3, measured))
-
-
-@pytest.fixture(scope='module')
-def config():
-    return parameters.load(parameters.default_config())
 
 
 @pytest.fixture(scope='module')

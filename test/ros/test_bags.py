@@ -15,12 +15,10 @@ import replaying
 import yaml
 from rosbags.convert import convert
 from rosbags.highlevel import AnyReader
+from shipped_bags import BAGS
 
 from gear_kinematics.kinematics import RotorTurns, solve
 from gear_kinematics.ros.live import Replay, running_node
-
-ROOT = Path(__file__).resolve().parents[2]
-BAGS = ROOT / 'bags'
 
 
 @dataclass(frozen=True)

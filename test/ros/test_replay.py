@@ -20,11 +20,12 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
-from replaying import SECOND, decode
+from replaying import SECOND, decode, stamp_of
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
+from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, write_bag
 
-from gear_kinematics.bag import Bag, BagError, BagWriter, DamagedBagError
+from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.schedule import due_messages
 from gear_kinematics.ros import live
 from gear_kinematics.ros.leaving import leave
@@ -34,11 +35,6 @@ from gear_kinematics.state import parameters
 
 pytestmark = pytest.mark.live
 
-ROOT = Path(__file__).resolve().parents[2]
-BAGS = ROOT / 'bags'
-ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
-JOINT_STATE = 'sensor_msgs/msg/JointState'
-TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: 'geometry_msgs/msg/PoseArray'}
 PERIOD = 2_000_000  # ns
 COUNT = 500
 DURATION = (COUNT - 1) * PERIOD / SECOND  # s
@@ -53,15 +49,6 @@ with Bag(path) as bag, stopped_by_signals() as stopped:
     print(played.messages, played.worst_delay)
 """
 names = (f'/played_{os.getpid()}_{number}' for number in count())
-
-
-def write(path: Path, messages, types) -> Path:
-    with BagWriter(path) as writer:
-        for topic, kind in types.items():
-            writer.add_topic(topic, kind)
-        for message in messages:
-            writer.write(*message)
-    return path
 
 
 def rotor_states(times) -> list[tuple[str, int, bytes]]:
@@ -80,7 +67,7 @@ def bag_path(tmp_path_factory) -> Path:
         messages.append(message)
         if number % 10 == 0:
             messages.append((OUTPUT, *message[1:]))
-    return write(path, messages, {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE})
+    return write_bag(path, messages, {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE})
 
 
 @pytest.fixture(scope='module')
@@ -159,8 +146,7 @@ def data_of(heard) -> list[bytes]:
 
 
 def stamps(heard) -> list[int]:
-    headers = (decode(data, JOINT_STATE).header.stamp for data in data_of(heard))
-    return [stamp.sec * SECOND + stamp.nanosec for stamp in headers]
+    return [stamp_of(decode(data, JOINT_STATE)) for data in data_of(heard)]
 
 
 # The process and a listener.
@@ -179,7 +165,7 @@ def test_the_rotor_topic_is_played_whole_in_order_and_in_its_time(bag_path, reco
 
 def test_twice_the_rate_takes_half_the_time(tmp_path, listener):
     times = [SECOND // 2 * number for number in range(5)]
-    path = write(tmp_path / 'sparse', rotor_states(times), {ROTOR: JOINT_STATE})
+    path = write_bag(tmp_path / 'sparse', rotor_states(times), {ROTOR: JOINT_STATE})
     slow, fast = next(names), next(names)
     heard = {name: listener.listen(name) for name in (slow, fast)}
     with (
@@ -206,7 +192,8 @@ def test_a_loop_repeats_until_a_signal(number, bag_path, recorded, listener):
 
 
 def test_a_signal_ends_a_long_silence(tmp_path, listener):
-    path = write(tmp_path / 'silence', rotor_states([SECOND, 3600 * SECOND]), {ROTOR: JOINT_STATE})
+    states = rotor_states([SECOND, 3600 * SECOND])
+    path = write_bag(tmp_path / 'silence', states, {ROTOR: JOINT_STATE})
     name = next(names)
     heard = listener.listen(name)
     with playing(path, {ROTOR: name}) as process:
@@ -388,7 +375,7 @@ def test_messages_before_damage_are_played(listener):
 
 
 def config(name: str = 'actuator', **changed) -> dict:
-    return parameters.load(ROOT / 'config' / f'{name}.yaml') | changed
+    return parameters.load(CONFIGS / f'{name}.yaml') | changed
 
 
 def by_topic(messages) -> dict[str, list[bytes]]:

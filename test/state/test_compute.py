@@ -5,23 +5,17 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import replaying
 from gear_recordings import old_recording
-from live import rotor_bytes
+from live import SECOND, rotor_bytes
 from mcap.reader import make_reader
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
-from rosbags.typesys import Stores, get_typestore
+from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
 
-from gear_kinematics.bag import Bag, BagError, BagWriter, DamagedBagError
+from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.state import parameters
 from gear_kinematics.state.compute import ComputeResult, compute
 
-ROOT = Path(__file__).resolve().parents[2]
-BAGS = ROOT / 'bags'
-TYPES = {
-    '/rotor_state': 'sensor_msgs/msg/JointState',
-    '/output_state': 'sensor_msgs/msg/JointState',
-    '/body_poses': 'geometry_msgs/msg/PoseArray',
-}
 OUTPUTS = ('/output_state', '/body_poses')
 SHIPPED = {
     'servo_point_to_point': (3000, 3000),
@@ -29,35 +23,19 @@ SHIPPED = {
     'single_turn_encoder': (2500, 2500),
     'driver_faults': (1314, 1265),
 }
-SECOND = 1_000_000_000
 UNKNOWN = b'\x00\x01\x00\x00nobody knows'
 
 
 def config(name: str = 'actuator', **changed) -> dict:
-    return parameters.load(ROOT / 'config' / f'{name}.yaml') | changed
+    return parameters.load(CONFIGS / f'{name}.yaml') | changed
 
 
 def config_of(bag: str) -> dict:
     return config('single_turn' if bag == 'single_turn_encoder' else 'actuator')
 
 
-def read(path: Path) -> list[tuple[str, int, bytes]]:
-    """Read a bag by rosbags alone."""
-    with Reader(path) as reader:
-        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
-
-
 def of_topic(messages, topic) -> list[bytes]:
     return [data for found, _, data in messages if found == topic]
-
-
-def write(path: Path, messages, types=TYPES) -> Path:
-    with BagWriter(path) as writer:
-        for topic, kind in types.items():
-            writer.add_topic(topic, kind)
-        for message in messages:
-            writer.write(*message)
-    return path
 
 
 def run(source: Path, target: Path, settings=None, **options) -> ComputeResult:
@@ -80,9 +58,7 @@ def rotor_only(tmp_path) -> Path:
     path = tmp_path / 'rotor_only'
     joint_state = TYPES['/rotor_state']
     with Writer(path, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
-        rotor = writer.add_connection(
-            '/rotor_state', joint_state, typestore=get_typestore(Stores.ROS2_JAZZY)
-        )
+        rotor = writer.add_connection('/rotor_state', joint_state, typestore=replaying.TYPESTORE)
         other = writer.add_connection(
             '/grip', 'acme_msgs/msg/Grip', msgdef='uint8 force\n', rihs01='RIHS01_' + 64 * 'a'
         )
@@ -99,13 +75,13 @@ def rotor_only(tmp_path) -> Path:
 @pytest.mark.parametrize('name', SHIPPED)
 @pytest.mark.parametrize('recorded_outputs', [True, False], ids=['replaced', 'added'])
 def test_the_computed_outputs_are_those_that_the_node_published(name, recorded_outputs, tmp_path):
-    recorded = read(BAGS / name)
+    recorded = read_bag(BAGS / name)
     source = BAGS / name
     if not recorded_outputs:
         rotor = [message for message in recorded if message[0] == '/rotor_state']
-        source = write(tmp_path / 'source', rotor, {'/rotor_state': TYPES['/rotor_state']})
+        source = write_bag(tmp_path / 'source', rotor, {'/rotor_state': TYPES['/rotor_state']})
     result = run(source, tmp_path / 'computed', config_of(name))
-    computed = read(tmp_path / 'computed')
+    computed = read_bag(tmp_path / 'computed')
     received, valid = SHIPPED[name]
     assert Counter(topic for topic, *_ in computed) == {
         '/rotor_state': received,
@@ -131,7 +107,7 @@ def test_rejected_inputs_are_counted_by_cause(tmp_path):
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
 def test_each_output_comes_right_after_its_rotor_message(storage, rotor_only, tmp_path):
     run(rotor_only, tmp_path / 'computed', config(), storage=storage)
-    messages = read(tmp_path / 'computed')
+    messages = read_bag(tmp_path / 'computed')
     positions = [k for k, (topic, *_) in enumerate(messages) if topic == '/rotor_state']
     assert len(positions) == 40
     for k in positions:
@@ -142,7 +118,7 @@ def test_each_output_comes_right_after_its_rotor_message(storage, rotor_only, tm
 def test_other_topics_survive_with_their_unknown_types(rotor_only, tmp_path):
     result = run(rotor_only, tmp_path / 'computed', config())
     assert result.copied == 4
-    before, after = read(rotor_only), read(tmp_path / 'computed')
+    before, after = read_bag(rotor_only), read_bag(tmp_path / 'computed')
     assert [m for m in after if m[0] not in OUTPUTS] == before
     with Reader(rotor_only) as one, Reader(tmp_path / 'computed') as two:
         descriptions = [
@@ -172,7 +148,7 @@ def test_topics_of_undefined_types_are_copied_and_named(tmp_path):
         result = run(source, tmp_path / storage, config(), storage=storage)
         assert (result.computed, result.copied) == (3, 1)
         assert (result.left_out, result.undefined) == ((), ('/grip',))
-        assert of_topic(read(tmp_path / storage), '/grip') == [UNKNOWN]
+        assert of_topic(read_bag(tmp_path / storage), '/grip') == [UNKNOWN]
 
 
 def test_topics_are_left_out_and_named(rotor_only, tmp_path):
@@ -181,7 +157,7 @@ def test_topics_are_left_out_and_named(rotor_only, tmp_path):
         result = run(rotor_only, target, config(), topics=topics)
         assert result.left_out == left_out
         assert result.copied == (0 if left_out else 4)
-        assert {topic for topic, *_ in read(target)} == {
+        assert {topic for topic, *_ in read_bag(target)} == {
             '/rotor_state',
             *OUTPUTS,
             *({'/grip'} - set(left_out)),
@@ -189,35 +165,34 @@ def test_topics_are_left_out_and_named(rotor_only, tmp_path):
 
 
 def test_topics_have_the_names_that_were_asked_for(rotor_only, tmp_path):
-    renamed = write(
+    renamed = write_bag(
         tmp_path / 'renamed',
-        [('/motor', *rest) for topic, *rest in read(rotor_only) if topic == '/rotor_state'],
+        [('/motor', *rest) for topic, *rest in read_bag(rotor_only) if topic == '/rotor_state'],
         {'/motor': TYPES['/rotor_state']},
     )
     names = {'rotor_topic': '/motor', 'output_topic': '/shaft', 'poses_topic': '/bodies'}
     run(renamed, tmp_path / 'computed', config(), **names)
-    counts = Counter(topic for topic, *_ in read(tmp_path / 'computed'))
+    counts = Counter(topic for topic, *_ in read_bag(tmp_path / 'computed'))
     assert counts == {'/motor': 40, '/shaft': 40, '/bodies': 40}
 
 
 def test_an_input_without_a_stamp_gets_the_time_of_its_reception(tmp_path):
     times = [5 * SECOND, 5 * SECOND + 7]
     messages = [('/rotor_state', time, rotor_bytes(0, position=[1.0])) for time in times]
-    result = run(write(tmp_path / 'source', messages), tmp_path / 'computed', config())
+    result = run(write_bag(tmp_path / 'source', messages), tmp_path / 'computed', config())
     assert result.zero_stamps == 2
-    typestore = get_typestore(Stores.ROS2_JAZZY)
     for topic in OUTPUTS:
-        outputs = of_topic(read(tmp_path / 'computed'), topic)
-        stamps = [typestore.deserialize_cdr(d, TYPES[topic]).header.stamp for d in outputs]
-        assert [stamp.sec * SECOND + stamp.nanosec for stamp in stamps] == times
+        outputs = of_topic(read_bag(tmp_path / 'computed'), topic)
+        decoded = [replaying.decode(data, TYPES[topic]) for data in outputs]
+        assert [replaying.stamp_of(message) for message in decoded] == times
 
 
 def test_a_time_of_reception_that_no_stamp_can_hold_gives_no_output(tmp_path):
     times = [5 * SECOND, 2**31 * SECOND - 1, 2**31 * SECOND, 2**63 - 1]
     messages = [('/rotor_state', time, rotor_bytes(0, position=[1.0])) for time in times]
-    result = run(write(tmp_path / 'source', messages), tmp_path / 'computed', config())
+    result = run(write_bag(tmp_path / 'source', messages), tmp_path / 'computed', config())
     assert (result.computed, result.rejected) == (2, {'stamp out of range': 2})
-    assert Counter(topic for topic, *_ in read(tmp_path / 'computed'))['/rotor_state'] == 4
+    assert Counter(topic for topic, *_ in read_bag(tmp_path / 'computed'))['/rotor_state'] == 4
 
 
 @pytest.mark.slow
@@ -233,7 +208,7 @@ def test_the_same_input_gives_the_same_bytes_in_every_storage(storage, compressi
     with Bag(tmp_path / 'one' / 'computed') as bag:
         computed = list(bag.messages(TYPES))
     for topic in TYPES:
-        assert of_topic(computed, topic) == of_topic(read(BAGS / 'driver_faults'), topic)
+        assert of_topic(computed, topic) == of_topic(read_bag(BAGS / 'driver_faults'), topic)
 
 
 def test_computing_a_computed_bag_changes_nothing(tmp_path):
@@ -249,7 +224,7 @@ def test_another_implementation_reads_the_result(tmp_path):
     assert path.name == 'computed_0.mcap'  # as rosbag2 names it
     with path.open('rb') as stream:
         found = [(c.topic, m.data) for _, c, m in make_reader(stream).iter_messages()]
-    recorded = read(BAGS / 'single_turn_encoder')
+    recorded = read_bag(BAGS / 'single_turn_encoder')
     for topic in TYPES:
         assert [data for name, data in found if name == topic] == of_topic(recorded, topic)
 
@@ -300,7 +275,7 @@ def test_an_existing_target_is_left_alone(tmp_path):
 
 def joint_states(path: Path, count: int, joint: str = 'rotor') -> Path:
     data = [rotor_bytes(SECOND + k, [joint], [0.0]) for k in range(count)]
-    return write(path, [('/rotor_state', SECOND + k, item) for k, item in enumerate(data)])
+    return write_bag(path, [('/rotor_state', SECOND + k, item) for k, item in enumerate(data)])
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,14 @@ import math
 import struct
 from dataclasses import replace
 from fractions import Fraction
-from pathlib import Path
 
 import pytest
 import replaying
 from calibrations import calibration
 from live import rotor_bytes
-from rosbags.rosbag2 import Reader
+from shipped_bags import BAGS, JOINT_STATE, TYPES, read_bag, write_bag
 
-from gear_kinematics.bag import BagWriter, Message
+from gear_kinematics.bag import Message
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
@@ -25,27 +24,15 @@ from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
-BAGS = Path(__file__).resolve().parents[2] / 'bags'
 STATE, INTERVAL = '/corrected_state', '/corrected_interval'
 NAMES = {'corrected_state': STATE, 'corrected_interval': INTERVAL}
 IDEAL = ('output_state', 'body_poses')
-JOINT_STATE = 'sensor_msgs/msg/JointState'
 MADE = replace(calibration(), spans=replace(calibration().spans, speed=(-40.0, 40.0)))
 WITHIN_TURN = replace(
     MADE,
     orders=(Order('rotor × 1', Fraction(1), 1e-3, 2e-4),),
     covariance=tuple(tuple(float(k == n) for k in range(5)) for n in range(5)),
 )
-
-
-@pytest.fixture(scope='module')
-def config() -> dict:
-    return parameters.load(parameters.default_config())
-
-
-def read(name: str) -> list[Message]:
-    with Reader(BAGS / name) as reader:
-        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
 
 
 def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
@@ -72,7 +59,7 @@ def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
 
 @pytest.fixture(scope='module')
 def servo(config) -> list[Message]:
-    return corrected(read('servo_point_to_point'), config)
+    return corrected(read_bag(BAGS / 'servo_point_to_point'), config)
 
 
 def validate(messages, config, made=MADE, **options):
@@ -102,7 +89,7 @@ def changed(messages, topic: str, number: int, **fields):
     [('servo_point_to_point', 3000), ('constant_speed_3000rpm', 3000), ('driver_faults', 1265)],
 )
 def test_what_the_node_publishes_passes(config, name, samples):
-    report = validate(corrected(read(name), config), config)
+    report = validate(corrected(read_bag(BAGS / name), config), config)
     assert report.verdict == Verdict.PASS, report.findings
     for topic in (STATE, INTERVAL):
         assert of_topic(report, topic).compared == samples
@@ -168,7 +155,7 @@ def test_only_the_topics_that_were_recorded_are_judged(config, servo):
 
 
 def test_recording_in_which_nothing_was_corrected_is_judged_as_before(config):
-    report = validate(read('servo_point_to_point'), config)
+    report = validate(read_bag(BAGS / 'servo_point_to_point'), config)
     assert report.verdict == Verdict.PASS
     assert [topic.topic for topic in report.topics] == ['/output_state', '/body_poses']
 
@@ -240,7 +227,7 @@ def test_missing_velocities_are_those_of_the_travel_wherever_the_recording_begin
         return topic, received, bytes(replaying.TYPESTORE.serialize_cdr(state, JOINT_STATE))
 
     made = replace(MADE, spans=replace(MADE.spans, speed=(-0.5, 0.5)))
-    bag = [without_velocity(message) for message in read('servo_point_to_point')]
+    bag = [without_velocity(message) for message in read_bag(BAGS / 'servo_point_to_point')]
     messages = corrected(bag, config, made)
     widths = {
         replaying.decode(data, JOINT_STATE).position[0] > 1.9e-3
@@ -253,14 +240,14 @@ def test_missing_velocities_are_those_of_the_travel_wherever_the_recording_begin
 
 
 def test_prefix_is_that_of_the_other_outputs(config):
-    rotor_states = [m for m in read('servo_point_to_point') if m[0] == '/rotor_state']
+    rotor_states = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
     messages = answered(rotor_states, config, frame_prefix='left_')
     messages = corrected(messages, config | {'frame_prefix': 'left_'})
     assert validate(messages, config).verdict == Verdict.PASS
 
 
 def test_zero_of_the_rotor_moves_the_orders_with_the_ideal_output(config):
-    rotor_states = [m for m in read('servo_point_to_point') if m[0] == '/rotor_state']
+    rotor_states = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
     homed = config | {'rotor_zero': 0.5}
     messages = corrected(answered(rotor_states, homed), homed)
     assert validate(messages, config).verdict == Verdict.FAIL
@@ -288,7 +275,7 @@ def test_messages_without_a_calibration_are_named(config, servo):
 
 def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
     config = parameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
-    bag = read('single_turn_encoder')
+    bag = read_bag(BAGS / 'single_turn_encoder')
     report = validate(corrected(bag, config, WITHIN_TURN), config, WITHIN_TURN)
     assert report.verdict == Verdict.PASS, report.findings
     assert of_topic(report, STATE).compared == 2500
@@ -310,13 +297,12 @@ def test_operator_that_never_settles_is_judged_within_its_reach(config):
 
 
 def test_bag_with_the_topics_in_a_namespace_is_validated(config, servo, tmp_path):
-    path = tmp_path / 'bag'
-    kinds = dict.fromkeys(['/rotor_state', '/output_state', STATE, INTERVAL], JOINT_STATE)
-    with BagWriter(path) as writer:
-        for topic, kind in (kinds | {'/body_poses': 'geometry_msgs/msg/PoseArray'}).items():
-            writer.add_topic(f'/left{topic}', kind)
-        for topic, received, data in servo:
-            writer.write(f'/left{topic}', received, data)
+    kinds = TYPES | dict.fromkeys([STATE, INTERVAL], JOINT_STATE)
+    path = write_bag(
+        tmp_path / 'bag',
+        [(f'/left{topic}', received, data) for topic, received, data in servo],
+        {f'/left{topic}': kind for topic, kind in kinds.items()},
+    )
     task = Task(path, config, '', Tolerances(), calibration=MADE)
     report = validate_bag(task)
     assert report.verdict == Verdict.PASS, report

@@ -21,8 +21,9 @@ from blocked_bags import (
     wait_until,
 )
 from dask_cluster import cluster
+from shipped_bags import ROTOR, TYPES, write_bag
 
-from gear_kinematics.bag import Bag, BagError, BagWriter
+from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
@@ -33,7 +34,6 @@ from gear_kinematics.validation.fleet import (
 )
 from gear_kinematics.validation.output_topics import Tolerances
 
-JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 SHIPPED = [
     'constant_speed_3000rpm',
     'driver_faults',
@@ -78,17 +78,11 @@ def cut(path: Path) -> None:
 
 
 def of_wrong_type(path: Path) -> None:
-    with BagWriter(path) as writer:
-        writer.add_topic('/rotor_state', 'std_msgs/msg/String')
-        writer.add_topic('/output_state', JOINT_STATE)
-        writer.add_topic('/body_poses', POSE_ARRAY)
+    write_bag(path, [], TYPES | {ROTOR: 'std_msgs/msg/String'})
 
 
 def without_messages(path: Path) -> None:
-    with BagWriter(path) as writer:
-        writer.add_topic('/rotor_state', JOINT_STATE)
-        writer.add_topic('/output_state', JOINT_STATE)
-        writer.add_topic('/body_poses', POSE_ARRAY)
+    write_bag(path, [])
 
 
 def with_bad_metadata(path: Path) -> None:

@@ -3,13 +3,13 @@
 import math
 import random
 import struct
-from pathlib import Path
 
 import numpy as np
 import pytest
 import replaying
+from replaying import SECOND
 from rosbag2_recorder import Message, record
-from rosbags.rosbag2 import Reader
+from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
@@ -20,12 +20,8 @@ from gear_kinematics.validation.recorder import BEFORE, NO_INPUT
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
 
-ROOT = Path(__file__).resolve().parents[2]
-RECORDED = ROOT.parent / 'shared' / 'data' / 'recorded'
-ROTOR, OUTPUT, POSES = TOPICS = '/rotor_state', '/output_state', '/body_poses'
-JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
-TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: POSE_ARRAY}
-SECOND = 1_000_000_000
+RECORDED = BAGS.parents[1] / 'shared' / 'data' / 'recorded'
+TOPICS = (ROTOR, OUTPUT, POSES)
 RATES = {  # Hz: a recording, and which of its messages; the output follows from each alone
     50: ('servo_point_to_point', 10),
     100: ('servo_point_to_point', 5),
@@ -36,19 +32,11 @@ RATES = {  # Hz: a recording, and which of its messages; the output follows from
 
 
 @pytest.fixture(scope='module')
-def config() -> dict:
-    return parameters.load(parameters.default_config())
-
-
-@pytest.fixture(scope='module')
 def traffic() -> dict[int, list[Message]]:
     """The messages of 6 s at each rate."""
 
     def at(name: str, every: int) -> list[Message]:
-        with Reader(ROOT / 'bags' / name) as reader:
-            messages = [
-                Message(c.topic, received, bytes(data)) for c, received, data in reader.messages()
-            ]
+        messages = [Message(*message) for message in read_bag(BAGS / name)]
         count = dict.fromkeys(TOPICS, 0)
         kept = []
         for message in messages:
@@ -253,9 +241,8 @@ def test_a_driver_slower_than_a_hertz_may_be_recorded_too(traffic, config):
 
 @pytest.fixture(scope='module')
 def single_turn() -> tuple[dict, list[Message]]:
-    with Reader(ROOT / 'bags' / 'single_turn_encoder') as reader:
-        messages = [Message(c.topic, t, bytes(data)) for c, t, data in reader.messages()]
-    return parameters.load(ROOT / 'config' / 'single_turn.yaml'), messages
+    messages = [Message(*message) for message in read_bag(BAGS / 'single_turn_encoder')]
+    return parameters.load(CONFIGS / 'single_turn.yaml'), messages
 
 
 def output_turns(message: Message) -> float:

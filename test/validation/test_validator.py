@@ -4,12 +4,12 @@ import math
 import struct
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 import replaying
-from rosbags.rosbag2 import Reader
+from replaying import SECOND
+from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 
 from gear_kinematics.bag import Message
 from gear_kinematics.bag.roles import Topics
@@ -22,29 +22,14 @@ from gear_kinematics.validation.report import BagReport, TopicReport
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.validation.wording import findings
 
-BAGS = Path(__file__).resolve().parents[2] / 'bags'
-ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
-JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
-TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: POSE_ARRAY}
-SECOND = 1_000_000_000
 CHANGED = 100
 """Number of the changed message of a topic."""
 
 
 @pytest.fixture(scope='module')
-def config() -> dict:
-    return parameters.load(parameters.default_config())
-
-
-def read(name: str) -> list[Message]:
-    with Reader(BAGS / name) as reader:
-        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
-
-
-@pytest.fixture(scope='module')
 def recorded() -> list[Message]:
     """The first 300 samples of a servo's move, and their outputs."""
-    return read('servo_point_to_point')[:900]
+    return read_bag(BAGS / 'servo_point_to_point')[:900]
 
 
 def validate(messages: list[Message], config: dict, **options) -> BagReport:
@@ -114,10 +99,10 @@ def set_stamp(message, stamp: int) -> None:
 @pytest.mark.parametrize('tolerance', [1e-9, 1e-12])
 def test_shipped_recordings_pass(name, single_turn, messages, compared, tolerance, config):
     if single_turn:
-        config = parameters.load(BAGS.parent / 'config' / 'single_turn.yaml')
+        config = parameters.load(CONFIGS / 'single_turn.yaml')
     tolerances = Tolerances(tolerance, tolerance * 0.0011)
     for solver in ({}, {'solver': matrix_method.solve}):
-        report = validate(read(name), config, tolerances=tolerances, **solver)
+        report = validate(read_bag(BAGS / name), config, tolerances=tolerances, **solver)
         assert report.verdict == Verdict.PASS
         assert report.messages == messages
         assert [t.compared for t in report.topics] == [compared, compared]
@@ -126,7 +111,7 @@ def test_shipped_recordings_pass(name, single_turn, messages, compared, toleranc
 
 
 def test_the_input_is_described(config):
-    rotor = validate(read('driver_faults'), config).rotor
+    rotor = validate(read_bag(BAGS / 'driver_faults'), config).rotor
     assert rotor.rejected == {
         'out of order': 12,
         'position not finite': 12,
@@ -245,8 +230,8 @@ def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topi
 @pytest.mark.parametrize('value', [1e17, 1e100])
 def test_garbage_in_the_first_output_gives_no_turns(value):
     """The turns of the single-turn encoder are then taken from the next output."""
-    config = parameters.load(BAGS.parent / 'config' / 'single_turn.yaml')
-    messages = read('single_turn_encoder')
+    config = parameters.load(CONFIGS / 'single_turn.yaml')
+    messages = read_bag(BAGS / 'single_turn_encoder')
     index = index_of(messages, OUTPUT, 1)
     topic, received, data = messages[index]
     messages[index] = topic, received, edited(data, topic, lambda m: m.position.fill(value))
@@ -556,7 +541,7 @@ def test_batches_leave_no_seams(recorded, config):
 
 
 def test_a_bag_that_loops_restarts(config):
-    messages = read('servo_point_to_point')
+    messages = read_bag(BAGS / 'servo_point_to_point')
     looped = messages + messages
     report = validate(looped, config)
     assert report.verdict == Verdict.PASS
@@ -583,7 +568,7 @@ def test_missing_messages_are_counted_exactly_in_long_recordings(recorded, confi
 
 def test_gaps_that_could_hide_a_turn_are_named(config):
     single = {**config, 'rotor_encoder': 'single_turn', 'max_rotor_speed': 2000.0}
-    report = validate(read('driver_faults'), single)
+    report = validate(read_bag(BAGS / 'driver_faults'), single)
     assert report.rotor.jumps > 0
     assert not report.rotor.referenced
     assert any('hide a turn' in finding for finding in report.findings)
@@ -725,7 +710,7 @@ def test_the_curve_of_poses_is_that_of_what_is_farthest_off(
 
 def test_lanes_tell_when_something_happened(config):
     """The faulty driver, and two messages of output_state missing, one twice, two swapped."""
-    messages = read('driver_faults')
+    messages = read_bag(BAGS / 'driver_faults')
     places = [k for k, (topic, *_) in enumerate(messages) if topic == OUTPUT]
     stamps = [replaying.stamp_of(replaying.decode(messages[k][2], JOINT_STATE)) for k in places]
     a, b = places[700], places[701]
@@ -858,8 +843,8 @@ def test_progress_is_reported(recorded, config):
 def test_of_a_gear_with_only_a_ratio_the_output_alone_is_validated(name):
     """The node recorded these outputs of a mechanism with this ratio."""
     file = 'single_turn' if name == 'single_turn_encoder' else 'actuator'
-    config = parameters.load(BAGS.parent / 'config' / f'{file}.yaml')
-    report = validate(read(name), config | {'gear_ratio': '-19'}, tolerances=Tolerances(1e-12))
+    config = parameters.load(CONFIGS / f'{file}.yaml') | {'gear_ratio': '-19'}
+    report = validate(read_bag(BAGS / name), config, tolerances=Tolerances(1e-12))
     assert report.verdict == Verdict.PASS
     assert [topic.topic for topic in report.topics] == [OUTPUT]
     assert report.topics[0].compared > 1000

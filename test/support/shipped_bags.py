@@ -1,0 +1,28 @@
+"""The shipped bags, their topics, and bags as rosbags reads them and the project writes them."""
+
+from pathlib import Path
+
+from rosbags.rosbag2 import Reader
+
+from gear_kinematics.bag import BagWriter, Message
+
+BAGS = Path(__file__).resolve().parents[2] / 'bags'
+CONFIGS = BAGS.parent / 'config'
+JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
+ROTOR, OUTPUT, POSES = '/rotor_state', '/output_state', '/body_poses'
+TYPES = {ROTOR: JOINT_STATE, OUTPUT: JOINT_STATE, POSES: POSE_ARRAY}
+
+
+def read_bag(path: Path) -> list[Message]:
+    """Read a bag by rosbags alone."""
+    with Reader(path) as reader:
+        return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
+
+
+def write_bag(path: Path, messages, types=TYPES) -> Path:
+    with BagWriter(path) as writer:
+        for topic, kind in types.items():
+            writer.add_topic(topic, kind)
+        for message in messages:
+            writer.write(*message)
+    return path
