@@ -5,7 +5,7 @@ import shutil
 from fractions import Fraction
 
 import pytest
-from blocked_bags import BAGS
+from blocked_bags import BAGS, refusal
 from calibrations import calibration
 
 from gear_kinematics.bag import Bag
@@ -86,7 +86,7 @@ def test_without_a_calibration_the_rest_is_validated_and_the_report_says_so(comp
 
 
 @pytest.mark.parametrize('command', ['validate', 'compute', 'plot'])
-def test_calibration_of_another_gear_is_refused(command, tmp_path, capsys):
+def test_calibration_of_another_gear_is_refused(command, tmp_path):
     path, out = tmp_path / 'other.yaml', tmp_path / 'out.svg'
     other = calibration(ring_teeth=61, satellite_teeth=58, gear_ratio=Fraction(-58, 3))
     path.write_text(other.text(), 'utf-8')
@@ -95,16 +95,13 @@ def test_calibration_of_another_gear_is_refused(command, tmp_path, capsys):
         'compute': ['compute', SERVO, out],
         'plot': ['plot', 'output', out, '--bag', SERVO],
     }[command]
-    assert main([*map(str, words), '--calibration', str(path)]) == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert f'{path}: calibrated for gear ratio -58/3' in line
+    assert f'{path}: calibrated for gear ratio -58/3' in refusal(*words, '--calibration', path)
     assert not out.exists()
 
 
-def test_computed_topic_of_that_name_is_refused_as_input(file, tmp_path, capsys):
+def test_computed_topic_of_that_name_is_refused_as_input(file, tmp_path):
     words = ['--rotor-topic', '/rotor_state', '--output-topic', '/corrected_state']
     out = tmp_path / 'out'
-    options = ['--calibration', str(file)]
-    assert main(['compute', str(SERVO), str(out), *words, *options]) == 2
-    assert 'the names must differ' in capsys.readouterr().err
+    options = ['--calibration', file]
+    assert 'the names must differ' in refusal('compute', SERVO, out, *words, *options)
     assert not out.exists()

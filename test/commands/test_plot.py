@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from blocked_bags import refusal
 from gear_recordings import Samples, write_recording
 
 from gear_kinematics.bag import BagWriter
@@ -175,13 +176,12 @@ def test_ffmpeg_is_taken_from_its_package_where_the_system_has_none(tmp_path, mo
 
 
 MISSING = (
-    'ffmpeg is not installed: install it with the system, or '
-    "pip install 'gear_kinematics[video]'\n"
+    "ffmpeg is not installed: install it with the system, or pip install 'gear_kinematics[video]'"
 )
 
 
 @pytest.mark.parametrize('code', [1, None], ids=['that fails', 'that is missing'])
-def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
+def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch):
     if code is None:
         monkeypatch.setenv('PATH', str(tmp_path))
         monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', None)
@@ -189,12 +189,8 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
         monkeypatch.setattr('gear_kinematics.commands.animate.plotting.animate', None)
     else:
         fake_ffmpeg(tmp_path / 'bin', monkeypatch, code)
-    assert main(['animate', str(tmp_path / 'loop.mp4'), '--duration', '0.1']) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ''
-    assert captured.err.count('\n') == 1
-    cause = 'ffmpeg failed: ' if code else MISSING
-    assert captured.err.startswith(f'gearkin: {cause}')
+    error = refusal('animate', tmp_path / 'loop.mp4', '--duration', '0.1')
+    assert error.startswith('ffmpeg failed: ' if code else MISSING)
     assert not (tmp_path / 'loop.mp4').exists()
 
 
@@ -239,27 +235,18 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch, capsys):
         (['animate', 'none/a.gif', '--duration', '0.1'], 'none/a.gif: No such file or directory'),
     ],
 )
-def test_unusable_input_gets_one_clear_line_and_no_file(
-    arguments, cause, tmp_path, monkeypatch, capsys
-):
+def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert main(arguments) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ''
-    assert captured.err.count('\n') == 1
-    assert captured.err.startswith('gearkin: ')
-    assert cause in captured.err
+    assert cause in refusal(*arguments)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_bag_without_a_rotor_topic_is_refused(tmp_path, capsys):
+def test_bag_without_a_rotor_topic_is_refused(tmp_path):
     with BagWriter(tmp_path / 'bag') as writer:
         writer.add_topic('/poses', 'geometry_msgs/msg/PoseArray')
     for command in (['plot', 'output'], ['animate']):
         path = tmp_path / ('a.gif' if command == ['animate'] else 'a.png')
-        assert main([*command, str(path), '--bag', str(tmp_path / 'bag')]) == 2
-        error = capsys.readouterr().err
-        assert error.count('\n') == 1
+        error = refusal(*command, path, '--bag', tmp_path / 'bag')
         assert 'no topic rotor_state of type sensor_msgs/msg/JointState in it' in error
         assert not path.exists()
 
@@ -369,14 +356,7 @@ def test_figures_take_the_width_of_a_paper(tmp_path):
         ),
     ],
 )
-def test_sizes_that_no_paper_has_are_refused(arguments, cause, tmp_path, monkeypatch, capsys):
+def test_sizes_that_no_paper_has_are_refused(arguments, cause, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    try:
-        code = main(arguments)
-    except SystemExit as left:  # of argparse
-        code = left.code
-    assert code == 2
-    error = capsys.readouterr().err
-    assert error.count('\n') == 1
-    assert cause in error
+    assert cause in refusal(*arguments)
     assert list(tmp_path.iterdir()) == []

@@ -7,6 +7,7 @@ from pathlib import Path
 from urllib.parse import unquote, urlsplit
 
 import pytest
+from blocked_bags import refusal
 
 from gear_kinematics.commands.cli import main
 
@@ -68,22 +69,18 @@ def test_own_meshes_are_replaced_and_no_others(capsys, tmp_path):
     for path in tmp_path.iterdir():
         path.unlink()
     (tmp_path / 'cam.stl').write_text('solid cam')
-    assert main(['urdf', '--meshes', str(tmp_path)]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ''
-    assert captured.err == f'gearkin: {tmp_path}/cam.stl is not from gearkin, and is kept\n'
+    error = f'{tmp_path}/cam.stl is not from gearkin, and is kept'
+    assert refusal('urdf', '--meshes', tmp_path) == error
     assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [
         ('cam.stl', 'solid cam')
     ]
 
 
-def test_file_in_the_place_of_the_folder_is_refused(capsys, tmp_path):
+def test_file_in_the_place_of_the_folder_is_refused(tmp_path):
     (tmp_path / 'file').touch()
     for folder in (tmp_path / 'file', tmp_path / 'file/below'):
-        assert main(['urdf', '--meshes', str(folder)]) == 2
-        captured = capsys.readouterr()
-        assert captured.out == ''
-        assert re.fullmatch(rf'gearkin: {re.escape(str(tmp_path))}/file.*: .*\n', captured.err)
+        error = refusal('urdf', '--meshes', folder)
+        assert re.fullmatch(rf'{re.escape(str(tmp_path))}/file.*: .*', error)
 
 
 def test_teeth_that_cannot_mesh_are_told_beside_the_urdf(capsys, tmp_path):
@@ -95,22 +92,14 @@ def test_teeth_that_cannot_mesh_are_told_beside_the_urdf(capsys, tmp_path):
     assert captured.err.startswith('The gears are drawn as circles: ')
 
 
-def test_urdf_without_meshes_needs_no_extra(capsys, tmp_path, monkeypatch):
+def test_urdf_without_meshes_needs_no_extra(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, 'mapbox_earcut', None)
     assert main(['urdf']) == 0
-    capsys.readouterr()
-    assert main(['urdf', '--meshes', str(tmp_path / 'm')]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ''
-    assert captured.err == (
-        "gearkin: mapbox_earcut is not installed: pip install 'gear_kinematics[mesh]'\n"
-    )
+    error = "mapbox_earcut is not installed: pip install 'gear_kinematics[mesh]'"
+    assert refusal('urdf', '--meshes', tmp_path / 'm') == error
     assert not (tmp_path / 'm').exists()
 
 
-def test_uri_that_is_none_is_refused(capsys):
-    with pytest.raises(SystemExit):
-        main(['urdf', '--mesh-uri', 'my meshes'])
-    captured = capsys.readouterr()
-    assert captured.err.startswith('gearkin: argument --mesh-uri: must be auto, none or a URI')
-    assert captured.err.count('\n') == 1
+def test_uri_that_is_none_is_refused():
+    error = refusal('urdf', '--mesh-uri', 'my meshes')
+    assert error.startswith('argument --mesh-uri: must be auto, none or a URI')

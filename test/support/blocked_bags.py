@@ -2,6 +2,7 @@
 
 import io
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -29,8 +30,24 @@ def gearkin_here(*arguments, cwd='.') -> subprocess.CompletedProcess[str]:
     words = [*map(str, arguments)]
     output, errors = io.StringIO(), io.StringIO()
     with chdir(cwd), redirect_stdout(output), redirect_stderr(errors):
-        code = main(words)
+        try:
+            code = main(words)
+        except SystemExit as left:  # of argparse
+            code = left.code
     return subprocess.CompletedProcess(words, code, output.getvalue(), errors.getvalue())
+
+
+def refusal(*arguments, report='') -> str:
+    """Run a command that prints one line on why it cannot do its work, and give the reason.
+
+    `report` is a pattern of what it prints besides.
+    """
+    done = gearkin_here(*arguments)
+    assert done.returncode == 2
+    assert re.fullmatch(report, done.stdout, re.DOTALL), done.stdout
+    found = re.fullmatch('gearkin: (.*)\n', done.stderr)
+    assert found, done.stderr
+    return found[1]
 
 
 @contextmanager
