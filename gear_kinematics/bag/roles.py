@@ -106,10 +106,7 @@ def joints_on(bag: Bag, topic: str) -> list[str]:
 
     None, if there is no readable message.
     """
-    with suppress(BagError, MalformedMessageError):
-        for _, _, data in bag.messages([topic]):
-            return joints_of(data)
-    return []
+    return _joints_on_each(bag, [topic])[topic]
 
 
 def _joints_on_each(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:

@@ -1,6 +1,5 @@
 """What is in a recording: its topics, their rates and gaps, and which part each plays."""
 
-import struct
 from collections import defaultdict
 from collections.abc import Mapping
 from contextlib import suppress
@@ -11,12 +10,14 @@ import numpy as np
 from gear_kinematics.bag.errors import BagError, DamagedBagError
 from gear_kinematics.bag.reading import Bag, ReportProgress, in_batches
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, find_topics, joints_on
-from gear_kinematics.wire.cdr import SECOND, STAMP, STAMP_OFFSET
+from gear_kinematics.wire.cdr import SECOND, header_stamp
 from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_STATE, POSE_ARRAY, TOPICS
 
 GAP = 5.0
 """Periods that count as a gap, in median periods."""
 _WITH_STAMPS = {JOINT_STATE, POSE_ARRAY}
+_UNSET = {-1, 0}
+"""Stamps of messages that are cut off, and of those without one."""
 _FEWEST = 10  # messages that have a rate
 
 
@@ -85,7 +86,8 @@ def summarise(
             bag.messages(bag.topics), progress=progress, total=bag.message_count
         ):
             for topic, received, data in batch:
-                times[topic].append((topic in stamped and _stamp(data)) or received)
+                stamp = header_stamp(data) if topic in stamped else 0
+                times[topic].append(received if stamp in _UNSET else stamp)
             if batch:
                 ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
@@ -122,14 +124,6 @@ def _parts(bag: Bag, rotor_topic: str | None, joint: str) -> tuple[Mapping[str, 
 def _part_of(name: str) -> str:
     known = TOPICS.get(name.rpartition('/')[2]) or TOPICS.get(name)
     return 'node' if known and known.publisher == 'node' else ''
-
-
-def _stamp(data: bytes) -> int:
-    """The stamp in the header of a message, ns; 0 if it is cut off."""
-    if len(data) < STAMP_OFFSET + STAMP.size:
-        return 0
-    seconds, nanoseconds = struct.unpack_from('<iI' if data[1] & 1 else '>iI', data, STAMP_OFFSET)
-    return int(seconds) * SECOND + int(nanoseconds)
 
 
 def _summary(name: str, kind: str, part: str, times: list[int], bag: Bag) -> TopicSummary:
