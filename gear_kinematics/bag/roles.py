@@ -19,6 +19,7 @@ from gear_kinematics.wire.topics import (
     OUTPUT_STATE,
     ROTOR_STATE,
     TOPICS,
+    base_name,
 )
 
 _PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
@@ -134,7 +135,7 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
     if given:
         bag.type_of(given, wanted)
         return given
-    named = [topic for topic in _of_type(bag.topics, wanted) if _base(topic) == OUTPUT_ENCODER]
+    named = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) == OUTPUT_ENCODER]
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
 
 
@@ -167,8 +168,8 @@ def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
 
 def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str) -> str:
     of_type = _of_type(available, TOPICS[name].type)
-    candidates = [topic for topic in of_type if _base(topic) == name] or [
-        topic for topic in of_type if _base(topic) not in TOPICS
+    candidates = [topic for topic in of_type if base_name(topic) == name] or [
+        topic for topic in of_type if base_name(topic) not in TOPICS
     ]
     if not candidates:
         raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
@@ -201,8 +202,3 @@ def described(joints: Sequence[str], most: int = 10) -> str:
 
 def _of_type(topics: Mapping[str, str], wanted: str) -> list[str]:
     return [topic for topic, kind in topics.items() if kind == wanted]
-
-
-def _base(topic: str) -> str:
-    """The name without its namespace."""
-    return topic.rpartition('/')[2]

@@ -11,7 +11,7 @@ from gear_kinematics.bag.errors import BagError, DamagedBagError
 from gear_kinematics.bag.reading import Bag, ReportProgress, in_batches
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, find_topics, joints_on
 from gear_kinematics.wire.cdr import SECOND, header_stamp
-from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_STATE, POSE_ARRAY, TOPICS
+from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_STATE, POSE_ARRAY, TOPICS, base_name
 
 GAP = 5.0
 """Periods that count as a gap, in median periods."""
@@ -122,7 +122,7 @@ def _parts(bag: Bag, rotor_topic: str | None, joint: str) -> tuple[Mapping[str, 
 
 
 def _part_of(name: str) -> str:
-    known = TOPICS.get(name.rpartition('/')[2]) or TOPICS.get(name)
+    known = TOPICS.get(base_name(name)) or TOPICS.get(name)
     return 'node' if known and known.publisher == 'node' else ''
 
 

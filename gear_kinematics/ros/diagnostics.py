@@ -51,7 +51,7 @@ def find_faults(
     """
     own_name = node.get_fully_qualified_name()
     errors = [
-        f'incompatible QoS on {subscription.topic}: {policy} (driver {_full_name(driver)})'
+        f'incompatible QoS on {subscription.topic}: {policy} (driver {full_name(driver)})'
         for subscription in subscriptions
         for driver in node.get_publishers_info_by_topic(subscription.topic)
         for policy in _unmet(subscription.qos_profile, driver.qos_profile)
@@ -60,12 +60,12 @@ def find_faults(
     shared = defaultdict(list)
     for topic in (publisher.topic for publisher in publishers):
         offers = {
-            _full_name(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
+            full_name(end): end.qos_profile for end in node.get_publishers_info_by_topic(topic)
         }
         # Ask the graph: in a publisher's own profile some policies are left to the middleware.
         if own_offer := offers.pop(own_name, None):
             warnings += [
-                f'incompatible QoS on {topic}: {policy} (listener {_full_name(listener)})'
+                f'incompatible QoS on {topic}: {policy} (listener {full_name(listener)})'
                 for listener in node.get_subscriptions_info_by_topic(topic)
                 for policy in _unmet(listener.qos_profile, own_offer)
             ]
@@ -80,7 +80,8 @@ def find_faults(
     return GraphFaults(errors, warnings)
 
 
-def _full_name(endpoint: TopicEndpointInfo) -> str:
+def full_name(endpoint: TopicEndpointInfo) -> str:
+    """Return the full name of the node of an endpoint."""
     return f'{endpoint.node_namespace.rstrip("/")}/{endpoint.node_name}'
 
 

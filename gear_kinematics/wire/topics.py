@@ -65,3 +65,8 @@ RECORDED_TOPICS: Mapping[str, str] = {
     f'/{name}': TOPICS[name].type for name in (ROTOR_STATE, OUTPUT_STATE, BODY_POSES)
 }
 """The topics in the root namespace that are validated in a recording, and their types."""
+
+
+def base_name(topic: str) -> str:
+    """Return the name of a topic without its namespace."""
+    return topic.rpartition('/')[2]

@@ -7,6 +7,7 @@ from typing import Any
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 
+from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.wire import topics
 
 _TRIGGER = 'std_srvs/srv/Trigger'
@@ -30,7 +31,8 @@ def gear_nodes(node: Node) -> list[str]:
         owner
         for owner in owners
         if owner in running
-        and len({_base(name) for name in published_by(node, owner)} & _OWN_STATES) >= _ENOUGH
+        and len({topics.base_name(name) for name in published_by(node, owner)} & _OWN_STATES)
+        >= _ENOUGH
     )
 
 
@@ -66,11 +68,11 @@ def known_as(expected: Mapping[str, str], found: Mapping[str, str]) -> dict[str,
         Full names by expected name: of the same last part, and what is left if that is one of a
         type on either side. The others are left out.
     """
-    relative = {name.rpartition('/')[2]: name for name in expected}
+    relative = {topics.base_name(name): name for name in expected}
     known = {
-        relative[_base(topic)]: topic
+        name: topic
         for topic, kind in found.items()
-        if _base(topic) in relative and expected[relative[_base(topic)]] == kind
+        if expected.get(name := relative.get(topics.base_name(topic), '')) == kind
     }
     for kind in set(expected.values()):
         missing = [name for name in expected if expected[name] == kind and name not in known]
@@ -88,12 +90,8 @@ def driver_topics(node: Node, gears: Iterable[str]) -> list[str]:
     return sorted(
         topic
         for topic, types in node.get_topic_names_and_types()
-        if topics.JOINT_STATE in types and topic not in own and _published(node, topic)
+        if topics.JOINT_STATE in types and topic not in own and node.count_publishers(topic)
     )
-
-
-def _published(node: Node, topic: str) -> bool:
-    return bool(node.count_publishers(topic))
 
 
 def publishers_of(node: Node, topic: str, name: str) -> set[bytes]:
@@ -101,7 +99,7 @@ def publishers_of(node: Node, topic: str, name: str) -> set[bytes]:
     return {
         bytes(end.endpoint_gid)
         for end in node.get_publishers_info_by_topic(topic)
-        if f'{end.node_namespace.rstrip("/")}/{end.node_name}' == name
+        if full_name(end) == name
     }
 
 
@@ -118,7 +116,3 @@ def _full_names(node: Node) -> list[str]:
         f'{namespace.rstrip("/")}/{name}'
         for name, namespace in node.get_node_names_and_namespaces()
     ]
-
-
-def _base(topic: str) -> str:
-    return topic.rpartition('/')[2]
