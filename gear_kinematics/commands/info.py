@@ -9,7 +9,15 @@ from gear_kinematics.bag.roles import described
 from gear_kinematics.bag.summary import Summary, TopicSummary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, complain, message_progress
-from gear_kinematics.report.document import Cell, Document, Section, Table, number, printable
+from gear_kinematics.report.document import (
+    Cell,
+    Document,
+    Section,
+    Table,
+    counted,
+    number,
+    printable,
+)
 from gear_kinematics.report.text import render
 from gear_kinematics.wire.nearest import listed
 
@@ -64,18 +72,17 @@ def _parts_of_line(summary: Summary) -> Iterator[str]:
     if summary.unclear:
         yield summary.unclear
     if others := len(summary.topics) - len(known):
-        yield f'{others} other topic{"s" if others > 1 else ""}'
+        yield counted(others, 'other topic')
     gaps = [topic for topic in known if topic.gaps]
     for topic in gaps:
-        count = '1 gap' if topic.gaps == 1 else f'{topic.gaps} gaps'
-        yield f'{count} on {topic.name}, up to {topic.longest_gap:.3g} s'
+        yield f'{counted(topic.gaps, "gap")} on {topic.name}, up to {topic.longest_gap:.3g} s'
     if known and not gaps:
         yield 'no gaps'
 
 
 def _rate(topic: TopicSummary) -> str:
     if topic.rate is None:
-        return f'{topic.messages} message{"" if topic.messages == 1 else "s"}'
+        return counted(topic.messages, 'message')
     return f'{number(topic.rate, _DIGITS)} Hz'
 
 

@@ -320,3 +320,8 @@ def number(value: float, digits: int = 3) -> str:
     """Write a measured value to significant digits, with the shortest exponent."""
     mantissa, e, exponent = f'{value:.{digits}g}'.partition('e')
     return f'{mantissa}{e}{int(exponent)}' if e else mantissa
+
+
+def counted(count: int, noun: str) -> str:
+    """Write a count with its noun."""
+    return f'{count} {noun}' if count == 1 else f'{count} {noun}s'

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.report.document import counted
 from gear_kinematics.state.uncertainty import student_t
 
 Array = NDArray[np.float64]
@@ -304,6 +305,6 @@ class UnseenTurns:
         if self.changes:
             said.append(
                 'the turns of the single-turn encoder are taken from the outputs again after '
-                f'{self.changes} gap{"s" * (self.changes > 1)}'
+                f'{counted(self.changes, "gap")}'
             )
         return said

@@ -10,18 +10,13 @@ from gear_kinematics.report.document import (
     Document,
     Section,
     Verdict,
+    counted,
     printable,
 )
 from gear_kinematics.validation.figure import figure, moving
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.tables import bag_name, summary, tables
-from gear_kinematics.validation.wording import (
-    counted,
-    field_faults,
-    field_name,
-    findings,
-    topic_faults,
-)
+from gear_kinematics.validation.wording import field_faults, field_name, findings, topic_faults
 
 SCHEMA = 'gear_kinematics/report'
 VERSION = 1

@@ -11,13 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.report.document import counted
 from gear_kinematics.validation.diagnosis import UnseenTurns
 from gear_kinematics.validation.field_errors import FieldErrors
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.recorder import NO_INPUT, Completeness, Missing, RecordedInputs
 from gear_kinematics.validation.report import TopicReport
 from gear_kinematics.validation.series import RecordedField, SeriesRecorder
-from gear_kinematics.validation.wording import counted
 
 Array = NDArray[Any]
 Columns = dict[str, Array]
@@ -143,7 +143,7 @@ class Faults:
     def sentences(self) -> tuple[str, ...]:
         """Describe each fault."""
         return tuple(
-            f'{fault}: {count} message{"s" * (count > 1)}, the first {first}'
+            f'{fault}: {counted(count, "message")}, the first {first}'
             for fault, (count, first) in self._found.items()
         )
 

@@ -2,7 +2,7 @@
 
 import re
 
-from gear_kinematics.report.document import Cell, Finding, number, printable
+from gear_kinematics.report.document import Cell, Finding, counted, number, printable
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
 
 _STAMP = re.compile(r'\bstamp (\d{1,19})\b')
@@ -125,8 +125,3 @@ def is_beyond(field: FieldReport) -> bool:
 def field_name(topic: TopicReport, field: FieldReport) -> str:
     """Return the name of a field with its topic."""
     return printable(f'{topic.topic} {field.name}')
-
-
-def counted(count: int, noun: str) -> str:
-    """Write a count with its noun."""
-    return f'{count} {noun}' if count == 1 else f'{count} {noun}s'
