@@ -6,13 +6,13 @@ from numpy.typing import NDArray
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import Gap, InputReport
+from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
 
 _GAP = 5.0  # median periods
 _LONGEST = 10  # listed gaps
 _PERIODS_FOR_MEDIAN = 65_536
-_SECOND = 1e9  # ns
 
 
 class InputHealth:
@@ -44,7 +44,7 @@ class InputHealth:
         if self._last_stamp is None:
             self._first_stamp = int(stamp[0])
             self._last_stamp, self._last_angle = int(stamp[0]), float(rotor_angle[0])
-        period = np.diff(stamp, prepend=self._last_stamp) / _SECOND
+        period = np.diff(stamp, prepend=self._last_stamp) / SECOND
         turned = np.diff(rotor_angle, prepend=self._last_angle)
         self._last_stamp, self._last_angle = int(stamp[-1]), float(rotor_angle[-1])
         forward = period > 0.0  # neither a duplicate nor a restart
@@ -94,9 +94,7 @@ class InputHealth:
         if not self._median and len(period):
             self._median = float(np.median(period))
         long = np.flatnonzero(period > _GAP * self._median)
-        self.gaps.add_spans(
-            stamp[long] - np.round(_SECOND * period[long]).astype(int), stamp[long]
-        )
+        self.gaps.add_spans(stamp[long] - np.round(SECOND * period[long]).astype(int), stamp[long])
         longest = long[np.argsort(-period[long], kind='stable')[:_LONGEST]]
         self._longest += [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in longest]
         self._longest.sort(key=lambda gap: -gap.seconds)

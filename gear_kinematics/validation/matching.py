@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.report.document import counted
+from gear_kinematics.state.rotor_input import CLOCK_RESET
 from gear_kinematics.validation.diagnosis import UnseenTurns
 from gear_kinematics.validation.field_errors import FieldErrors
 from gear_kinematics.validation.occurrences import Occurrences
@@ -25,7 +26,6 @@ Columns = dict[str, Array]
 
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
-_RESTART = 1_000_000_000  # ns by which a stamp is older after a restart, not just out of order
 
 
 class Window:
@@ -80,7 +80,7 @@ class Matcher:
         before = stamps[0] - 1 if self._last_stamp is None else self._last_stamp
         steps = np.diff(stamps, prepend=before)
         self.duplicates += int(np.count_nonzero(steps == 0))
-        self.out_of_order.add(stamps[(steps < 0) & (steps >= -_RESTART)])
+        self.out_of_order.add(stamps[(steps < 0) & (steps >= -CLOCK_RESET)])
         self._last_stamp = int(stamps[-1])
 
     def match(self, stamps: Array, window: Array) -> Array:

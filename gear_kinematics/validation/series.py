@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.validation.report import Curve, Series
+from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
 
 _MOST = 2000  # samples of the record, which is halved when there are more
-_SECOND = 1e9  # ns
 
 
 class FieldSamples(NamedTuple):
@@ -84,7 +84,7 @@ class SeriesRecorder:
             return None
         rest = _joined(self._rest)
         rows = _joined([*self._kept, self._thinned(rest, max(len(rest.stamp), 1))])
-        time = (rows.stamp - start) / _SECOND
+        time = (rows.stamp - start) / SECOND
         curves = [
             _curve(name, recorded, samples)
             for (name, recorded), samples in zip(self._fields.items(), rows.fields, strict=True)
