@@ -209,23 +209,11 @@ class LiveBagWriter(BagWriter):
         with bag_errors(self.path):
             if self.path.exists() or self.path.is_symlink():
                 raise ValueError('exists already')
+            # It is in its place already, and nothing removes it.
+            self._partial, self._folder = self.path, ExitStack()
             self._open(self.path)
             self._writer.number_file()
         return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        """Finish the recording, unless there was an exception.
-
-        Raises:
-            BagError: if it cannot be finished.
-        """
-        with bag_errors(self.path):
-            self._writer.__exit__(kind, error, trace)
 
     def flush(self) -> None:
         """Write all messages so far to the file.
