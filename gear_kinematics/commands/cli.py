@@ -6,7 +6,7 @@ Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
 import argparse
 import re
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from io import TextIOWrapper
 from typing import Any, NoReturn
 
@@ -33,6 +33,7 @@ from gear_kinematics.commands import (
     validate,
     watch,
 )
+from gear_kinematics.commands.arguments import parsers
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.origin import command_line
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
@@ -126,13 +127,6 @@ def make_parser() -> argparse.ArgumentParser:
             '--debug', action='store_true', help='print the traceback of an unexpected error'
         )
         added.set_defaults(run=command.run)
-        for each in (added, *_below(added)):
+        for each in parsers(added):
             each.set_defaults(parser=each)
     return parser
-
-
-def _below(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
-    """Yield the parsers of the subcommands of a command."""
-    for action in parser._actions:  # noqa: SLF001, argparse has no other way
-        if isinstance(action.choices, dict):
-            yield from action.choices.values()

@@ -1,9 +1,9 @@
 """`gearkin completion`: complete commands, options and files on the Tab key of a shell."""
 
 import argparse
-from collections.abc import Iterator
 
 from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands.arguments import parsers
 
 HELP = 'print what completes commands in a shell'
 _SHELLS = ('bash', 'zsh', 'tcsh')
@@ -20,18 +20,9 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Print the script of the shell."""
     import shtab  # noqa: PLC0415, an extra
 
-    for parser in _all(options.program):
+    for parser in parsers(options.program):
         for action in parser._actions:  # noqa: SLF001, argparse has no other way
             if action.metavar in _FILES:
                 action.complete = shtab.FILE  # type: ignore[attr-defined]
     print(shtab.complete(options.program, options.shell))
     return ExitCode.DONE
-
-
-def _all(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
-    """Yield a parser and those of its subcommands."""
-    yield parser
-    for action in parser._actions:  # noqa: SLF001, argparse has no other way
-        if isinstance(action, argparse._SubParsersAction):  # noqa: SLF001
-            for below in action.choices.values():
-                yield from _all(below)
