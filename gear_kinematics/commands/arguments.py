@@ -137,7 +137,7 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
 
 
 def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
-    """Load the parameters from `config_path`, some of them replaced by `--ratio` and `--joint`.
+    """Load the parameters from `config_path`; `--ratio`, `--joint`, `--max-gap` replace some.
 
     Raises:
         ValueError: for values that the node would refuse.
@@ -147,6 +147,8 @@ def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[st
         config['gear_ratio'] = str(given)
     if (joint := getattr(options, 'joint', None)) is not None:
         config['rotor_joint'] = joint
+    if (max_gap := getattr(options, 'max_gap', None)) is not None:
+        config['transmission_error_max_gap'] = max_gap
     return config
 
 

@@ -36,7 +36,7 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
 
 
 def add_encoders(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the topics of both encoders in a bag."""
+    """Add the options for both encoders in a bag; `load_config` applies `--max-gap`."""
     topics = parser.add_argument_group('topics of a bag')
     add_rotor(topics)
     topics.add_argument(

@@ -50,8 +50,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     reporter = Reporter(options, len(options.recordings) if options.check else 1, others)
     # All recordings are of one gear, so one configuration applies to all.
     config = arguments.load_config(options, options.recordings[0])
-    if options.max_gap is not None:
-        config['transmission_error_max_gap'] = options.max_gap
     if options.check:
         return _check(options, config, reporter)
     gear = gear_from_mapping(config)

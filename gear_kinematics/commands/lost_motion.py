@@ -214,8 +214,6 @@ def _over_preload(reports: Sequence[LostMotionReport], options: argparse.Namespa
 
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, path)
-    if options.max_gap is not None:
-        config['transmission_error_max_gap'] = options.max_gap
     if options.travel is not None:
         config['transmission_error_travel'] = math.radians(options.travel)
     return Task(
