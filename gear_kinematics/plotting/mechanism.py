@@ -22,6 +22,7 @@ COLOURS = {
     'output_shaft': ('#4ac26b', '#116329'),
 }
 """Colours of the face of each body and of its outline."""
+_EDGES = {body: edge for body, (_, edge) in COLOURS.items()}
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
@@ -67,8 +68,7 @@ class Centres:
         """Draw them at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
-        edge = {body: colours[1] for body, colours in COLOURS.items()}
-        [self.circle] = axes.plot([], [], ':', color=edge['oldham'], linewidth=0.8)
+        [self.circle] = axes.plot([], [], ':', color=_EDGES['oldham'], linewidth=0.8)
         self.lines = {}
         for name, body, width in (
             ('satellite slot', 'satellite', 0.8),
@@ -77,10 +77,10 @@ class Centres:
             ('x', 'satellite', 2.4),
             ('y', 'output_shaft', 2.4),
         ):
-            [self.lines[name]] = axes.plot([], [], color=edge[body], linewidth=width)
+            [self.lines[name]] = axes.plot([], [], color=_EDGES[body], linewidth=width)
         axes.plot(0.0, 0.0, 'o', color=INK, markersize=5.0)
         self.points = {
-            body: axes.plot([], [], 'o', color=edge[body], markersize=5.0, zorder=3)[0]
+            body: axes.plot([], [], 'o', color=_EDGES[body], markersize=5.0, zorder=3)[0]
             for body in ('satellite', 'oldham')
         }
         _square(axes, _DETAIL)
@@ -168,14 +168,13 @@ def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> 
     x, y = (o4 - o3) @ along, o4 @ upright
     side, up = math.copysign(1.0, x) * along, math.copysign(1.0, y) * upright
     inwards = abs(x) * up + abs(y) * side  # from the side O1-O3
-    edge = {body: colours[1] for body, colours in COLOURS.items()}
     for text, colour, at, direction, length in (
         ('$O_1$', INK, o1, 0.8 * side - up, 1.0),
-        ('$O_3$', edge['satellite'], o3, up - 1.2 * side, 1.0),
-        ('$O_4$', edge['oldham'], o4, up + 1.2 * side, 1.0),
-        ('$e$', edge['rotor'], 0.5 * o3, -inwards, 1.0),
-        ('$x$', edge['satellite'], 0.5 * (o3 + o4), up, abs(x)),
-        ('$y$', edge['output_shaft'], 0.5 * o4, side, abs(y)),
+        ('$O_3$', _EDGES['satellite'], o3, up - 1.2 * side, 1.0),
+        ('$O_4$', _EDGES['oldham'], o4, up + 1.2 * side, 1.0),
+        ('$e$', _EDGES['rotor'], 0.5 * o3, -inwards, 1.0),
+        ('$x$', _EDGES['satellite'], 0.5 * (o3 + o4), up, abs(x)),
+        ('$y$', _EDGES['output_shaft'], 0.5 * o4, side, abs(y)),
     ):
         if length < _SHORT:
             continue

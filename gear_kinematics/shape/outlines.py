@@ -192,15 +192,15 @@ def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int
     half_width = abs(tab[0][1])
     start = math.asin(half_width / radius)
     foot = radius * math.cos(start)
-    end = 2.0 * math.pi / count - start
+    end = TURN / count - start
     angles = np.linspace(start, end, math.ceil((end - start) / _ARC))
     arc = radius * np.column_stack([np.cos(angles), np.sin(angles)])
     part = np.concatenate([[(foot, -half_width), *tab], arc[:-1]])
-    return np.concatenate([turned(part, 2.0 * math.pi * k / count) for k in range(count)])
+    return np.concatenate([turned(part, TURN * k / count) for k in range(count)])
 
 
 def _circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
-    angles = np.arange(0.0, 2.0 * math.pi - 0.5 * _ARC, _ARC)
+    angles = np.arange(0.0, TURN - 0.5 * _ARC, _ARC)
     return np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
 
 
