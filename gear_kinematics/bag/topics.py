@@ -28,7 +28,7 @@ class Topic(NamedTuple):
 
 
 def missing_topic(
-    path: Path, topics: Mapping[str, str], name: str, wanted: str = '', *, suggest: bool = True
+    path: Path, topics: Mapping[str, str], name: str, wanted: str, *, suggest: bool = True
 ) -> BagError:
     """Return the error for a topic that is not in a bag, or not of the wanted type.
 

@@ -24,7 +24,7 @@ class Selection:
     """Terms chosen among candidates."""
 
     def __init__(
-        self, equations: NormalEquations, terms: Sequence[Term], fixed: Sequence[int] = ()
+        self, equations: NormalEquations, terms: Sequence[Term], fixed: Sequence[int]
     ) -> None:
         """Start with the fixed terms.
 

@@ -36,7 +36,7 @@ _SMALLEST = 1e-300
 """Smallest divisor without overflow."""
 
 
-def interactive(figure: Figure, mechanism: MovingMechanism | None = None) -> dict[str, Any]:
+def interactive(figure: Figure, mechanism: MovingMechanism | None) -> dict[str, Any]:
     """Return the data and the layout of a figure.
 
     Args:

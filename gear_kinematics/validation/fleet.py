@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet
@@ -86,11 +85,11 @@ def validate_bag(
                 corrected = corrected_beside() if task.calibration else {}
                 # Nothing is lost by a recorder here.
                 task = replace(task, strict=True)
-                return validate_messages(task, messages, corrected=corrected)
+                return validate_messages(task, messages, corrected)
             corrected = find_corrected_topics(bag, topics.output)
             messages = bag.messages((*topics, *corrected.values()))
             return validate_messages(
-                task, messages, progress, topics, bag.message_count, corrected
+                task, messages, corrected, progress, topics, bag.message_count
             )
     except BagError as error:
         return unusable(task.bag, str(error), task.config)
@@ -104,10 +103,10 @@ def validate_bag(
 def validate_messages(
     task: Task,
     messages: Iterable[Message],
+    corrected: Mapping[str, str],
     progress: ReportProgress | None = None,
     topics: Topics = _TOPICS,
     total: int | None = None,
-    corrected: Mapping[str, str] = MappingProxyType({}),
 ) -> BagReport:
     """Validate the readable messages of a bag; otherwise like `validate_bag`."""
     validator = Validator(
