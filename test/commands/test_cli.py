@@ -13,7 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
-from blocked_bags import GEARKIN, refusal
+from blocked_bags import GEARKIN, gearkin_here, refusal
 from calibrations import calibration
 
 from gear_kinematics.commands.cli import COMMANDS, main
@@ -225,10 +225,8 @@ def test_file_for_two_nodes_is_refused_naming_them(
 
 
 @pytest.mark.parametrize('command', COMMANDS)
-def test_commands_that_take_a_parameter_file_take_the_name_of_a_node(capsys, command):
-    with pytest.raises(SystemExit):
-        main([command, '--help'])
-    text = capsys.readouterr().out
+def test_commands_that_take_a_parameter_file_take_the_name_of_a_node(command):
+    text = gearkin_here(command, '--help').stdout
     assert ('--config FILE' in text) == ('--node NAME' in text)
 
 
@@ -260,11 +258,10 @@ def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause):
 
 
 @pytest.mark.parametrize('command', ['', 'demo', 'describe', 'urdf'])
-def test_help_is_everywhere(command, capsys):
-    with pytest.raises(SystemExit) as exit_:
-        main([*command.split(), '--help'])
-    assert exit_.value.code == 0
-    assert 'usage: gearkin' in capsys.readouterr().out
+def test_help_is_everywhere(command):
+    done = gearkin_here(*command.split(), '--help')
+    assert done.returncode == 0
+    assert 'usage: gearkin' in done.stdout
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from blocked_bags import refusal
+from blocked_bags import facts, refusal
 from dask_cluster import cluster
 from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
 from lxml import html
@@ -59,11 +59,6 @@ def motion(tmp_path_factory):
     output = ideal + 1e-3 * np.sin(19 * ideal) - 2e-3 * (np.arange(18000) < 9000)
     folder = tmp_path_factory.mktemp('csv')
     return write_csv(folder / 'motion.csv', rotor=-19.0 * ideal, output=output)
-
-
-def facts(output: str) -> dict[str, str]:
-    """The facts of the plain report about one recording, by subject and column."""
-    return dict(line.split(': ', 1)[1].rsplit(': ', 1) for line in output.splitlines())
 
 
 def test_plain_report_tells_figures_with_their_units(recording, capsys):

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from blocked_bags import refusal
+from blocked_bags import gearkin_here, refusal
 from gear_recordings import Samples, write_recording
 
 from gear_kinematics.bag import BagWriter
@@ -278,11 +278,10 @@ def test_without_matplotlib_there_is_one_line_and_no_file(tmp_path):
     ],
     ids=' '.join,
 )
-def test_help_is_there(arguments, capsys):
-    with pytest.raises(SystemExit) as exit_:
-        main(arguments)
-    assert exit_.value.code == 0
-    assert capsys.readouterr().out.startswith(f'usage: gearkin {arguments[0]}')
+def test_help_is_there(arguments):
+    done = gearkin_here(*arguments)
+    assert done.returncode == 0
+    assert done.stdout.startswith(f'usage: gearkin {arguments[0]}')
 
 
 @pytest.mark.slow

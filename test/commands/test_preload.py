@@ -9,7 +9,7 @@ from itertools import pairwise, product
 from xml.etree import ElementTree as ET
 
 import pytest
-from blocked_bags import refusal
+from blocked_bags import gearkin_here, refusal
 
 from gear_kinematics.commands.cli import main
 
@@ -332,8 +332,7 @@ def test_branches_that_cannot_be_braced_are_refused(count, tmp_path):
 
 
 @pytest.mark.parametrize('command', ['index', 'preload'])
-def test_help_is_there(command, capsys):
-    with pytest.raises(SystemExit) as exit_:
-        main([command, '--help'])
-    assert exit_.value.code == 0
-    assert '--branch-stiffness' in capsys.readouterr().out
+def test_help_is_there(command):
+    done = gearkin_here(command, '--help')
+    assert done.returncode == 0
+    assert '--branch-stiffness' in done.stdout

@@ -11,6 +11,7 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import pytest
+from blocked_bags import wait_until
 from endpoints import (
     Driver,
     Line,
@@ -22,7 +23,6 @@ from endpoints import (
     rotor_message,
     running,
 )
-from live import DEADLINE
 from network import Cable, NoNetworkError, two_hosts
 from replaying import BOUND, compare_messages, valid_samples
 
@@ -124,14 +124,6 @@ class Bench:
             self.wait_for(name, number)
             resumed[name] = time.monotonic() - returned
         return Cut(resumed, self.reports())
-
-
-def wait_until(condition, what):
-    deadline = time.monotonic() + DEADLINE
-    while not (result := condition()):
-        assert time.monotonic() < deadline, f'waited in vain for {what}'
-        time.sleep(0.01)
-    return result
 
 
 def lost(report) -> int:

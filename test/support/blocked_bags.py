@@ -50,6 +50,11 @@ def refusal(*arguments, report='') -> str:
     return found[1]
 
 
+def facts(output: str) -> dict[str, str]:
+    """Read the facts of the plain report about one recording, by subject and column."""
+    return dict(line.split(': ', 1)[1].rsplit(': ', 1) for line in output.splitlines())
+
+
 @contextmanager
 def running_gearkin(*arguments, code=GEARKIN, **options):
     """Start a command, in a process group of its own of which nothing is left at the end."""
