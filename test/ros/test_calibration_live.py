@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 from calibrations import calibration
-from live import SECOND, START, live_node, rotor_state, stamp_of
+from live import SECOND, START, connected, live_node, rotor_state, stamp_of
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
@@ -45,8 +45,7 @@ def start(tmp_path):
     with ExitStack() as stack:
 
         def start(*arguments):
-            peer = stack.enter_context(live_node(tmp_path, *arguments)).peer
-            peer.connect()
+            peer = stack.enter_context(connected(tmp_path, *arguments))
             for topic in TOPICS:
                 listener = peer.listen(JointState, topic, QoSProfile(depth=2000))
                 peer.wait_until(listener.get_publisher_count, topic)

@@ -31,6 +31,7 @@ from live import (
     STATES,
     Listener,
     Peer,
+    connected,
     live_node,
     rotor_bytes,
     rotor_state,
@@ -294,9 +295,7 @@ class KillableDriver:
 
 
 def test_driver_killed_and_restarted_twenty_times(tmp_path, tally):
-    with live_node(tmp_path) as live, ExitStack() as stack:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path) as peer, ExitStack() as stack:
         arrived = {}
         # The middleware takes seconds to connect a new driver: five at a time.
         for first in range(START, 21 * START, 5 * START):
@@ -388,9 +387,7 @@ def test_stamps_that_step(tmp_path, tally):
         [rotor_bytes(stamp, position=[rotor_position(stamp)]) for stamp in stamps]
     )
     sent = [sample.stamp for sample in samples]
-    with live_node(tmp_path) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path) as peer:
         peer.send(*map(message_at, stamps))
         peer.wait_until(lambda: newest(peer) == stamps[-1], 'the last output')
         _, _, values = peer.status()
@@ -401,9 +398,7 @@ def test_stamps_that_step(tmp_path, tally):
 
 
 def test_clock_that_steps(tmp_path, tally):
-    with live_node(tmp_path, *parameter('use_sim_time', value='true')) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path, *parameter('use_sim_time', value='true')) as peer:
         clock = peer.node.create_publisher(Clock, '/clock', QoSProfile(depth=1))
         sent = []
         for seconds in (4000.0, 3999.5, 100.0, 4000.0):
@@ -430,9 +425,7 @@ def test_clock_that_steps(tmp_path, tally):
 
 def test_bag_that_loops(tmp_path, tally):
     stamps = range(START, START + 3 * SECOND // 2, 15 * MILLISECOND)
-    with live_node(tmp_path) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path) as peer:
         topic = f'{peer.namespace}/rotor_state'
         with BagWriter(tmp_path / 'bag') as writer:
             writer.add_topic(topic, 'sensor_msgs/msg/JointState')
@@ -463,9 +456,7 @@ def qos_override(topic, end, reliability) -> tuple[str, str]:
 def test_best_effort_driver_is_not_taken_where_reliable_is_asked_for(tmp_path, tally):
     namespace = next(names)
     override = qos_override(f'{namespace}/rotor_state', 'subscription', 'reliable')
-    with live_node(tmp_path, *override, namespace=namespace) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path, *override, namespace=namespace) as peer:
         stranger = peer.node.create_publisher(JointState, 'rotor_state', BEST_EFFORT)
         drive = Drive(peer)
         fault = f'incompatible QoS on rotor_state: RELIABILITY (driver {namespace}/peer)'
@@ -480,9 +471,7 @@ def test_best_effort_driver_is_not_taken_where_reliable_is_asked_for(tmp_path, t
 
 
 def test_listeners_that_want_old_outputs_do_not_disturb_the_others(tmp_path, tally):
-    with live_node(tmp_path) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path) as peer:
         drive = Drive(peer)
         for name, message_type in zip(STATES, (JointState, PoseArray, JointState), strict=True):
             peer.listen(message_type, f'old {name}', LATCHED, name)
@@ -523,9 +512,7 @@ def test_reliable_listener_to_a_best_effort_topic_does_not_disturb_the_others(tm
 
 
 def test_twenty_subscribers_come_and_go(tmp_path, tally, record_property):
-    with live_node(tmp_path) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path) as peer:
         drive, began = Drive(peer), time.monotonic()
         to_come = (Listener(peer.namespace, f'listener_{number}') for number in range(20))
         present = deque(islice(to_come, 5))
@@ -555,9 +542,7 @@ def test_twenty_subscribers_come_and_go(tmp_path, tally, record_property):
 
 
 def test_two_drivers_are_reported_and_answered(tmp_path, tally):
-    with live_node(tmp_path, *PATIENT) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path, *PATIENT) as peer:
         second = another_driver(peer, depth=2000)
         sent = []
         # In turns, each after the answer to the other.
@@ -580,9 +565,7 @@ def test_two_drivers_are_reported_and_answered(tmp_path, tally):
 
 
 def test_overrun_by_a_driver_of_short_memory_does_not_stop_the_node(tmp_path, tally):
-    with live_node(tmp_path, *PATIENT) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path, *PATIENT) as peer:
         hasty = another_driver(peer, depth=10)
         sent = []
         for _ in range(10):
@@ -628,9 +611,7 @@ REFUSED = (
 def test_parameters_set_at_random_take_effect_between_two_messages(tmp_path, tally):
     random = seeded()
     states, acknowledged = [DEFAULT], [0]
-    with live_node(tmp_path) as live:
-        peer = live.peer
-        peer.connect()
+    with connected(tmp_path) as peer:
         drive = Drive(peer, rate=500.0)
         start = time.monotonic()
         for turn in range(150):

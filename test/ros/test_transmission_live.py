@@ -5,7 +5,7 @@ import math
 from contextlib import ExitStack
 
 import pytest
-from live import SECOND, START, live_node, rotor_state, stamp_of
+from live import SECOND, START, connected, rotor_state, stamp_of
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
@@ -58,8 +58,7 @@ def start(tmp_path):
             arguments = [
                 part for name, value in parameters.items() for part in ('-p', f'{name}:={value}')
             ]
-            peer = stack.enter_context(live_node(tmp_path, *arguments)).peer
-            peer.connect()
+            peer = stack.enter_context(connected(tmp_path, *arguments))
             if 'rotor_encoder' in parameters:
                 assert peer.home().success
             return Encoder(peer)
@@ -151,11 +150,10 @@ def test_nothing_is_published_while_the_turns_are_unknown(start):
 
 
 def test_without_an_encoder_there_is_no_word_of_it(tmp_path):
-    with live_node(tmp_path) as live:
-        live.peer.connect()
-        report, _ = live.peer.report()
-        names = [s.name for s in report.status if s.hardware_id.startswith(live.peer.namespace)]
-    assert names == [f'{live.peer.namespace[1:]}/gear_state_publisher: rotor input']
+    with connected(tmp_path) as peer:
+        report, _ = peer.report()
+        names = [s.name for s in report.status if s.hardware_id.startswith(peer.namespace)]
+    assert names == [f'{peer.namespace[1:]}/gear_state_publisher: rotor input']
 
 
 def test_bad_input_is_counted_and_the_node_goes_on(start):

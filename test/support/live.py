@@ -357,3 +357,11 @@ def live_node(folder: Path, *arguments: str, namespace: str = '', **topics: str)
         assert 'Traceback' not in live.text(), live.text()
     finally:
         peer.close()
+
+
+@contextmanager
+def connected(folder: Path, *arguments: str, namespace: str = ''):
+    """Run the node, and give a peer that is connected with it."""
+    with live_node(folder, *arguments, namespace=namespace) as live:
+        live.peer.connect()
+        yield live.peer
