@@ -3,8 +3,6 @@
 import itertools
 
 import pytest
-import rclpy
-from rclpy.context import Context
 from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import (
@@ -14,7 +12,6 @@ from rclpy.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.diagnostics import find_faults
@@ -25,14 +22,6 @@ BEST_EFFORT = {'reliability': ReliabilityPolicy.BEST_EFFORT}
 LATCHED = {'durability': DurabilityPolicy.TRANSIENT_LOCAL}
 SECOND = Duration(seconds=1)
 namespaces = (f'/graph_{number}' for number in itertools.count())
-
-
-@pytest.fixture(scope='module')
-def context():
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    yield context
-    rclpy.shutdown(context=context)
 
 
 @pytest.fixture

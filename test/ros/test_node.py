@@ -8,15 +8,12 @@ import time
 from types import SimpleNamespace
 
 import pytest
-import rclpy
 from live import rotor_bytes
-from rclpy.context import Context
 from rclpy.exceptions import ParameterException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.serialization import deserialize_message
-from rclpy.signals import SignalHandlerOptions
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
@@ -56,14 +53,6 @@ BOUNDS = {
     'a.cam_phase': (-2.0 * math.pi, 2.0 * math.pi),
     'b.axial_position': (-10.0, 10.0),
 }
-
-
-@pytest.fixture(scope='module')
-def context():
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-    yield context
-    rclpy.shutdown(context=context)
 
 
 @pytest.fixture(scope='module')

@@ -13,13 +13,8 @@ from itertools import count, islice, pairwise
 from pathlib import Path
 
 import pytest
-import rclpy
-from live import DEADLINE, rotor_bytes
-from rclpy.context import Context
-from rclpy.executors import SingleThreadedExecutor
-from rclpy.node import Node
+from live import DEADLINE, Participant, rotor_bytes
 from rclpy.qos import QoSProfile
-from rclpy.signals import SignalHandlerOptions
 from replaying import SECOND, decode, stamp_of
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -28,7 +23,6 @@ from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.schedule import due_messages
 from gear_kinematics.ros import live
-from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.live import ReplayError, live_messages, replay_node
 from gear_kinematics.ros.replay import play
 from gear_kinematics.state import parameters
@@ -76,20 +70,12 @@ def recorded(bag_path) -> list[bytes]:
         return [data for _, _, data in bag.messages([ROTOR])]
 
 
-class Listener:
+class Listener(Participant):
     """Keeps the messages it receives while waiting, with their times of sending, s."""
 
     def __init__(self) -> None:
+        super().__init__('listener')
         self.heard: dict[str, list[tuple[float, bytes]]] = {}
-        context = Context()
-        rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
-        self.node = Node('listener', context=context)
-        self._executor = SingleThreadedExecutor(context=context)
-        self._executor.add_node(self.node)
-
-    def close(self) -> None:
-        self._executor.shutdown()
-        leave(self.node)
 
     def listen(self, name, kind=JointState) -> list[tuple[float, bytes]]:
         heard = self.heard.setdefault(name, [])
@@ -101,12 +87,6 @@ class Listener:
             raw=True,
         )
         return heard
-
-    def wait_until(self, condition, what) -> None:
-        deadline = time.monotonic() + DEADLINE
-        while not condition():
-            assert time.monotonic() < deadline, f'waited in vain for {what}'
-            self._executor.spin_once(timeout_sec=0.02)
 
 
 @pytest.fixture

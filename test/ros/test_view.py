@@ -11,10 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-import rclpy
 import yaml
-from rclpy.context import Context
-from rclpy.signals import SignalHandlerOptions
 from shown_markers import all_at
 from visualization_msgs.msg import Marker
 
@@ -45,14 +42,11 @@ def foxglove() -> dict:
 
 
 @pytest.fixture(scope='module')
-def topics() -> dict[str, str]:
+def topics(context) -> dict[str, str]:
     """Return the types of the node's outputs by topic, for a node without a namespace."""
-    context = Context()
-    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
     node = GearStatePublisher(context=context)
     found = {publisher.topic_name: publisher.msg_type.__name__ for publisher in node.publishers}
     node.destroy_node()
-    rclpy.shutdown(context=context)
     return found
 
 

@@ -94,35 +94,21 @@ def stamp_of(message) -> int:
     return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
 
 
-class Listener:
-    """A participant that keeps the node's outputs. Messages arrive only within the waits."""
+class Participant:
+    """A node in a context of its own. Messages arrive only within the waits."""
 
-    def __init__(self, namespace: str, name: str = 'listener', **topics: str) -> None:
-        """Open the topics; `topics` gives those that are not at their usual place."""
-        self.received: dict[str, list] = {}
+    def __init__(self, name: str, namespace: str = '') -> None:
         self.alive = lambda: True
         context = Context()
         rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
         self.node = Node(name, context=context, namespace=namespace)
         self._executor = SingleThreadedExecutor(context=context)
         self._executor.add_node(self.node)
-        self.namespace = namespace
-        self._subscriptions = [
-            self.listen(message_type, topic, QoSProfile(depth=2000), topics.get(topic, topic))
-            for topic, message_type in zip(
-                STATES, (JointState, PoseArray, JointState), strict=True
-            )
-        ]
 
     def close(self) -> None:
         """Leave."""
         self._executor.shutdown()
         leave(self.node)
-
-    def listen(self, message_type, name, qos, topic=None) -> Subscription:
-        """Keep what comes on a topic in `received[name]`."""
-        messages = self.received.setdefault(name, [])
-        return self.node.create_subscription(message_type, topic or name, messages.append, qos)
 
     def wait_until(self, condition, what: str):
         """Receive until a condition holds, and return what it gave."""
@@ -132,6 +118,27 @@ class Listener:
             assert time.monotonic() < deadline, f'waited in vain for {what}'
             self._executor.spin_once(timeout_sec=0.02)
         return result
+
+
+class Listener(Participant):
+    """Keeps the node's outputs."""
+
+    def __init__(self, namespace: str, name: str = 'listener', **topics: str) -> None:
+        """Open the topics; `topics` gives those that are not at their usual place."""
+        super().__init__(name, namespace)
+        self.received: dict[str, list] = {}
+        self.namespace = namespace
+        self._subscriptions = [
+            self.listen(message_type, topic, QoSProfile(depth=2000), topics.get(topic, topic))
+            for topic, message_type in zip(
+                STATES, (JointState, PoseArray, JointState), strict=True
+            )
+        ]
+
+    def listen(self, message_type, name, qos, topic=None) -> Subscription:
+        """Keep what comes on a topic in `received[name]`."""
+        messages = self.received.setdefault(name, [])
+        return self.node.create_subscription(message_type, topic or name, messages.append, qos)
 
     def receive(self) -> None:
         """Receive a message if there is one."""
