@@ -102,6 +102,21 @@ def actuator() -> Mechanism:
     return Mechanism(80, 76, 0.0011, branches)
 
 
+@pytest.fixture
+def figures(monkeypatch) -> list:
+    """Collect the figures that matplotlib makes."""
+    module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
+    made = []
+
+    class Kept(module.Figure):
+        def __init__(self, *arguments, **options):
+            super().__init__(*arguments, **options)
+            made.append(self)
+
+    monkeypatch.setattr(module, 'Figure', Kept)
+    return made
+
+
 @pytest.fixture(scope='module')
 def config() -> dict:
     """Return the default parameters of the node."""

@@ -30,7 +30,7 @@ from rosbags import rosbag1, rosbag2
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2.metadata import parse_qos
 from rosbags.typesys import Stores, get_typestore
-from shipped_bags import BAGS, read_bag
+from shipped_bags import BAGS, read_bag, write_bag
 
 from gear_kinematics.bag import (
     Bag,
@@ -896,20 +896,9 @@ WRITTEN = pytest.mark.parametrize(
 )
 
 
-def write_with(
-    path: Path, messages: Iterable[tuple[str, int, bytes]], storage='mcap', compression='none'
-) -> Path:
-    with BagWriter(path, storage, compression) as writer:
-        for topic, kind in RECORDED_TOPICS.items():
-            writer.add_topic(topic, kind)
-        for message in messages:
-            writer.write(*message)
-    return path
-
-
 @WRITTEN
 def test_others_read_what_is_written(recorded, tmp_path, storage, compression):
-    path = write_with(tmp_path / 'bag', recorded, storage, compression)
+    path = write_bag(tmp_path / 'bag', recorded, storage=storage, compression=compression)
     assert read(path) == recorded
     packed = (storage, compression) == ('sqlite3', 'zstd')
     name = {'mcap': 'bag_0.mcap', 'sqlite3': 'bag_0.db3'}[storage] + '.zstd' * packed
@@ -967,7 +956,7 @@ def test_files_are_those_of_rosbags(recorded, tmp_path, storage, compression, co
 
 @WRITTEN
 def test_the_metadata_is_what_ros2_bag_info_shows(recorded, tmp_path, storage, compression):
-    path = write_with(tmp_path / 'bag', recorded, storage, compression)
+    path = write_bag(tmp_path / 'bag', recorded, storage=storage, compression=compression)
     document = yaml.safe_load((path / 'metadata.yaml').read_text())
     metadata = document['rosbag2_bagfile_information']
     packed = (storage, compression) == ('sqlite3', 'zstd')
@@ -1009,7 +998,7 @@ with Bag(sys.argv[1]) as bag, BagWriter(*sys.argv[2:]) as writer:
 @WRITTEN
 def test_the_same_messages_give_the_same_bytes(recorded, tmp_path, storage, compression):
     """In any folder and process, and for the copy of a copy."""
-    source = write_with(tmp_path / 'bag', recorded, storage, compression)
+    source = write_bag(tmp_path / 'bag', recorded, storage=storage, compression=compression)
     files = {path.name: path.read_bytes() for path in source.iterdir()}
     assert len(files) == 2
     for seed in ('1', '2'):
@@ -1031,7 +1020,7 @@ def test_an_interruption_leaves_nothing(recorded, tmp_path, storage, compression
         raise error
 
     with pytest.raises(error):
-        write_with(tmp_path / 'bag', interrupted(), storage, compression)
+        write_bag(tmp_path / 'bag', interrupted(), storage=storage, compression=compression)
     assert not list(tmp_path.iterdir())
 
 
@@ -1041,13 +1030,13 @@ def test_a_bag_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch):
 
     monkeypatch.setattr(Path, 'rename', rename)
     with pytest.raises(BagError, match=r'/bag: No space left on device$'):
-        write_with(tmp_path / 'bag', [])
+        write_bag(tmp_path / 'bag', [])
     assert not list(tmp_path.iterdir())
 
 
 def test_a_bag_without_messages_is_written_and_read(tmp_path):
     for storage in ('mcap', 'sqlite3'):
-        with Bag(write_with(tmp_path / storage, [], storage)) as bag:
+        with Bag(write_bag(tmp_path / storage, [], storage=storage)) as bag:
             assert (bag.topics, bag.message_count) == (RECORDED_TOPICS, 0)
             assert not list(bag.messages(RECORDED_TOPICS))
 
@@ -1058,11 +1047,11 @@ def test_an_existing_target_is_left_alone(recorded, tmp_path):
     (tmp_path / 'link').symlink_to('nowhere')
     for name in ('folder', 'file', 'link'):
         with pytest.raises(BagError, match=f'{name}: exists already'):
-            write_with(tmp_path / name, recorded)
+            write_bag(tmp_path / name, recorded)
     assert {path.name for path in tmp_path.iterdir()} == {'folder', 'file', 'link'}
     assert (tmp_path / 'file').read_text() == 'kept'
     with pytest.raises(BagError, match='nowhere/bag: No such file'):
-        write_with(tmp_path / 'nowhere' / 'bag', recorded)
+        write_bag(tmp_path / 'nowhere' / 'bag', recorded)
 
 
 def test_invalid_messages_are_refused(tmp_path):

@@ -47,21 +47,20 @@ def test_plot_writes_the_same_file_each_time(figure, suffix, options, tmp_path, 
     assert capsys.readouterr() == ('', '')
 
 
+def scheme(folder, *options) -> bytes:
+    path = folder / 'scheme.png'
+    assert main(['plot', 'scheme', str(path), *options]) == 0
+    return path.read_bytes()
+
+
 @pytest.mark.slow
 def test_scheme_shows_the_moment_of_the_recording(tmp_path):
     """The rotor stands at 2 rad from the second on."""
     rotor = Samples([0, 1_000_000_000, 3_000_000_000], [0.5, 2.0, 2.0])
     bag = write_recording(tmp_path / 'bag', rotor)
-    pictures = []
-    for k, options in enumerate(
-        (['--bag', str(bag), '--start-offset', '1'], ['--angle', '2'], ['--angle', '0.5'])
-    ):
-        path = tmp_path / f'{k}.png'
-        assert main(['plot', 'scheme', str(path), *options]) == 0
-        pictures.append(path.read_bytes())
-    assert pictures[0] == pictures[1] != pictures[2]
-    assert main(['plot', 'scheme', str(path), '--degrees', '114.59155902616465']) == 0
-    assert path.read_bytes() == pictures[0]
+    recorded = scheme(tmp_path, '--bag', str(bag), '--start-offset', '1')
+    assert recorded == scheme(tmp_path, '--angle', '2') != scheme(tmp_path, '--angle', '0.5')
+    assert recorded == scheme(tmp_path, '--degrees', '114.59155902616465')
 
 
 @pytest.mark.slow
@@ -70,12 +69,8 @@ def test_sizes_are_those_of_the_config_and_the_options(tmp_path):
     parameters = 'ring_teeth: 61, satellite_teeth: 58, eccentricity: 0.0008'
     config.write_text(f'/**: {{ros__parameters: {{{parameters}}}}}')
     given = ('--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.0008')
-    pictures = []
-    for k, options in enumerate((('--config', str(config)), given, ())):
-        path = tmp_path / f'{k}.png'
-        assert main(['plot', 'scheme', str(path), *options]) == 0
-        pictures.append(path.read_bytes())
-    assert pictures[0] == pictures[1] != pictures[2]
+    of_config = scheme(tmp_path, '--config', str(config))
+    assert of_config == scheme(tmp_path, *given) != scheme(tmp_path)
 
 
 @pytest.mark.slow

@@ -214,17 +214,8 @@ def test_preload_plots_the_torque_split(suffix, signature, tmp_path, capsys):
     assert capsys.readouterr().err == ''
 
 
-def test_plot_shows_the_split_and_its_thresholds(tmp_path, monkeypatch):
+def test_plot_shows_the_split_and_its_thresholds(tmp_path, figures):
     """Curves as matplotlib gets them, at loads where the torques are known."""
-    figure_module = pytest.importorskip('matplotlib.figure')
-    figures = []
-
-    class Kept(figure_module.Figure):
-        def __init__(self, *arguments, **options):
-            super().__init__(*arguments, **options)
-            figures.append(self)
-
-    monkeypatch.setattr(figure_module, 'Figure', Kept)
     path = tmp_path / 'split.png'
     assert main(['preload', '--wanted-preload', '1', *SOFT, '--plot', str(path)]) == 0
     [figure] = figures

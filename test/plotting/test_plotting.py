@@ -31,20 +31,6 @@ MODULE = 0.0005  # m
 PNG = Path('figure.png')
 
 
-@pytest.fixture
-def figures(monkeypatch) -> list:
-    """Collect the figures that are created."""
-    made = []
-
-    class Kept(figure_module.Figure):
-        def __init__(self, *arguments, **options):
-            super().__init__(*arguments, **options)
-            made.append(self)
-
-    monkeypatch.setattr(figure_module, 'Figure', Kept)
-    return made
-
-
 def corners(patch) -> list[np.ndarray]:
     """The polygons of a patch, each without its closing point."""
     return [polygon[:-1] for polygon in patch.get_path().to_polygons(closed_only=False)]

@@ -45,14 +45,9 @@ OUTPUT = TopicReport(
                 worst_stamp=None, worst_rotor_angle=None),
     ),
 )  # fmt: skip
-POSES = TopicReport(
-    '/body_poses',
-    messages=4000,
-    compared=4000,
-    missing=0,
-    extra=0,
-    duplicates=0,
-    out_of_order=0,
+POSES = replace(
+    OUTPUT,
+    topic='/body_poses',
     fields=(
         replace(POSITION, unit='m', max_error=4.3e-19, rms_error=8.8e-20),
         replace(POSITION, name='orientation', max_error=6.7e-16),

@@ -19,8 +19,8 @@ def read_bag(path: Path) -> list[Message]:
         return [(c.topic, received, bytes(data)) for c, received, data in reader.messages()]
 
 
-def write_bag(path: Path, messages, types=TYPES) -> Path:
-    with BagWriter(path) as writer:
+def write_bag(path: Path, messages, types=TYPES, **form) -> Path:
+    with BagWriter(path, **form) as writer:
         for topic, kind in types.items():
             writer.add_topic(topic, kind)
         for message in messages:
