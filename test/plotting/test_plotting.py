@@ -2,7 +2,6 @@
 
 import math
 import re
-from fractions import Fraction
 from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
@@ -10,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import oracle
 import pytest
-from calibrations import calibration
+from calibrations import single_order
 from properties import numbers_of
 
 from gear_kinematics import plotting
@@ -18,7 +17,6 @@ from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_t
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
 from gear_kinematics.report.image import Paper, to_image
 from gear_kinematics.shape.outlines import bodies
-from gear_kinematics.state.calibration_file import Order
 from gear_kinematics.state.trajectory import Trajectory
 
 figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
@@ -321,14 +319,7 @@ def test_output_turns_by_the_ratio(actuator, figures):
 def test_deviation_is_drawn_with_its_interval(actuator, figures):
     turns, angle = split_turns(np.array([0.0, 1.0, 50.0]))
     moved = Trajectory(np.array([0.0, 0.1, 0.3]), turns, angle, np.array([1.0, 1.0, 1.0]))
-    made = calibration(
-        constant=0.0,
-        orders=(Order('rotor × 1', Fraction(1), 1e-3, 0.0),),
-        hysteresis=(),
-        compliance=None,
-        half_width=2e-4,
-    )
-    plotting.output(actuator, PNG, moved, made)
+    plotting.output(actuator, PNG, moved, single_order(half_width=2e-4))
     *_, deviation = figures[0].axes
     assert len(figures[0].axes) == 3
     expected = np.cos([0.0, 1.0, 50.0])  # mrad

@@ -7,24 +7,16 @@ from dataclasses import replace
 from fractions import Fraction
 
 import pytest
-from calibrations import calibration
+from calibrations import AMPLITUDE, calibration, single_order
 from live import SECOND, START, connected, live_node, rotor_state, stamp_of
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
-
-from gear_kinematics.state.calibration_file import Order
 
 pytestmark = pytest.mark.live
 
 MS = SECOND // 1000
 TOPICS = ('corrected_state', 'corrected_interval')
-AMPLITUDE = 1e-3
-MADE = calibration(
-    constant=0.0,
-    orders=(Order('rotor × 1', Fraction(1), AMPLITUDE, 0.0),),
-    hysteresis=(),
-    compliance=None,
-)
+MADE = single_order()
 
 
 @pytest.fixture

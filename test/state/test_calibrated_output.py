@@ -1,17 +1,15 @@
 """The calibrated output beside a measured angle: what is explained, and when it no longer fits."""
 
 import math
-from fractions import Fraction
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from calibrations import calibration
+from calibrations import AMPLITUDE, calibration, single_order
 from live import SECOND, START
 
 from gear_kinematics.kinematics import split_turns
 from gear_kinematics.state.calibrated_output import CalibratedOutput, independent_samples
-from gear_kinematics.state.calibration_file import Order
 from gear_kinematics.state.correction import Corrector
 from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.transmission_error import ErrorSample
@@ -19,16 +17,9 @@ from gear_kinematics.state.transmission_error import ErrorSample
 PERIOD = 5 * SECOND // 1000  # 200 Hz
 COUNT = 2000  # 10 s
 WINDOW = 10.0
-AMPLITUDE = 1e-3
 ZERO = 0.3  # of the encoder, rad
 INPUT = SimpleNamespace(stretch=0, referenced=True)
-MADE = calibration(
-    constant=0.0,
-    orders=(Order('rotor × 1', Fraction(1), AMPLITUDE, 0.0),),
-    hysteresis=(),
-    compliance=None,
-    half_width=1e-4,
-)
+MADE = single_order()
 
 
 def sample(k: int, angle: float) -> RotorSample:

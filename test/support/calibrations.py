@@ -18,6 +18,10 @@ MP = mpmath.mp.clone()
 MP.dps = 50
 
 
+AMPLITUDE = 1e-3
+"""Of the order of `single_order`, rad."""
+
+
 def calibration(**changes) -> Calibration:
     """Make one for the shipped mechanism, 80/76 teeth, with terms of each kind."""
     fields = {
@@ -46,6 +50,14 @@ def calibration(**changes) -> Calibration:
     terms += fields['compliance'] is not None
     identity = tuple(tuple(1e-12 * (k == n) for k in range(terms)) for n in range(terms))
     return Calibration(**{'covariance': identity} | fields)
+
+
+def single_order(half_width: float = 1e-4) -> Calibration:
+    """Make one that corrects nothing but AMPLITUDE · cos(φ2)."""
+    orders = (Order('rotor × 1', Fraction(1), AMPLITUDE, 0.0),)
+    return calibration(
+        constant=0.0, orders=orders, hysteresis=(), compliance=None, half_width=half_width
+    )
 
 
 def expected_deviations(made: Calibration, motion) -> list[tuple[mpmath.mpf, mpmath.mpf]]:
