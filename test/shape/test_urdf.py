@@ -133,7 +133,7 @@ def test_slide_is_limited_by_the_eccentricity(actuator):
     assert all((float(x.get('lower')), float(x.get('upper'))) == (-0.0011, 0.0011) for x in limits)
 
 
-def messages_at(mechanism, rotor_angle, names=NAMES):
+def messages_at(mechanism, rotor_angle, names):
     sample = RotorSample(5, split_turns(rotor_angle), 1.0, None)
     encoded = dict(StateMessages(mechanism, **names).encode(sample))
     poses, states = encoded['body_poses'], encoded['mechanism_joint_states']

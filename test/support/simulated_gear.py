@@ -107,24 +107,18 @@ def _strokes(
     return np.cumsum(velocity[:count]) / RATE
 
 
-def wandering(
-    duration: float, random: np.random.Generator, reach: float = 1.2, pace: float = 1.0
-) -> np.ndarray:
-    """Smooth random motion of the output that reaches both ends, (time,), rad.
+def wandering(duration: float, random: np.random.Generator) -> np.ndarray:
+    """Smooth random motion of the output from -1.2 rad to 1.2 rad, at most, (time,).
 
-    Args:
-        duration: s.
-        random: source.
-        reach: rad, from the middle.
-        pace: s, below which nothing changes much.
+    Within 1 s nothing changes much; the duration is in s.
     """
     count = int(duration * RATE)
     frequencies = np.fft.rfftfreq(count, 1.0 / RATE)
     spectrum = random.standard_normal(len(frequencies)) + 1j * random.standard_normal(
         len(frequencies)
     )
-    motion = np.fft.irfft(spectrum * np.exp(-((frequencies * np.pi * pace) ** 2)), count)
-    return reach * motion / np.abs(motion).max()
+    motion = np.fft.irfft(spectrum * np.exp(-((frequencies * np.pi) ** 2)), count)
+    return 1.2 * motion / np.abs(motion).max()
 
 
 def gears(setting: GearSet, random: np.random.Generator) -> dict[str, np.ndarray]:
