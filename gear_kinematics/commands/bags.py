@@ -2,13 +2,14 @@
 
 import argparse
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics.bag import fleet
 from gear_kinematics.commands.arguments import positive
-from gear_kinematics.commands.output import message_progress
+from gear_kinematics.commands.output import message_progress, progress
 from gear_kinematics.state.trajectory import Trajectory, read_trajectory
 
 
@@ -87,6 +88,22 @@ def recording(
     ):
         whole = read_trajectory(options.bag, config, options.rotor_topic, report_progress)
         return whole.between(start, start + duration)
+
+
+def distributed(
+    options: argparse.Namespace,
+    work: fleet.Work[fleet.Task, fleet.Report],
+    tasks: Sequence[fleet.Task],
+    unit: str,
+) -> Iterator[tuple[fleet.Task, fleet.Report]]:
+    """Work in processes or on a cluster, as the options of `add_fleet` say, showing progress."""
+    done = (
+        fleet.on_cluster(work, tasks, options.scheduler)
+        if options.scheduler
+        else fleet.on_this_machine(work, tasks, options.jobs)
+    )
+    with progress(unit, quiet=options.quiet) as bars:
+        yield from bars.track(done, total=len(tasks), description=unit)
 
 
 @contextmanager

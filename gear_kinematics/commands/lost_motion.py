@@ -6,9 +6,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from gear_kinematics.bag import fleet
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import Reporter, complain, message_progress, progress
+from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.lost_motion import LostMotionReport
 from gear_kinematics.lost_motion.common import at_common_torque
@@ -155,13 +154,7 @@ def _measured(
     tasks: Sequence[Task], options: argparse.Namespace
 ) -> Iterator[tuple[Task, Outcome]]:
     if options.scheduler or options.jobs > 1:
-        together = (
-            fleet.on_cluster(WORK, tasks, options.scheduler)
-            if options.scheduler
-            else fleet.on_this_machine(WORK, tasks, options.jobs)
-        )
-        with progress('recordings', quiet=options.quiet) as bars:
-            yield from bars.track(together, total=len(tasks), description='recordings')
+        yield from bags.distributed(options, WORK, tasks, 'recordings')
         return
     for task in tasks:
         with message_progress(task.name, quiet=options.quiet) as report_progress:

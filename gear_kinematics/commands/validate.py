@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
@@ -10,19 +11,12 @@ from gear_kinematics.commands.output import (
     Reporter,
     complain,
     message_progress,
-    progress,
     warn_of_shared_memory,
 )
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.fleet import (
-    Task,
-    unusable,
-    validate_bag,
-    validate_on_cluster,
-    validate_on_this_machine,
-)
+from gear_kinematics.validation.fleet import WORK, Task, unusable, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 
@@ -118,13 +112,8 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
 
 def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[BagReport]:
     if options.scheduler or options.jobs > 1:
-        reports = (
-            validate_on_cluster(tasks, options.scheduler)
-            if options.scheduler
-            else validate_on_this_machine(tasks, options.jobs)
-        )
-        with progress('bags', quiet=options.quiet) as bars:
-            yield from bars.track(reports, total=len(tasks), description='bags')
+        for task, report in bags.distributed(options, WORK, tasks, 'bags'):
+            yield replace(report, bag=str(task.bag))  # as it was given
         return
     play = None
     if options.live:  # needs ROS, unlike the validation of a recording

@@ -1,6 +1,6 @@
-"""Validates one bag, or many in processes of this machine or on a Dask cluster."""
+"""Validates a bag, in this process, another one or on a Dask cluster."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -132,23 +132,6 @@ def validate_messages(
     return replace(report, config=task.config, findings=(*findings, *report.findings))
 
 
-def validate_on_this_machine(tasks: Sequence[Task], jobs: int) -> Iterator[BagReport]:
-    """Validate bags in several processes; yields the reports as they are ready.
-
-    A bag whose process dies is tried again, and finally reported as unusable.
-    """
-    return (report for _, report in fleet.on_this_machine(_WORK, tasks, jobs))
-
-
-def validate_on_cluster(tasks: Sequence[Task], scheduler: str) -> Iterator[BagReport]:
-    """Validate bags on a Dask cluster; yields the reports as they are ready.
-
-    Otherwise like `bag.fleet.on_cluster`.
-    """
-    for task, report in fleet.on_cluster(_WORK, tasks, scheduler):
-        yield replace(report, bag=str(task.bag))
-
-
 def _absolute(task: Task) -> Task:
     return replace(task, bag=task.bag.absolute())
 
@@ -162,4 +145,5 @@ def unusable(bag: Path, error: str, config: str = '') -> BagReport:
     return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)
 
 
-_WORK = fleet.Work(validate_bag, _lost, _absolute)
+WORK = fleet.Work(validate_bag, _lost, _absolute)
+"""For `fleet.on_this_machine` and `fleet.on_cluster`."""

@@ -25,13 +25,10 @@ from shipped_bags import ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
+from gear_kinematics.bag.fleet import on_this_machine
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state import parameters
-from gear_kinematics.validation.fleet import (
-    Task,
-    validate_bag,
-    validate_on_this_machine,
-)
+from gear_kinematics.validation.fleet import WORK, Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 
 SHIPPED = [
@@ -164,7 +161,8 @@ def test_a_bag_that_is_cut_off_is_reported_as_far_as_it_goes(tmp_path):
 def test_processes_report_what_one_after_the_other_does():
     tasks = [task(BAGS / name) for name in SHIPPED]
     tasks.append(task(BAGS / 'missing'))
-    reports = sorted(validate_on_this_machine(tasks, 2), key=lambda report: report.bag)
+    done = (report for _, report in on_this_machine(WORK, tasks, 2))
+    reports = sorted(done, key=lambda report: report.bag)
     one_by_one = sorted(map(validate_bag, tasks), key=lambda report: report.bag)
     # A NaN, where a curve has a gap, equals no other.
     assert list(map(repr, reports)) == list(map(repr, one_by_one))
