@@ -44,6 +44,14 @@ def accept(rotor_input, stamp, position, velocity=(), effort=()):
     return rotor_input.accept(data, no_clock)
 
 
+def homed(position, velocity=()) -> RotorInput:
+    """The input of a single-turn encoder, homed at its first message."""
+    rotor_input = RotorInput(SINGLE_TURN)
+    accept(rotor_input, START, position, velocity)
+    rotor_input.home(0.0)
+    return rotor_input
+
+
 def angle_error(sample, expected) -> float:
     """Difference from an exact rotor angle, including its turns, rad."""
     turns, angle = sample.position
@@ -363,9 +371,7 @@ def test_single_turn_encoder_is_not_referenced_before_home():
 # At 650 rad/s half a turn takes 4.833 ms.
 @pytest.mark.parametrize(('gap', 'known'), [(0, True), (4_800_000, True), (4_900_000, False)])
 def test_single_turn_encoder_loses_its_reference_over_half_a_turn(gap, known):
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, 1.0)
-    rotor_input.home(0.0)
+    rotor_input = homed(1.0)
     accept(rotor_input, START + gap, 1.25)
     assert rotor_input.referenced is known
     # Then output goes on from the nearest turn, and stays without reference.
@@ -377,9 +383,7 @@ def test_single_turn_encoder_loses_its_reference_over_half_a_turn(gap, known):
     ('before', 'after', 'turns'), [(3.0, -3.0, 1), (-3.0, 3.0, -1), (1.0, -1.0, 0)]
 )
 def test_single_turn_encoder_goes_on_from_the_nearest_turn(before, after, turns):
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, before)
-    rotor_input.home(0.0)
+    rotor_input = homed(before)
     sample = accept(rotor_input, START + 60 * SECOND, after)
     assert not rotor_input.referenced
     assert sample.position == (turns, after)
@@ -387,27 +391,21 @@ def test_single_turn_encoder_goes_on_from_the_nearest_turn(before, after, turns)
 
 def test_velocity_narrows_the_possible_turn_of_a_single_turn_encoder():
     # 20 ms at a steady 400 rad/s are 8 rad: more than a turn, and known from the velocities.
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, 0.0, [400.0])
-    rotor_input.home(0.0)
+    rotor_input = homed(0.0, [400.0])
     sample = accept(rotor_input, START + 20_000_000, 8.0 - TURN, [400.0])
     assert rotor_input.referenced
     assert sample.position == (1, pytest.approx(8.0 - TURN))
 
 
 def test_clock_reset_loses_the_reference_of_a_single_turn_encoder():
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, 3.0)
-    rotor_input.home(0.0)
+    rotor_input = homed(3.0)
     accept(rotor_input, START - 2 * SECOND, 3.0)
     assert not rotor_input.referenced
     assert rotor_input.resets == 1
 
 
 def test_rejected_messages_do_not_turn_the_rotor():
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, 3.0)
-    rotor_input.home(0.0)
+    rotor_input = homed(3.0)
     with pytest.raises(RejectedInputError):
         accept(rotor_input, START - 1, -1.0)
     assert rotor_input.last.position == (0, 3.0)
@@ -426,9 +424,7 @@ def test_change_of_encoder_resets_the_state(rotor_input):
 
 
 def test_other_changes_keep_the_turns():
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, 3.0)
-    rotor_input.home(0.0)
+    rotor_input = homed(3.0)
     accept(rotor_input, START + 1_000_000, -3.0)
     rotor_input.settings = replace(SINGLE_TURN, rotor_zero=0.25, max_rotor_speed=1.0)
     assert rotor_input.referenced
@@ -436,9 +432,7 @@ def test_other_changes_keep_the_turns():
 
 
 def test_changed_maximum_speed_holds_from_now_on():
-    rotor_input = RotorInput(SINGLE_TURN)
-    accept(rotor_input, START, 1.0)
-    rotor_input.home(0.0)
+    rotor_input = homed(1.0)
     rotor_input.settings = replace(SINGLE_TURN, max_rotor_speed=1.0)
     accept(rotor_input, START + 3 * SECOND, 1.0)
     assert rotor_input.referenced  # 3 rad at most
