@@ -79,7 +79,7 @@ def rewrite(
                 message = replaying.decode(data, JOINT_STATE)
                 message.position = message.position.copy()
                 edit(number, message.position)
-                data = bytes(replaying.TYPESTORE.serialize_cdr(message, JOINT_STATE))  # noqa: PLW2901
+                data = replaying.encode(message)  # noqa: PLW2901
                 number += 1
             writer.write(rename(topic), received, data)
     return path

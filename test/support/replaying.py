@@ -36,6 +36,21 @@ def decode(data: bytes, kind: str):
     return TYPESTORE.deserialize_cdr(data, kind)
 
 
+def encode(message, *, little_endian: bool = True) -> bytes:
+    kind = message.__msgtype__
+    return bytes(TYPESTORE.serialize_cdr(message, kind, little_endian=little_endian))
+
+
+def edited(data: bytes, kind: str, edit) -> bytes:
+    """Change a message object by `edit`, also in place."""
+    message = decode(data, kind)
+    for name in ('position', 'velocity', 'effort'):
+        if hasattr(message, name):
+            setattr(message, name, getattr(message, name).copy())
+    edit(message)
+    return encode(message)
+
+
 def stamp_of(message) -> int:
     return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
 

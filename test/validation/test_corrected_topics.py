@@ -77,11 +77,11 @@ def changed(messages, topic: str, number: int, **fields):
     """Change numbers of a message of a topic, given by its number."""
     found = [k for k, message in enumerate(messages) if message[0] == topic][number]
     _, received, data = messages[found]
-    message = replaying.TYPESTORE.deserialize_cdr(data, JOINT_STATE)
+    message = replaying.decode(data, JOINT_STATE)
     for name, by in fields.items():
         setattr(message, name, getattr(message, name) + by)
-    data = bytes(replaying.TYPESTORE.serialize_cdr(message, JOINT_STATE))
-    return [*messages[:found], (topic, received, data), *messages[found + 1 :]]
+    changed = topic, received, replaying.encode(message)
+    return [*messages[:found], changed, *messages[found + 1 :]]
 
 
 @pytest.mark.parametrize(
@@ -222,9 +222,9 @@ def test_missing_velocities_are_those_of_the_travel_wherever_the_recording_begin
         topic, received, data = message
         if topic == '/body_poses':
             return message
-        state = replaying.TYPESTORE.deserialize_cdr(data, JOINT_STATE)
+        state = replaying.decode(data, JOINT_STATE)
         state.velocity = state.velocity[:0]
-        return topic, received, bytes(replaying.TYPESTORE.serialize_cdr(state, JOINT_STATE))
+        return topic, received, replaying.encode(state)
 
     made = replace(MADE, spans=replace(MADE.spans, speed=(-0.5, 0.5)))
     bag = [without_velocity(message) for message in read_bag(BAGS / 'servo_point_to_point')]

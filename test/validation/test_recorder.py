@@ -111,10 +111,7 @@ def test_losses_of_the_recorder_fail_nothing(traffic, config, seed):
 
 
 def edited(message: Message, edit) -> Message:
-    content = replaying.decode(message.data, TYPES[message.topic])
-    edit(content)
-    data = bytes(replaying.TYPESTORE.serialize_cdr(content, TYPES[message.topic]))
-    return message._replace(data=data)
+    return message._replace(data=replaying.edited(message.data, TYPES[message.topic], edit))
 
 
 def turn_a_little(content) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import replaying
-from replaying import SECOND
+from replaying import SECOND, edited, encode
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 
 from gear_kinematics.bag import Message
@@ -48,16 +48,6 @@ def field_of(report: BagReport, topic: str, name: str):
     return found
 
 
-def edited(data: bytes, topic: str, edit: Callable) -> bytes:
-    """Change a message object by `edit`, using rosbags."""
-    message = replaying.TYPESTORE.deserialize_cdr(data, TYPES[topic])
-    for name in ('position', 'velocity', 'effort'):
-        if hasattr(message, name):
-            setattr(message, name, getattr(message, name).copy())
-    edit(message)
-    return bytes(replaying.TYPESTORE.serialize_cdr(message, TYPES[topic]))
-
-
 def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[list[Message], int]:
     """Change one message of a topic; also return its original stamp."""
     changed, count, stamp = [], 0, 0
@@ -66,7 +56,7 @@ def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[lis
             count += 1
             if count == CHANGED:
                 stamp = replaying.stamp_of(replaying.decode(data, TYPES[topic]))
-                data = edited(data, topic, edit)  # noqa: PLW2901
+                data = edited(data, TYPES[topic], edit)  # noqa: PLW2901
         changed.append((name, received, data))
     assert stamp
     return changed, stamp
@@ -74,7 +64,7 @@ def change_one(messages: list[Message], topic: str, edit: Callable) -> tuple[lis
 
 def change_all(messages: list[Message], topic: str, edit: Callable) -> list[Message]:
     return [
-        (name, received, edited(data, topic, edit) if name == topic else data)
+        (name, received, edited(data, TYPES[topic], edit) if name == topic else data)
         for name, received, data in messages
     ]
 
@@ -234,7 +224,7 @@ def test_garbage_in_the_first_output_gives_no_turns(value):
     messages = read_bag(BAGS / 'single_turn_encoder')
     index = index_of(messages, OUTPUT, 1)
     topic, received, data = messages[index]
-    messages[index] = topic, received, edited(data, topic, lambda m: m.position.fill(value))
+    messages[index] = topic, received, edited(data, TYPES[topic], lambda m: m.position.fill(value))
     report = validate(messages, config)
     assert report.verdict == Verdict.FAIL
     assert [t.compared for t in report.topics] == [2500, 2500]
@@ -641,15 +631,7 @@ def test_topics_may_have_other_names(recorded, config):
 
 def test_big_endian_recordings_pass(recorded, config):
     swapped = [
-        (
-            topic,
-            received,
-            bytes(
-                replaying.TYPESTORE.serialize_cdr(
-                    replaying.decode(data, TYPES[topic]), TYPES[topic], little_endian=False
-                )
-            ),
-        )
+        (topic, received, encode(replaying.decode(data, TYPES[topic]), little_endian=False))
         for topic, received, data in recorded
     ]
     assert swapped[0][2][:2] == b'\x00\x00'
