@@ -35,7 +35,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=arguments.positive,
         default=4.0,  # a driver may find this listener only when it announces itself, every 3 s
         metavar='S',
-        help='time to listen (default: %(default)g)',
+        help='time to listen; up to twice as long until all drivers have been heard '
+        '(default: %(default)g)',
     )
 
 

@@ -52,6 +52,11 @@ class Drivers:
         """The latest message of a topic, if it is one of these."""
         return self._latest.get(topic or '')
 
+    @property
+    def all_heard(self) -> bool:
+        """Whether a message has come of each topic."""
+        return all(latest.last for latest in self._latest.values())
+
     def found(self) -> list[Driver]:
         """List the topics by name."""
         return [
@@ -71,11 +76,11 @@ def _joints(latest: Latest) -> tuple[str, ...]:
 
 
 def listen(seconds: float) -> list[Driver]:
-    """Find the drivers in a time of some seconds."""
+    """Find the drivers in a time of some seconds, and hear each in as many more."""
     with replay_node('') as node:
         drivers = Drivers(node)
         end = time.monotonic() + seconds
-        while time.monotonic() < end:
+        while (now := time.monotonic()) < end or (now < end + seconds and not drivers.all_heard):
             drivers.look(gear_nodes(node))
             drivers.poll()
             time.sleep(_PERIOD)
