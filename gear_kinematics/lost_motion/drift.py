@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 
@@ -121,32 +120,29 @@ class _Passages:
 
     def missed(self, zero: _Zero) -> Array:
         """Mean square error of each half loop, predicted by the others, rad²."""
+        columns, solution = self._solution(zero)
+        rest = self._angle - columns @ (solution @ self._angle)
         found = []
-        columns = self._with(zero)
         for half in np.unique(self._half):
-            own = self._half == half
-            error = self._angle[own] - columns[own] @ self._solved(zero, columns, ~own)
-            found.append(np.mean(error**2))
+            own = np.flatnonzero(self._half == half)
+            # What a fit without these rows misses follows from the fit to all of them.
+            others = np.eye(len(own)) - columns[own] @ solution[:, own]
+            found.append(np.mean(np.linalg.solve(others, rest[own]) ** 2))
         return np.array(found)
 
     def fitted(self, zero: _Zero) -> Array:
         """Return the zero at the knots, rad."""
-        parameters = zero.basis.shape[1]
-        columns = self._with(zero)
-        solved = self._solved(zero, columns, np.ones_like(self._half, np.bool_))
-        return np.asarray(zero.basis @ solved[-parameters:])
+        _, solution = self._solution(zero)
+        return np.asarray(zero.basis @ (solution @ self._angle)[self._fixed.shape[1] :])
 
-    def _with(self, zero: _Zero) -> Array:
-        return np.hstack([self._fixed, self._at_knots @ zero.basis])
-
-    def _solved(self, zero: _Zero, columns: Array, rows: NDArray[np.bool_]) -> Array:
-        used = columns[rows]
+    def _solution(self, zero: _Zero) -> tuple[Array, Array]:
+        """Return the columns of the equations, and the matrix that solves them."""
+        columns = np.hstack([self._fixed, self._at_knots @ zero.basis])
         bends = math.sqrt(zero.stiffness) * np.diff(zero.basis, 2, axis=0)
-        matrix = used.T @ used + _RIDGE * np.eye(columns.shape[1])
+        matrix = columns.T @ columns + _RIDGE * np.eye(columns.shape[1])
         own = slice(self._fixed.shape[1], None)
         matrix[own, own] += bends.T @ bends
-        solved: Array = np.linalg.solve(matrix, used.T @ self._angle[rows])
-        return solved
+        return columns, np.linalg.solve(matrix, columns.T)
 
 
 def _time_at(half: HalfLoop, torque: float) -> float:
