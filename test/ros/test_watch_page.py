@@ -182,7 +182,7 @@ def test_recording_loses_nothing_and_is_validated(connected, folder):
     connected.keyboard.press('Space')
     expect(connected.locator('#answer')).to_contain_text('Recording 8 topics.')
     expect(connected.locator('#recording')).to_have_text(
-        re.compile(r'Recording to \S+: [4-9]\d{3} messages in [\d.]+ s, 0 lost')
+        re.compile(r'Recording to \S+: (?:[4-9]\d{3}|\d{5,}) messages in [\d.]+ s, 0 lost')
     )
     expect(record).to_have_text('Stop recording')
     expect(connected.locator('#home')).to_be_disabled()
