@@ -13,12 +13,7 @@ from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import (
-    Component,
-    Estimate,
-    by_steps,
-    mean_slope_resolution,
-)
+from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, slope_resolution
 
 _LOADED = 0.5
 """Share of the greatest load from which on the stiffness of the spring is taken."""
@@ -149,7 +144,7 @@ def _spring(
         return None
     likely = [own, *(_compliances(Midlines.of(other.whole), low, high) for other in others)]
     loops = np.mean(likely, axis=0)
-    steps = mean_slope_resolution(angle_step, high - low, float(np.mean(loops)))
+    steps = slope_resolution(angle_step, high - low, float(np.mean(loops)), of_means=True)
     parts = [
         by_steps(steps, len(loops)),
         Component(float(np.std(np.mean(likely, axis=1)))),

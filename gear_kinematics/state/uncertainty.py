@@ -167,36 +167,24 @@ def hidden_resolution(step: float, repeats: Sequence[float], readings: int) -> f
     return math.sqrt(readings) * resolution(step) * math.exp(-2.0 * turns * turns)
 
 
-def slope_resolution(step: float, run: float, slope: float) -> float:
+def slope_resolution(step: float, run: float, slope: float, *, of_means: bool = False) -> float:
     """Standard uncertainty of a slope by the steps of an encoder.
 
     The line goes through many readings, of which those within a step count as one; over less than
-    six steps, the line counts as one through its ends.
+    six steps, the line counts as one through its ends. In means, the errors of whole steps cancel,
+    so that only those at the ends of the line remain.
 
     Args:
         step: of a reading.
         run: length of the line on the other axis.
         slope: of the line, in the unit of the step over that of the run.
+        of_means: whether the line goes through means that contain all readings.
     """
     if not step:
         return 0.0
-    return resolution(step) / run * math.sqrt(12.0 / max(6.0, abs(slope) * run / step))
-
-
-def mean_slope_resolution(step: float, run: float, slope: float) -> float:
-    """Standard uncertainty of the slope of means by the steps of an encoder.
-
-    Means contain all errors of a step, which cancel, but for the steps at the ends of the line;
-    over less than six steps, the line counts as one through its ends.
-
-    Args:
-        step: of a reading.
-        run: length of the line on the other axis.
-        slope: of the line, in the unit of the step over that of the run.
-    """
-    if not step:
-        return 0.0
-    return resolution(step) / run * math.sqrt(2.0) * min(1.0, 6.0 * step / abs(slope * run))
+    steps = max(6.0, abs(slope) * run / step)
+    standard = resolution(step) / run * math.sqrt(12.0 / steps)
+    return standard * math.sqrt(6.0 / steps) if of_means else standard
 
 
 def end_resolution(step: float, run: float) -> float:

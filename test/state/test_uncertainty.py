@@ -11,7 +11,6 @@ from gear_kinematics.state.uncertainty import (
     Estimate,
     end_resolution,
     hidden_resolution,
-    mean_slope_resolution,
     resolution,
     slope_resolution,
     student_t,
@@ -160,10 +159,10 @@ def test_slope_of_means_is_as_uncertain_as_the_steps_at_its_ends(steps):
     slopes = np.polynomial.polynomial.polyfit(
         x.reshape(100, 10).mean(axis=1), np.transpose(means), 1
     )[1]
-    stated = mean_slope_resolution(0.5, run=2.0, slope=-0.25 * steps)
+    stated = slope_resolution(0.5, run=2.0, slope=-0.25 * steps, of_means=True)
     assert 0.2 * stated <= 0.25 * np.std(slopes) <= stated
     assert stated <= slope_resolution(0.5, run=2.0, slope=-0.25 * steps)
-    assert mean_slope_resolution(0.0, run=2.0, slope=0.1) == 0.0
+    assert slope_resolution(0.0, run=2.0, slope=0.1, of_means=True) == 0.0
 
 
 @pytest.mark.parametrize('steps', [5.0, 20.0, 130.0])
