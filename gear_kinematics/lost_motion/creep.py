@@ -67,10 +67,9 @@ class Loads:
         load = 0.0
         for half in history:
             torque = np.linspace(half.start, half.end, _LEVELS)
-            sign = 1.0 if half.rising else -1.0
             values = transmitted(torque, load, friction)
             load = float(values[-1])
-            times.append(np.interp(sign * torque, sign * half.torque, half.times))
+            times.append(half.time_at(torque))
             loads.append(values)
         self._time, self._load = np.concatenate(times), np.concatenate(loads)
 

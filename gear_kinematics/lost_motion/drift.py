@@ -102,7 +102,7 @@ class _Passages:
         reach = _REACH * min(loop.amplitude for loop in ramps.loops)
         torques = np.linspace(-reach, reach, _LEVELS)
         found = [
-            (loop, way, level, _time_at(half, torque), float(half.angle_at(torque)))
+            (loop, way, level, float(half.time_at(torque)), float(half.angle_at(torque)))
             for loop, both in enumerate(ramps.loops)
             for way, half in enumerate((both.fall, both.rise))
             for level, torque in enumerate(torques.tolist())
@@ -143,11 +143,6 @@ class _Passages:
         own = slice(self._fixed.shape[1], None)
         matrix[own, own] += bends.T @ bends
         return columns, np.linalg.solve(matrix, columns.T)
-
-
-def _time_at(half: HalfLoop, torque: float) -> float:
-    sign = 1.0 if half.rising else -1.0
-    return float(np.interp(sign * torque, sign * half.torque, half.times))
 
 
 def without_drift(ramps: Ramps, drift: Drift) -> Ramps:

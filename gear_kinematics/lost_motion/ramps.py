@@ -85,8 +85,19 @@ class HalfLoop:
 
     def angle_at(self, torque: Array | float) -> Array:
         """The angle at torques, rad, of the same shape."""
+        return self._at(torque, self.angle)
+
+    def time_at(self, torque: Array | float) -> Array:
+        """The time at torques, s, of the same shape.
+
+        Raises:
+            ValueError: if times are not known.
+        """
+        return self._at(torque, self.times)
+
+    def _at(self, torque: Array | float, values: Array) -> Array:
         sign = 1.0 if self.rising else -1.0
-        return np.interp(sign * np.asarray(torque), sign * self.torque, self.angle)
+        return np.interp(sign * np.asarray(torque), sign * self.torque, values)
 
     def rounding(self, torque: float) -> float:
         """Greatest rise of the angle at a torque by noise, which rounds corners, rad."""
