@@ -11,8 +11,6 @@ STANDSTILL = 1.5
 """The torque goes back by this times the friction while the gear certainly stands still."""
 _WINDOW = 0.15
 """Share of a ramp's amplitude, before and after a reversal, in which corners are found."""
-_HARDLY = 0.02
-"""Share of the amplitude below which a friction does not matter for a corner."""
 _ROWS = 10
 """Least number of samples on either side of a corner."""
 _ITERATIONS = 6
@@ -40,9 +38,7 @@ def encoder_lag(
     """
     found = []
     for group in ramps:
-        window = _WINDOW * group.amplitude
-        if friction > _HARDLY * group.amplitude:
-            window = min(window, STANDSTILL * friction)
+        window = min(_WINDOW * group.amplitude, STANDSTILL * friction)
         for half in group.halves():
             late = _late(time - half.times[0], torque, angle, window / half.rate)
             if late is not None:

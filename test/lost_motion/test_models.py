@@ -79,6 +79,13 @@ def test_a_late_encoder_is_found_and_taken_out():
     assert np.mean(widths) == pytest.approx(truth(late).hysteresis, abs=0.5 * ARC_MINUTE)
 
 
+@pytest.mark.parametrize('friction', [0.2, 0.6, 1.5])
+def test_an_encoder_in_time_is_not_late_with_any_friction(friction):
+    """The gear stands still for twice the friction after a reversal, however small that is."""
+    _, effects = models.settled(loading(Scenario('', play=0.01, friction=friction)))
+    assert effects.lag is None or effects.lag.value < 1e-3
+
+
 def test_a_lag_that_may_be_the_gears_is_half_taken_out():
     _, effects = models.settled(loading(scenario('inertia, no play')))
     lag, removed = effects.lag.value, effects.removed
