@@ -26,7 +26,7 @@ def main() -> None:
     options = parser.parse_args()
     start = time.perf_counter()
     with ProcessPoolExecutor(options.jobs) as pool:
-        found = list(pool.map(partial(judge, seeds=options.seeds), SCENARIOS))
+        found = list(pool.map(partial(judge, count=options.seeds), SCENARIOS))
     if options.json:
         print(json.dumps({s.name: one._asdict() for s, one in zip(SCENARIOS, found, strict=True)}))
         return

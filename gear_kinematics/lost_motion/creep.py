@@ -12,7 +12,7 @@ import numpy as np
 
 from gear_kinematics.lost_motion.lag import STANDSTILL
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
-from gear_kinematics.state.uncertainty import Estimate
+from gear_kinematics.state.uncertainty import Component, Estimate
 
 _LEVELS = 100
 """Torques of a half loop at which loads are computed."""
@@ -27,8 +27,8 @@ _STANDARD_ERRORS = 2.0
 """Creep has to predict better than none by this many standard errors."""
 _UNLIKELY = 3.0
 """A time constant that predicts worse than the best one by so many standard errors is unlikely."""
-_CONSTANTS = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 50.0])
-"""s, time constants that are tried."""
+_CONSTANTS = np.geomspace(1.0, 50.0, 18)
+"""s, time constants that are tried; known by their numbers."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -71,88 +71,122 @@ class Loads:
             load = float(values[-1])
             times.append(half.time_at(torque))
             loads.append(values)
-        self._time, self._load = np.concatenate(times), np.concatenate(loads)
+        self._time, on_time = np.concatenate(times), np.concatenate(loads)
+        self._late = np.zeros((len(on_time), len(_CONSTANTS)))
+        steps = zip(np.diff(self._time), 0.5 * (on_time[1:] + on_time[:-1]), strict=True)
+        for k, (step, load) in enumerate(steps, 1):
+            left = np.exp(-max(step, 0.0) / _CONSTANTS)
+            self._late[k] = load + (self._late[k - 1] - load) * left
 
-    def late(self, constants: Array) -> Callable[[Array], Array]:
-        """Return the loads as they come late by time constants, over time.
+    def late(self, time: Array, number: int) -> Array:
+        """Return the loads as they come late by the time constant of a number, (n,), N·m.
 
         Args:
-            constants: (n,), s.
-
-        Returns:
-            A function of times, (m,), s, to loads, (n, m), N·m.
+            time: (n,), s.
+            number: of the time constant.
         """
-        late = np.zeros((len(self._time), len(constants)))
-        for k, (step, load) in enumerate(
-            zip(np.diff(self._time), 0.5 * (self._load[1:] + self._load[:-1]), strict=True), 1
-        ):
-            late[k] = load + (late[k - 1] - load) * np.exp(-max(step, 0.0) / constants)
-        return lambda time: np.array([np.interp(time, self._time, column) for column in late.T])
+        return np.interp(time, self._time, self._late[:, number])
 
 
-def creep_of(
-    loads: Loads, ramps: Sequence[Ramps], friction: float, angle_step: float
-) -> Creep | None:
+@dataclass(frozen=True, eq=False, slots=True)
+class Creeping:
+    """A gear that creeps, or may do so, through a recording."""
+
+    clear: bool
+    """Whether it certainly creeps."""
+    loads: Loads
+    compliance: Estimate
+    """rad/(N·m), with the best time constant."""
+    compliances: Array
+    """rad/(N·m), with each time constant."""
+    likely: tuple[int, ...]
+    """Numbers of the time constants that predict about as well, the best one first."""
+
+    @property
+    def creep(self) -> Creep | None:
+        """What can be told of it; None if it is not clear."""
+        if not self.clear:
+            return None
+        best, *others = ((float(_CONSTANTS[k]), float(self.compliances[k])) for k in self.likely)
+        return Creep(self.compliance, best[0], tuple(others))
+
+    def out_of(self, ramps: Ramps) -> Ramps:
+        """Return the ramps without what comes late, if that is clear."""
+        return self._without(ramps, self.likely[0], self.compliance.value) if self.clear else ramps
+
+    def part(self, ramps: Ramps, figure: Callable[[Ramps], float]) -> Component:
+        """Return what not knowing the creep adds to the uncertainty of a figure of ramps.
+
+        Args:
+            ramps: with creep.
+            figure: of ramps.
+        """
+        used = figure(self.out_of(ramps))
+        without = [figure(self._without(ramps, k, self.compliances[k])) for k in self.likely]
+        by_constant = math.sqrt(float(np.mean((np.array(without) - used) ** 2)))
+        more = self.compliance.value + (self.compliance.standard or 0.0)
+        by_compliance = figure(self._without(ramps, self.likely[0], more)) - without[0]
+        return Component(math.hypot(by_constant, by_compliance))
+
+    def _without(self, ramps: Ramps, number: int, compliance: float) -> Ramps:
+        return ramps.changed(
+            lambda half: replace(
+                half, angle=half.angle - compliance * self.loads.late(half.times, number)
+            )
+        )
+
+
+def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> Creeping | None:
     """Estimate creep from where the gear stands still after reversals of the torque.
 
     Args:
-        loads: of the recording.
-        ramps: of the recording.
+        ramps: of the recording, with times.
         friction: N·m.
         angle_step: rad, between readings of the encoder; 0 if unknown.
 
     Returns:
-        None if creep does not predict the standstills that were left out.
+        None if creep does not predict the standstills that were left out any better.
     """
-    late = loads.late(_CONSTANTS)
+    loads = Loads(ramps[0].history, friction)
     halves = (half for group in ramps for half in group.halves())
-    stills = [still for half in halves if (still := _still(half, friction, late))]
+    stills = [still for half in halves if (still := _still(half, friction, loads))]
     if len(stills) < _LEAST_STILLS:
         return None
     both, square, angle = (np.array([still[k] for still in stills]) for k in range(3))
+    compliances = both.sum(0) / square.sum(0)
     # Compliances by all standstills but one, and how these predict that one: (stills, constants).
     without = (both.sum(0) - both) / (square.sum(0) - square)
     missed = angle[:, None] - 2.0 * without * both + without**2 * square
-    count = len(stills)
     best = int(np.argmin(missed.sum(0)))
-    gain = angle - missed[:, best]
-    if np.mean(gain) < _STANDARD_ERRORS * np.std(gain, ddof=1) / math.sqrt(count):
+    gain, error = _mean(angle - missed[:, best])
+    if gain <= 0.0 or compliances[best] <= 0.0:
         return None
-    compliance = both.sum(0) / square.sum(0)
-    spread = without[:, best] - np.mean(without[:, best])
-    standard = math.sqrt((count - 1) / count * float(np.sum(spread**2)))
-    found = Estimate(float(compliance[best]), standard, count - 1, count)
+    count = len(stills)
+    standard = math.sqrt(count - 1) * float(np.std(without[:, best]))
+    compliance = Estimate(float(compliances[best]), standard, count - 1, count)
     least = max(angle_step, _ROUNDING) / ramps[-1].amplitude
-    if found.value <= max(found.uncertainty or 0.0, least):
-        return None
-    worse = missed - missed[:, [best]]
-    close = np.mean(worse, 0) <= _UNLIKELY * np.std(worse, 0, ddof=1) / math.sqrt(count)
-    others = [k for k in np.flatnonzero(close).tolist() if k != best]
-    return Creep(
-        found,
-        float(_CONSTANTS[best]),
-        tuple((float(_CONSTANTS[k]), float(compliance[k])) for k in others),
+    clear = gain >= _STANDARD_ERRORS * error and compliance.value > max(
+        compliance.uncertainty or 0.0, least
     )
+    worse = [_mean(column - missed[:, best]) for column in missed.T]
+    likely = [
+        k for k, (mean, error) in enumerate(worse) if mean <= _UNLIKELY * error and k != best
+    ]
+    return Creeping(clear, loads, compliance, compliances, (best, *likely))
 
 
-def _still(
-    half: HalfLoop, friction: float, late: Callable[[Array], Array]
-) -> tuple[Array, Array, float] | None:
+def _mean(values: Array) -> tuple[float, float]:
+    """Return the mean and its standard error."""
+    return float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values))
+
+
+def _still(half: HalfLoop, friction: float, loads: Loads) -> tuple[Array, Array, float] | None:
     """Return sums over a standstill: late loads by angle, late loads squared, angle squared."""
     back = np.abs(half.torque - half.start)
     rows = (back > max(4.0 * half.blur, _SETTLED * friction)) & (back < STANDSTILL * friction)
     if np.count_nonzero(rows) < _ROWS:
         return None
-    time = half.times[rows]
     angle = half.angle[rows] - np.mean(half.angle[rows])
-    loads = late(time)
-    loads = loads - np.mean(loads, axis=1, keepdims=True)
-    return loads @ angle, np.sum(loads**2, axis=1), float(angle @ angle)
-
-
-def without_creep(ramps: Ramps, loads: Loads, compliance: float, constant: float) -> Ramps:
-    """Return the ramps without what comes late."""
-    late = loads.late(np.array([constant]))
-    return ramps.changed(
-        lambda half: replace(half, angle=half.angle - compliance * late(half.times)[0])
-    )
+    late = np.array([loads.late(half.times[rows], k) for k in range(len(_CONSTANTS))])
+    late -= np.mean(late, axis=1, keepdims=True)
+    return late @ angle, np.sum(late**2, axis=1), float(angle @ angle)

@@ -14,7 +14,7 @@ _WINDOW = 0.15
 _ROWS = 10
 """Least number of samples on either side of a corner."""
 _ITERATIONS = 6
-_NEAR = 0.3
+_NEAR = 0.6
 """Share of the window within which a corner has to be."""
 _OF_GEAR = 0.01
 """s, up to which it may well be the gear that is late. Its inertia moves it on after a reversal,

@@ -59,16 +59,17 @@ def _effects(found: HysteresisReport) -> Iterator[str]:
                 'out.'
             )
     if (creep := found.creep) and found.spring:
-        likely = [(creep.constant, creep.compliance.value), *creep.others]
         stiffness = 100.0 * found.spring.stiffness.value
-        pairs = ' or '.join(
-            f'{number(stiffness * compliance, 2)} % with {number(constant)} s'
-            for constant, compliance in sorted(likely)
-        )
+        likely = sorted([(creep.constant, creep.compliance.value), *creep.others])
+        ends = [
+            f'{number(stiffness * compliance, 2)} % within about {number(constant, 2)} s'
+            for constant, compliance in (likely[0], likely[-1])
+        ]
+        late = f'between {" and ".join(ends)}' if creep.others else ends[0]
         yield (
-            'The gear creeps. By equally likely shares of its twist and time constants, what '
-            f'comes late is {pairs}. Backlash, friction and the stiffness of the spring are '
-            'without creep; hysteresis, lost motion and the other stiffnesses contain it.'
+            f'The gear creeps. The share of its twist that comes late is {late}. Backlash, '
+            'friction and the stiffness of the spring are without creep; hysteresis, lost motion '
+            'and the other stiffnesses contain it.'
         )
 
 

@@ -6,14 +6,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gear_kinematics.lost_motion.creep import Creep, Loads, creep_of, without_creep
+from gear_kinematics.lost_motion.creep import Creeping, creeping_of
 from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
+from gear_kinematics.lost_motion.friction import friction_of
 from gear_kinematics.lost_motion.lag import encoder_lag, of_encoder, without_lag
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, slope_resolution
+from gear_kinematics.state.uncertainty import Estimate, by_steps, slope_resolution
 
 _LOADED = 0.5
 """Share of the greatest load from which on the stiffness of the spring is taken."""
@@ -41,8 +42,21 @@ class Effects:
     """s, by which corners of the angle come later than those of the torque."""
     removed: Estimate | None
     """s, what of it is ascribed to the encoder; taken out."""
+    late: float
+    """s, standard uncertainty of how late the angle still is."""
     drifts: tuple[Drift | None, ...]
     """Of the ramps of each amplitude; taken out."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Settled:
+    """Ramps without the lag of their encoder and the drift of their zero."""
+
+    ramps: tuple[Ramps, ...]
+    """In ascending order of amplitude."""
+    effects: Effects
+    creeping: Creeping | None = None
+    """Not taken out."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -53,11 +67,10 @@ class Models:
     """Of the ramps of each amplitude."""
     spring: Spring | None
     """By the largest ramps."""
-    creep: Creep | None
 
 
-def settled(loading: Loading) -> tuple[tuple[Ramps, ...], Effects]:
-    """Find the ramps of a recording, without the lag of its encoder and the drift of its zero.
+def settled(loading: Loading) -> Settled:
+    """Find the ramps of a recording, and take out what time does to them.
 
     Raises:
         RampError: if there are none.
@@ -65,20 +78,24 @@ def settled(loading: Loading) -> tuple[tuple[Ramps, ...], Effects]:
     torque, angle, time = loading.torque, loading.angle, loading.time
     ramps = find_ramps(torque, angle, time)
     if time is None:
-        return ramps, Effects(None, None, (None,) * len(ramps))
-    lag = encoder_lag(time, torque, angle, ramps, _friction(ramps))
-    removed = None
+        return Settled(ramps, Effects(None, None, 0.0, (None,) * len(ramps)))
+    friction = _friction(ramps)
+    lag = encoder_lag(time, torque, angle, ramps, friction)
+    removed, late = None, 0.0
     if lag and lag.value > (lag.uncertainty or 0.0):
         removed = of_encoder(lag)
+        late = removed.standard or 0.0
         ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
-    else:
-        lag = None
-    drifts = tuple(map(drift_of, ramps))
+    elif lag:
+        late, lag = math.hypot(lag.value, lag.standard or 0.0), None
+    # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
+    creeping = creeping_of(ramps, _friction(ramps), loading.angle_step.size)
+    drifts = tuple(drift_of(creeping.out_of(group) if creeping else group) for group in ramps)
     still = (
         without_drift(group, drift) if drift else group
         for group, drift in zip(ramps, drifts, strict=True)
     )
-    return tuple(still), Effects(lag, removed, drifts)
+    return Settled(tuple(still), Effects(lag, removed, late, drifts), creeping)
 
 
 def _friction(ramps: Sequence[Ramps]) -> float:
@@ -86,72 +103,71 @@ def _friction(ramps: Sequence[Ramps]) -> float:
     return float(np.median(Midlines.of(ramps[0].whole).friction))
 
 
-def models_of(ramps: Sequence[Ramps], angle_step: float, removed: Estimate | None) -> Models:
+def models_of(found: Settled, angle_step: float) -> Models:
     """Model ramps.
 
     Args:
-        ramps: of a recording, in ascending order of amplitude.
+        found: the ramps of a recording.
         angle_step: rad, between readings of the encoder; 0 if unknown.
-        removed: s, lag of the encoder that has been taken out.
     """
-    creep, steeper, others = None, None, []
-    if ramps[0].history[0].time is not None:
-        friction = _friction(ramps)
-        loads = Loads(ramps[0].history, friction)
-        creep = creep_of(loads, ramps, friction, angle_step)
-        if creep:
-            more = creep.compliance.value + (creep.compliance.standard or 0.0)
-            steeper = without_creep(ramps[-1], loads, more, creep.constant)
-            others = [
-                without_creep(ramps[-1], loads, compliance, constant)
-                for constant, compliance in creep.others
-            ]
-            ramps = [
-                without_creep(group, loads, creep.compliance.value, creep.constant)
-                for group in ramps
-            ]
-    late = removed.standard or 0.0 if removed else 0.0
-    plays = [_play(group, angle_step, late) for group in ramps]
-    spring = _spring(ramps[-1], steeper, others, angle_step)
+    creeping, late = found.creeping, found.effects.late
+    plays = [_play(group, angle_step, late, creeping) for group in found.ramps]
+    spring = _spring(found.ramps[-1], angle_step, creeping)
     if spring:
         stiffness = spring.stiffness.value
         plays = [play and play.under(stiffness) for play in plays[:-1]] + plays[-1:]
-    return Models(tuple(plays), spring, creep)
+    return Models(tuple(plays), spring)
 
 
-def _play(ramps: Ramps, angle_step: float, late: float) -> PlayModel | None:
-    hysteresis = float(np.mean([loop.width(0.0) for loop in ramps.loops]))
-    rate = ramps.loops[0].fall.rate if late else 0.0
-    return play_model(ramps.whole, angle_step, hysteresis, rate * late)
+def _play(
+    ramps: Ramps, angle_step: float, late: float, creeping: Creeping | None
+) -> PlayModel | None:
+    """Model the play of ramps.
+
+    Args:
+        ramps: with creep.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+        late: s, standard uncertainty of the lag of the encoder.
+        creeping: of the recording.
+    """
+    hidden = late * ramps.loops[0].fall.rate if late else 0.0
+    still = ramps
+    if creeping:
+        hidden = math.hypot(hidden, creeping.part(ramps, _friction_of).standard)
+        still = creeping.out_of(ramps)
+    hysteresis = float(np.mean([loop.width(0.0) for loop in still.loops]))
+    return play_model(still.whole, angle_step, hysteresis, hidden)
 
 
-def _spring(
-    ramps: Ramps, steeper: Ramps | None, others: Sequence[Ramps], angle_step: float
-) -> Spring | None:
+def _friction_of(ramps: Ramps) -> float:
+    """The friction without load, N·m."""
+    return friction_of(Midlines.of(ramps.whole), 0.0)[0].value
+
+
+def _spring(ramps: Ramps, angle_step: float, creeping: Creeping | None) -> Spring | None:
     """Measure the spring of ramps.
 
     Args:
-        ramps: without their creep.
-        steeper: without as much more creep as its standard uncertainty.
-        others: without creep of other time constants, as likely as the one of `ramps`.
+        ramps: with creep.
         angle_step: rad, between readings of the encoder; 0 if unknown.
+        creeping: of the recording.
     """
-    lines = Midlines.of(ramps.whole)
+    still = creeping.out_of(ramps) if creeping else ramps
+    lines = Midlines.of(still.whole)
     high = float(np.min(np.abs(lines.load[:, [0, -1]])))  # which all loops reach on both sides
     low = _LOADED * high
-    own = _compliances(lines, low, high)
-    if np.min(own) <= 0.0:
+    loops = _compliances(lines, low, high)
+    if np.min(loops) <= 0.0:
         return None
-    likely = [own, *(_compliances(Midlines.of(other.whole), low, high) for other in others)]
-    loops = np.mean(likely, axis=0)
     steps = slope_resolution(angle_step, high - low, float(np.mean(loops)), of_means=True)
-    parts = [
-        by_steps(steps, len(loops)),
-        Component(float(np.std(np.mean(likely, axis=1)))),
-    ]
-    if steeper:
-        more = _compliances(Midlines.of(steeper.whole), low, high)
-        parts.append(Component(abs(float(np.mean(more - own)))))
+    parts = [by_steps(steps, len(loops))]
+    if creeping:
+        parts.append(
+            creeping.part(
+                ramps,
+                lambda ramps: float(np.mean(_compliances(Midlines.of(ramps.whole), low, high))),
+            )
+        )
     return Spring(
         low, high, mean_of_loops(loops, completed=ramps.completed).joined(*parts).inverse()
     )

@@ -111,23 +111,23 @@ def measure(
 def _hysteresis(
     loading: Loading, rated_torque: float | None, corners: tuple[float, ...] | None
 ) -> HysteresisReport:
-    ramps, effects = settled(loading)
+    found = settled(loading)
+    ramps = found.ramps
     step = loading.angle_step.size
     hysteresis.check(ramps[-1], step)
-    models = models_of(ramps, step, effects.removed)
+    models = models_of(found, step)
     rated = ramps[-1].amplitude if rated_torque is None else rated_torque
     if corners is None:
         corners = tuple(share * rated for share in STIFFNESS_SHARES)
-    late = effects.removed.standard or 0.0 if effects.removed else 0.0
-    settings = Settings(rated, corners, step, late)
+    settings = Settings(rated, corners, step, found.effects.late)
     return HysteresisReport(
         settings,
         'largest ramps' if rated_torque is None else 'given',
         loading.measured,
         hysteresis.figures(ramps, settings, models.plays),
         ramps,
-        effects,
+        found.effects,
         models.spring,
-        models.creep,
+        found.creeping.creep if found.creeping else None,
         rates(ramps),
     )

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, quantised, ramps
 
+from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.hysteresis import Figures, Settings, check, figures
-from gear_kinematics.lost_motion.models import models_of
+from gear_kinematics.lost_motion.models import models_of, settled
 from gear_kinematics.lost_motion.ramps import RampError, find_ramps
+from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.state.uncertainty import student_t
 
 RATED = 40.0
@@ -57,9 +59,9 @@ def truth(gear: Gear) -> Truth:
 
 def measured(torque, angle, step=STEP, rated=RATED) -> tuple[Figures, ...]:
     settings = Settings(rated, (0.15 * rated, 0.5 * rated), step)
-    found = find_ramps(torque, angle)
-    check(found[-1], step)
-    return figures(found, settings, models_of(found, step, None).plays)
+    found = settled(Loading(torque, angle, Step(step, Source.GIVEN), measured=True))
+    check(found.ramps[-1], step)
+    return figures(found.ramps, settings, models_of(found, step).plays)
 
 
 def estimates(found: tuple[Figures, ...]) -> dict:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from simulated_ramps import STEP, Scenario, simulate, truth
+from simulated_ramps import STEP, Ramps, Scenario, drawn, hysteresis, simulate
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.lost_motion.encoder_step import Source, Step
@@ -34,41 +34,55 @@ class Judged(NamedTuple):
     limit: float
     """rad, median upper bound; NaN without any."""
     below_zero: int
-    """Plays that are told to be negative, as values or bounds."""
+    """Plays that are told to be zero or negative."""
 
 
-def judge(scenario: Scenario, seeds: int, seed: int = 1) -> Judged:
-    """Measure simulated recordings, and compare with the gear."""
-    gear = truth(scenario)
-    recorded = simulate(scenario, seeds, np.random.default_rng(seed))
-    found = [
-        _measured(recorded.time, recorded.torque[:, k], recorded.angle[:, k]) for k in range(seeds)
-    ]
+def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
+    """Measure simulated recordings, each of another gear, and compare with the gears."""
+    random = np.random.default_rng(seed)
+    gears = [drawn(scenario, random) for _ in range(count)]
+    hystereses = [hysteresis(gear) for gear in gears]
+    found = [_measured(simulate(gear, 1, random)) for gear in gears]
     models = [one.smallest.play_model for one in found]
-    values = [model.play for model in models if model.play]
-    limits = [model.limit for model in models if model.limit is not None]
-    held = sum(_holds(value, gear.play) for value in values)
-    held += sum(gear.play <= limit for limit in limits)
+    values = [(gear.play, m.play) for gear, m in zip(gears, models, strict=True) if m.play]
+    limits = [(gear.play, m.limit) for gear, m in zip(gears, models, strict=True) if m.limit]
     told = len(values) + len(limits)
+    held = sum(_holds(found, play) for play, found in values)
+    held += sum(play <= limit for play, limit in limits)
     return Judged(
-        hysteresis=_share(_holds(one.smallest.hysteresis, gear.hysteresis) for one in found),
+        hysteresis=_share(
+            _holds(one.smallest.hysteresis, true)
+            for one, true in zip(found, hystereses, strict=True)
+        ),
         play=held / told if told else math.nan,
         friction=math.nan
         if scenario.slip
-        else _share(_holds(model.friction, gear.friction) for model in models),
-        spring=_share(_holds(one.spring.stiffness, _stiffness(scenario, one)) for one in found),
-        valued=len(values) / seeds,
-        refused=1.0 - told / seeds,
-        play_bias=_mean([value.value - gear.play for value in values]),
-        play_uncertainty=_median([value.uncertainty for value in values]),
-        limit=_median(limits),
-        below_zero=sum(value.value <= 0.0 for value in values) + sum(x <= 0.0 for x in limits),
+        else _share(
+            _holds(model.friction, gear.friction)
+            for model, gear in zip(models, gears, strict=True)
+        ),
+        spring=_share(
+            _holds(one.spring.stiffness, _stiffness(gear, one))
+            for one, gear in zip(found, gears, strict=True)
+        ),
+        valued=len(values) / count,
+        refused=1.0 - told / count,
+        play_bias=_mean([found.value - play for play, found in values]),
+        play_uncertainty=_median([found.uncertainty for _, found in values]),
+        limit=_median([limit for _, limit in limits]),
+        below_zero=sum(found.value <= 0.0 for _, found in values),
     )
 
 
-def _measured(time: np.ndarray, torque: np.ndarray, angle: np.ndarray) -> HysteresisReport:
-    loading = Loading(torque, angle, Step(STEP, Source.GIVEN), measured=True, time=time)
-    recording = Recording('simulated', (), len(time), loading)
+def _measured(recorded: Ramps) -> HysteresisReport:
+    loading = Loading(
+        recorded.torque[:, 0],
+        recorded.angle[:, 0],
+        Step(STEP, Source.GIVEN),
+        measured=True,
+        time=recorded.time,
+    )
+    recording = Recording('simulated', (), len(recorded.time), loading)
     return measure(recording, GearRatio(-19)).hysteresis
 
 

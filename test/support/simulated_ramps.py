@@ -20,7 +20,7 @@ LOOPS = ((SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0)) +
     (LARGE, 20.0),
 )
 """Amplitude, N·m, and duration, s, of the loops of a recording."""
-RATED = LARGE
+Loops = tuple[tuple[float, float], ...]
 
 Spring = Callable[[np.ndarray], np.ndarray]
 """Twist, rad, under a load, N·m, of either sign, without the play."""
@@ -89,6 +89,7 @@ SCENARIOS = (
     Scenario('play, softening spring', play=0.01, spring=softening),
     Scenario('play, hardening spring', play=0.01, spring=hardening),
     Scenario('creep of 10 %', play=0.01, creeps=((0.1, 5.0),)),
+    Scenario('slow creep of 10 %', play=0.01, creeps=((0.1, 20.0),)),
     Scenario('friction that grows by 10 % of the load', play=0.01, load_friction=0.1),
     Scenario('drift', play=0.01, drift=3e-5),
     Scenario('thermal sine', play=0.01, thermal=(1e-3, 60.0)),
@@ -112,6 +113,32 @@ SCENARIOS = (
 )
 
 
+def drawn(scenario: Scenario, random: np.random.Generator) -> Scenario:
+    """Draw a gear and its sensors: each figure is that of the scenario or up to twice or half."""
+
+    def about(value: float) -> float:
+        return value * 2.0 ** random.uniform(-1.0, 1.0)
+
+    softer, friction = about(1.0), about(scenario.friction)
+    return replace(
+        scenario,
+        play=about(scenario.play),
+        spring=lambda load: softer * scenario.spring(load),
+        friction=friction,
+        load_friction=about(scenario.load_friction),
+        creeps=tuple((about(share), about(constant)) for share, constant in scenario.creeps),
+        bristle=about(scenario.bristle) * friction,
+        slip=about(scenario.slip),
+        inertia=about(scenario.inertia),
+        damping=about(scenario.damping),
+        drift=about(scenario.drift) * random.choice([-1.0, 1.0]),
+        thermal=(about(scenario.thermal[0]), about(scenario.thermal[1])),
+        lag=about(scenario.lag),
+        noise=about(scenario.noise),
+        repeat=about(scenario.repeat),
+    )
+
+
 class Ramps(NamedTuple):
     """Recordings of a scenario."""
 
@@ -123,35 +150,23 @@ class Ramps(NamedTuple):
     """(time, recordings), rad, measured."""
 
 
-class Truth(NamedTuple):
-    """The figures of a gear, without its sensors' errors."""
-
-    hysteresis: float
-    play: float
-    friction: float
-    stiffness: float
-    """N·m/rad, of the spring, between 50 % and 100 % of the rated torque."""
-
-
-def truth(scenario: Scenario) -> Truth:
-    """Return the figures by definition, of the curve that is gone through at its usual pace."""
+def hysteresis(scenario: Scenario) -> float:
+    """Return the hysteresis of the small loops by definition, without the errors of sensors."""
+    small = LOOPS[:5]
     ideal = replace(scenario, repeat=0.0)
-    angle = _motion(ideal, 1, np.random.default_rng(0))[:, 0]
+    angle = _motion(ideal, small, 1, np.random.default_rng(0))[:, 0]
     widths = []
-    rows = round(LOOPS[0][1] / INTERVAL)
+    rows = round(small[0][1] / INTERVAL)
     for k in range(1, 5):
         half, end = k * rows + rows // 2, (k + 1) * rows
         widths.append(angle[half] - angle[end])
-    low, high = (ideal.spring(np.array([share * RATED]))[0] for share in (0.5, 1.0))
-    return Truth(
-        float(np.mean(widths)), scenario.play, scenario.friction, 0.5 * RATED / (high - low)
-    )
+    return float(np.mean(widths))
 
 
 def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ramps:
     """Record a gear many times."""
-    time, torque = _torque()
-    angle = _motion(scenario, count, random)
+    time, torque = _torque(LOOPS)
+    angle = _motion(scenario, LOOPS, count, random)
     size, period = scenario.thermal
     phase = random.uniform(-np.pi, np.pi, count)
     angle = angle + scenario.drift * time[:, None]
@@ -164,9 +179,9 @@ def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ram
     return Ramps(time, torque[:, None] + noise, np.round((angle + zero) / STEP) * STEP)
 
 
-def _torque() -> tuple[np.ndarray, np.ndarray]:
+def _torque(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
     parts = []
-    for amplitude, duration in LOOPS:
+    for amplitude, duration in loops:
         quarter = round(0.25 * duration / INTERVAL)
         for start, end, quarters in ((0, 1, 1), (1, -1, 2), (-1, 0, 1)):
             parts.append(amplitude * np.linspace(start, end, quarters * quarter, endpoint=False))
@@ -174,21 +189,21 @@ def _torque() -> tuple[np.ndarray, np.ndarray]:
     return INTERVAL * np.arange(len(torque)), torque
 
 
-def _loops_of_rows() -> np.ndarray:
-    rows = [round(duration / INTERVAL) for _, duration in LOOPS]
+def _loops_of_rows(loops: Loops) -> np.ndarray:
+    rows = [round(duration / INTERVAL) for _, duration in loops]
     return np.append(np.repeat(np.arange(len(rows)), rows), len(rows) - 1)
 
 
-def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
+def _motion(s: Scenario, loops: Loops, count: int, random: np.random.Generator) -> np.ndarray:
     """Angle, (time, recordings), without the errors of the encoder."""
-    _, torque = _torque()
+    _, torque = _torque(loops)
     # The curve of the spring with its play: twist at loads, and loads at twists.
     loads = np.linspace(-1.5 * LARGE, 1.5 * LARGE, 240001)
     twists = s.spring(loads) + 0.5 * s.play * np.sign(loads)
-    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(LOOPS), count)))
+    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(loops), count)))
     if s.inertia:
-        return _moved(s, torque, strength, lambda twist: np.interp(twist, twists, loads))
-    loop = _loops_of_rows()
+        return _moved(s, loops, torque, strength, lambda twist: np.interp(twist, twists, loads))
+    loop = _loops_of_rows(loops)
     twist = np.zeros(count)
     load = np.zeros(count)
     built = np.zeros(count)  # N·m, friction that has built up, with its sign
@@ -214,11 +229,13 @@ def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
     return angles
 
 
-def _moved(s: Scenario, torque: np.ndarray, strength: np.ndarray, spring: Spring) -> np.ndarray:
+def _moved(
+    s: Scenario, loops: Loops, torque: np.ndarray, strength: np.ndarray, spring: Spring
+) -> np.ndarray:
     """Angle of a gear with inertia, and friction by Haessig and Friedland's bristles."""
     substeps, bristle = 10, 2e4  # N·m/rad
     step = INTERVAL / substeps
-    loop = _loops_of_rows()
+    loop = _loops_of_rows(loops)
     damping = s.damping + math.sqrt(bristle * s.inertia)  # of the bristles as well
     angle, speed, bent = np.zeros((3, strength.shape[1]))
     angles = np.empty((len(torque), len(angle)))
