@@ -11,11 +11,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gear_kinematics.lost_motion.lag import STANDSTILL
+from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 from gear_kinematics.state.uncertainty import Component, Estimate
 
 _LEVELS = 100
 """Torques of a half loop at which loads are computed."""
+_FAR = 0.25
+"""Share of the greatest load beyond which the twist of the spring is taken."""
 _SETTLED = 0.2
 """Share of the friction by which the torque has gone back when the corner is certainly over."""
 _ROWS = 10
@@ -27,6 +30,9 @@ _STANDARD_ERRORS = 2.0
 """Creep has to predict better than none by this many standard errors."""
 _UNLIKELY = 3.0
 """A time constant that predicts worse than the best one by so many standard errors is unlikely."""
+_MISFIT = 0.1
+"""Share of a correction for creep that counts as standard uncertainty, as no material has just one
+time constant."""
 _CONSTANTS = np.geomspace(1.0, 50.0, 18)
 """s, time constants that are tried; known by their numbers."""
 
@@ -59,10 +65,18 @@ def transmitted(torque: Array, load: float, friction: float, growth: float = 0.0
 
 
 class Loads:
-    """Loads on the spring through a recording, and what follows them late."""
+    """Loads on the spring through a recording, and what follows them or the twist late."""
 
-    def __init__(self, history: Sequence[HalfLoop], friction: float) -> None:
-        """Compute the loads of all half loops, in order of time."""
+    def __init__(
+        self, history: Sequence[HalfLoop], friction: float, twist: Callable[[Array], Array]
+    ) -> None:
+        """Compute the loads of all half loops, in order of time, and what comes late of them.
+
+        Args:
+            history: of the recording.
+            friction: N·m.
+            twist: of the spring by load, as a load that would twist a linear one as much, N·m.
+        """
         times, loads = [], []
         load = 0.0
         for half in history:
@@ -72,11 +86,18 @@ class Loads:
             times.append(half.time_at(torque))
             loads.append(values)
         self._time, on_time = np.concatenate(times), np.concatenate(loads)
-        self._late = np.zeros((len(on_time), len(_CONSTANTS)))
-        steps = zip(np.diff(self._time), 0.5 * (on_time[1:] + on_time[:-1]), strict=True)
-        for k, (step, load) in enumerate(steps, 1):
-            left = np.exp(-max(step, 0.0) / _CONSTANTS)
-            self._late[k] = load + (self._late[k - 1] - load) * left
+        causes = np.repeat([on_time, twist(on_time)], len(_CONSTANTS), axis=0).T
+        constants = np.tile(_CONSTANTS, 2)
+        self._late: Array = np.zeros_like(causes)
+        steps = zip(np.diff(self._time), 0.5 * (causes[1:] + causes[:-1]), strict=True)
+        for k, (step, cause) in enumerate(steps, 1):
+            left = np.exp(-max(step, 0.0) / constants)
+            self._late[k] = cause + (self._late[k - 1] - cause) * left
+
+    @property
+    def numbers(self) -> range:
+        """Numbers of the time constants: those after the load, and those after the twist."""
+        return range(self._late.shape[1])
 
     def late(self, time: Array, number: int) -> Array:
         """Return the loads as they come late by the time constant of a number, (n,), N·m.
@@ -85,7 +106,34 @@ class Loads:
             time: (n,), s.
             number: of the time constant.
         """
-        return np.interp(time, self._time, self._late[:, number])
+        late: Array = np.interp(time, self._time, self._late[:, number])
+        return late
+
+
+def _twist(ramps: Ramps) -> Callable[[Array], Array]:
+    """Return the twist of the spring by load, as a load that would twist a linear one as much.
+
+    It is a polynomial through the middle lines, beyond any backlash.
+    """
+    lines = Midlines.of(ramps.whole)
+    load, angle = lines.load.ravel(), lines.angle.ravel()
+    size = float(np.max(np.abs(load)))
+    far = np.abs(load) > _FAR * size
+
+    def powers(load: Array) -> Array:
+        terms: Array = np.stack([load, load * np.abs(load), load**3], axis=-1)
+        return terms
+
+    columns = np.column_stack([np.ones_like(load), np.sign(load), powers(load / size)])
+    factors = np.linalg.lstsq(columns[far], angle[far])[0][2:]
+    if np.sum(factors) <= 0.0:
+        return lambda load: load
+
+    def twist(load: Array) -> Array:
+        twisted: Array = powers(load / size) @ factors
+        return size * twisted / np.sum(factors)
+
+    return twist
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -107,8 +155,9 @@ class Creeping:
         """What can be told of it; None if it is not clear."""
         if not self.clear:
             return None
-        best, *others = ((float(_CONSTANTS[k]), float(self.compliances[k])) for k in self.likely)
-        return Creep(self.compliance, best[0], tuple(others))
+        best, *likely = (k % len(_CONSTANTS) for k in self.likely)
+        others = {float(_CONSTANTS[k]): float(self.compliances[k]) for k in likely if k != best}
+        return Creep(self.compliance, float(_CONSTANTS[best]), tuple(others.items()))
 
     def out_of(self, ramps: Ramps) -> Ramps:
         """Return the ramps without what comes late, if that is clear."""
@@ -126,7 +175,8 @@ class Creeping:
         by_constant = math.sqrt(float(np.mean((np.array(without) - used) ** 2)))
         more = self.compliance.value + (self.compliance.standard or 0.0)
         by_compliance = figure(self._without(ramps, self.likely[0], more)) - without[0]
-        return Component(math.hypot(by_constant, by_compliance))
+        by_model = _MISFIT * (used - figure(ramps))
+        return Component(math.hypot(by_constant, by_compliance, by_model))
 
     def _without(self, ramps: Ramps, number: int, compliance: float) -> Ramps:
         return ramps.changed(
@@ -147,7 +197,7 @@ def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> C
     Returns:
         None if creep does not predict the standstills that were left out any better.
     """
-    loads = Loads(ramps[0].history, friction)
+    loads = Loads(ramps[0].history, friction, _twist(ramps[-1]))
     halves = (half for group in ramps for half in group.halves())
     stills = [still for half in halves if (still := _still(half, friction, loads))]
     if len(stills) < _LEAST_STILLS:
@@ -187,6 +237,6 @@ def _still(half: HalfLoop, friction: float, loads: Loads) -> tuple[Array, Array,
     if np.count_nonzero(rows) < _ROWS:
         return None
     angle = half.angle[rows] - np.mean(half.angle[rows])
-    late = np.array([loads.late(half.times[rows], k) for k in range(len(_CONSTANTS))])
+    late = np.array([loads.late(half.times[rows], k) for k in loads.numbers])
     late -= np.mean(late, axis=1, keepdims=True)
     return late @ angle, np.sum(late**2, axis=1), float(angle @ angle)

@@ -7,6 +7,7 @@ to the spring than the other, so that the friction and the load that are read ar
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,8 @@ _FAR, _NEAR = slice(0, 9), slice(-3, None)
 """Up to half of the load, where friction has built up, and above 80 %, where it may not have."""
 _HARDLY = 20
 """Power of a weight that falls along a straight line; its mean is at a twentieth of the load."""
+_DECLINES = np.geomspace(1.5, 12.0, 25)
+"""Greatest load over that within which friction builds up to all but 1/e."""
 _CLEAR = 0.02
 """Share of the friction that is missing there, if it builds up visibly."""
 _HALF_DIFFERENCE = math.sqrt(0.5)
@@ -92,12 +95,21 @@ def _significant(found: Estimate) -> Estimate | None:
     return found if found.uncertainty is not None and found.value > found.uncertainty else None
 
 
-def without_build_up(lines: Midlines) -> tuple[Midlines, Estimate | None]:
+class BuildUp(NamedTuple):
+    """Friction that builds up slowly after a reversal."""
+
+    near: Estimate
+    """N·m, of it that are missing near the peaks."""
+    rest: float
+    """N·m, of it that may still be missing without load."""
+
+
+def without_build_up(lines: Midlines) -> tuple[Midlines, BuildUp | None]:
     """Move the missing friction from the loads to the friction, if it is significant.
 
     Returns:
-        Middle lines with the friction that is missing near the peaks, and how much that is, N·m;
-        or the same ones and None.
+        Middle lines with the friction that is missing near the peaks, and what that is; or the
+        same ones and None.
     """
     sides = [
         (sign * load[::sign], friction[::sign], sign * load[::sign] > 0.0)
@@ -118,7 +130,22 @@ def without_build_up(lines: Midlines) -> tuple[Midlines, Estimate | None]:
         np.sign(load) * np.interp(np.abs(load) / np.max(np.abs(load)), _SHARES, mean)
         for load in lines.load
     ]
-    return replace(lines, load=lines.load - off, friction=lines.friction + np.abs(off)), near
+    built = replace(lines, load=lines.load - off, friction=lines.friction + np.abs(off))
+    return built, BuildUp(near, _rest(np.mean(friction, axis=0)))
+
+
+def _rest(friction: Array) -> float:
+    """What may be missing without load, N·m, of the friction at shares of the greatest load.
+
+    Each branch lacks what falls exponentially with the load since its reversal, at either peak, so
+    that both together lack a hyperbolic cosine of the load.
+    """
+    fits = []
+    for decline in _DECLINES:
+        columns = np.stack([np.ones_like(_SHARES), -np.cosh(decline * _SHARES)], axis=1)
+        solution = np.linalg.lstsq(columns, friction)[0]
+        fits.append((float(np.sum((friction - columns @ solution) ** 2)), float(solution[1])))
+    return max(0.0, min(fits)[1])
 
 
 def _at_shares(load: Array, friction: Array) -> Array:

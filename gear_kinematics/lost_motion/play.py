@@ -150,6 +150,9 @@ def play_model(
         return None
     friction, growth = friction_of(lines, angle_step)
     lines, missing = without_build_up(lines)
+    if missing:
+        half = 0.5 * missing.rest
+        friction = replace(friction, value=friction.value + half).joined(Component(half))
     fitting = Fitting(lines)
     repeated = len(loops) > 1
     tried = _tried(fitting, lines, _FAMILY if repeated else _FAMILY_OF_ONE)
@@ -189,7 +192,7 @@ def play_model(
         cause,
         friction.joined(Component(hidden), Component(excess / math.sqrt(3.0))),
         growth,
-        missing,
+        missing.near if missing else None,
         more,
         float(np.sqrt(np.mean(rest**2))),
         max((middle.ratio for middle in middles.values()), default=0.0) or None,

@@ -98,6 +98,13 @@ SCENARIOS = (
     Scenario(
         'creep with two times', contained=False, play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))
     ),
+    Scenario(
+        'creep, softening spring',
+        contained=False,
+        play=0.01,
+        spring=softening,
+        creeps=((0.1, 5.0),),
+    ),
     Scenario('friction that builds up', contained=False, play=0.01, bristle=0.5),
     Scenario('stick-slip', contained=False, play=0.01, slip=0.3),
     Scenario(
