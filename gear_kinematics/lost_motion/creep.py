@@ -128,12 +128,8 @@ def _twist(ramps: Ramps) -> Callable[[Array], Array]:
     factors = np.linalg.lstsq(columns[far], angle[far])[0][2:]
     if np.sum(factors) <= 0.0:
         return lambda load: load
-
-    def twist(load: Array) -> Array:
-        twisted: Array = powers(load / size) @ factors
-        return size * twisted / np.sum(factors)
-
-    return twist
+    shares: Array = size * factors / np.sum(factors)
+    return lambda load: powers(load / size) @ shares
 
 
 @dataclass(frozen=True, eq=False, slots=True)

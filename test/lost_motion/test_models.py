@@ -21,6 +21,10 @@ from gear_kinematics.lost_motion.springs import SHAPES, Fitting, Gap, Model, Spr
 ARC_MINUTE = math.radians(1.0 / 60.0)
 
 
+def scenario(name: str) -> Scenario:
+    return next(scenario for scenario in SCENARIOS if scenario.name == name)
+
+
 FEW = SCENARIOS[1:14:3]  # benchmark/lost_motion.py has them all
 
 
@@ -63,10 +67,6 @@ def loading(scenario: Scenario, *, times: bool = True, seed: int = 3) -> Loading
         measured=True,
         time=recorded.time if times else None,
     )
-
-
-def scenario(name: str) -> Scenario:
-    return next(scenario for scenario in SCENARIOS if scenario.name == name)
 
 
 def test_a_late_encoder_is_found_and_taken_out():
@@ -131,6 +131,25 @@ def test_creep_is_found_where_the_gear_stands_still():
     ) == pytest.approx(share, rel=0.15)
 
 
+@pytest.mark.parametrize(
+    'gear',
+    [
+        scenario('creep, softening spring'),
+        Scenario('little creep', friction=0.73, noise=0.08, creeps=((0.046, 1.7),)),
+    ],
+    ids=lambda gear: gear.name,
+)
+def test_the_stiffness_of_the_spring_covers_creep_that_is_hardly_known(gear):
+    """It would be off by more than 1 % if creep were left alone."""
+    found = models.settled(loading(gear))
+    spring = models.models_of(found, STEP).spring
+    load = np.linspace(spring.low, spring.high, 400)
+    true = 1.0 / np.polyfit(load, gear.spring(load), 1)[0]
+    assert abs(spring.stiffness.value - true) < spring.stiffness.uncertainty
+    alone = models.models_of(replace(found, creeping=None), STEP).spring.stiffness
+    assert true - alone.value > 0.01 * true > alone.uncertainty
+
+
 def test_without_times_nothing_is_said_of_time():
     found = models.settled(loading(scenario('creep of 10 %'), times=False))
     assert found.effects.lag is None
@@ -175,6 +194,15 @@ def test_friction_that_builds_up_is_taken_out_of_the_load():
     read = np.mean(lines.load, axis=0)
     near_peaks = np.abs(read) > 0.825 * 3.4
     assert missing.near.value == pytest.approx(np.mean(np.abs(read - load)[near_peaks]), rel=0.15)
+
+
+def test_friction_may_not_have_built_up_without_load_either():
+    """Either branch lacks friction that falls with the load since its peak, by 1/e in 2 N·m."""
+    load = np.tile(np.linspace(-3.0, 3.0, 101), (5, 1))
+    lacking = 0.3 * np.cosh(load / 2.0) + np.random.default_rng(5).normal(0.0, 1e-3, (5, 1))
+    lines = Midlines(load / 300.0, load, 1.0 - lacking, 0.0 * load, np.zeros(5), 0.0, 0.0)
+    _, missing = without_build_up(lines)
+    assert missing.rest == pytest.approx(0.3, rel=0.05)
 
 
 @pytest.mark.parametrize('growth', [0.0, 0.1])
