@@ -6,7 +6,7 @@ import math
 import sys
 import time
 from concurrent.futures import ProcessPoolExecutor
-from functools import partial
+from itertools import count, repeat
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test' / 'support'))
@@ -26,7 +26,8 @@ def main() -> None:
     options = parser.parse_args()
     start = time.perf_counter()
     with ProcessPoolExecutor(options.jobs) as pool:
-        found = list(pool.map(partial(judge, count=options.seeds), SCENARIOS))
+        # Gears of their own for each scenario.
+        found = list(pool.map(judge, SCENARIOS, repeat(options.seeds), count(1)))
     if options.json:
         print(json.dumps({s.name: one._asdict() for s, one in zip(SCENARIOS, found, strict=True)}))
         return

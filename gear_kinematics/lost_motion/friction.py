@@ -62,7 +62,7 @@ def friction_of(lines: Midlines, angle_step: float) -> tuple[Estimate, Estimate 
     means = np.average(lines.friction, axis=1, weights=weight**4)
     # Friction that builds up after a reversal, or depends on the angle, differs from load to load.
     uneven = float(np.mean(means)) - float(np.mean([fit[0] for fit in fits]))
-    return Estimate.of_mean(means.tolist(), reading, Component(uneven)), None
+    return Estimate.of_mean(means.tolist(), reading, Component(uneven / math.sqrt(3.0))), None
 
 
 def _between_samples(lines: Midlines) -> float:

@@ -87,10 +87,10 @@ def settled(loading: Loading) -> Settled:
         late = removed.standard or 0.0
         ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
     elif lag:
-        late, lag = math.hypot(lag.value, lag.standard or 0.0), None
+        late, lag = max(lag.value, lag.standard or 0.0), None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
     creeping = creeping_of(ramps, _friction(ramps), loading.angle_step.size)
-    drifts = tuple(drift_of(creeping.out_of(group) if creeping else group) for group in ramps)
+    drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)
     still = (
         without_drift(group, drift) if drift else group
         for group, drift in zip(ramps, drifts, strict=True)
@@ -101,6 +101,10 @@ def settled(loading: Loading) -> Settled:
 def _friction(ramps: Sequence[Ramps]) -> float:
     """About the friction, N·m."""
     return float(np.median(Midlines.of(ramps[0].whole).friction))
+
+
+def _without(creeping: Creeping | None, ramps: Ramps) -> Ramps:
+    return creeping.out_of(ramps) if creeping else ramps
 
 
 def models_of(found: Settled, angle_step: float) -> Models:
@@ -130,11 +134,10 @@ def _play(
         late: s, standard uncertainty of the lag of the encoder.
         creeping: of the recording.
     """
+    still = _without(creeping, ramps)
     hidden = late * ramps.loops[0].fall.rate if late else 0.0
-    still = ramps
     if creeping:
         hidden = math.hypot(hidden, creeping.part(ramps, _friction_of).standard)
-        still = creeping.out_of(ramps)
     hysteresis = float(np.mean([loop.width(0.0) for loop in still.loops]))
     return play_model(still.whole, angle_step, hysteresis, hidden)
 
@@ -152,8 +155,7 @@ def _spring(ramps: Ramps, angle_step: float, creeping: Creeping | None) -> Sprin
         angle_step: rad, between readings of the encoder; 0 if unknown.
         creeping: of the recording.
     """
-    still = creeping.out_of(ramps) if creeping else ramps
-    lines = Midlines.of(still.whole)
+    lines = Midlines.of(_without(creeping, ramps).whole)
     high = float(np.min(np.abs(lines.load[:, [0, -1]])))  # which all loops reach on both sides
     low = _LOADED * high
     loops = _compliances(lines, low, high)
