@@ -135,11 +135,11 @@ def _play(
         creeping: of the recording.
     """
     still = _without(creeping, ramps)
-    hidden = late * ramps.loops[0].fall.rate if late else 0.0
+    by_time = late * ramps.loops[0].fall.rate if late else 0.0
     if creeping:
-        hidden = math.hypot(hidden, creeping.part(ramps, _friction_of).standard)
+        by_time = math.hypot(by_time, creeping.part(ramps, _friction_of).standard)
     hysteresis = float(np.mean([loop.width(0.0) for loop in still.loops]))
-    return play_model(still.whole, angle_step, hysteresis, hidden)
+    return play_model(still.whole, angle_step, hysteresis, by_time)
 
 
 def _friction_of(ramps: Ramps) -> float:

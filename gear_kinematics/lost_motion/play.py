@@ -135,7 +135,7 @@ class PlayModel:
 
 
 def play_model(
-    loops: Sequence[Loop], angle_step: float, hysteresis: float, hidden: float = 0.0
+    loops: Sequence[Loop], angle_step: float, hysteresis: float, by_time: float = 0.0
 ) -> PlayModel | None:
     """Choose a model for loops of one amplitude; None if their middle line is no spring's.
 
@@ -143,7 +143,7 @@ def play_model(
         loops: at least one.
         angle_step: rad, between readings of the encoder; 0 if unknown.
         hysteresis: rad, the width of the loops at zero torque, which play does not exceed.
-        hidden: N·m, standard uncertainty of the friction that the repeats do not show.
+        by_time: N·m, standard uncertainty of the friction by a lag of the encoder and by creep.
     """
     lines = Midlines.of(loops)
     if not (np.ptp(lines.angle, axis=1).all() and np.ptp(lines.load, axis=1).all()):
@@ -178,8 +178,8 @@ def play_model(
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
         reading = end_resolution(angle_step, lines.reach - half)
-        misfit = _hidden(rest[:, beyond] / stiffness, excess / stiffness, reading)
-        play, limit, cause = _verdict(chosen, middles, misfit, angle_step, hysteresis)
+        hidden = _hidden(rest[:, beyond] / stiffness, excess / stiffness, reading)
+        play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
     angles = _BEYOND * lines.reach * np.linspace(-1.0, 1.0, _LEVELS)
@@ -190,7 +190,7 @@ def play_model(
         play,
         limit,
         cause,
-        friction.joined(Component(hidden), Component(excess / math.sqrt(3.0))),
+        friction.joined(Component(by_time), Component(excess / math.sqrt(3.0))),
         growth,
         missing.near if missing else None,
         more,

@@ -34,7 +34,7 @@ class Judged(NamedTuple):
     limit: float
     """rad, median upper bound; NaN without any."""
     below_zero: int
-    """Plays that are told to be zero or negative."""
+    """Plays that are told to be zero or negative, as values or bounds."""
 
 
 def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
@@ -45,7 +45,9 @@ def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
     found = [_measured(simulate(gear, 1, random)) for gear in gears]
     models = [one.smallest.play_model for one in found]
     values = [(gear.play, m.play) for gear, m in zip(gears, models, strict=True) if m.play]
-    limits = [(gear.play, m.limit) for gear, m in zip(gears, models, strict=True) if m.limit]
+    limits = [
+        (gear.play, m.limit) for gear, m in zip(gears, models, strict=True) if m.limit is not None
+    ]
     told = len(values) + len(limits)
     held = sum(_holds(found, play) for play, found in values)
     held += sum(play <= limit for play, limit in limits)
@@ -70,7 +72,8 @@ def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
         play_bias=_mean([found.value - play for play, found in values]),
         play_uncertainty=_median([found.uncertainty for _, found in values]),
         limit=_median([limit for _, limit in limits]),
-        below_zero=sum(found.value <= 0.0 for _, found in values),
+        below_zero=sum(found.value <= 0.0 for _, found in values)
+        + sum(limit <= 0.0 for _, limit in limits),
     )
 
 
