@@ -13,7 +13,7 @@ import numpy as np
 from gear_kinematics.lost_motion.lag import STANDSTILL
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
-from gear_kinematics.state.uncertainty import Component, Estimate
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 _LEVELS = 100
 """Torques of a half loop at which loads are computed."""
@@ -33,6 +33,8 @@ _UNLIKELY = 3.0
 _MISFIT = 0.1
 """Share of a correction for creep that counts as standard uncertainty, as no material has just one
 time constant."""
+_USUAL = 0.1
+"""Share of the twist that comes late in gears that creep, as a scale."""
 _CONSTANTS = np.geomspace(1.0, 50.0, 18)
 """s, time constants that are tried; known by their numbers."""
 
@@ -110,12 +112,12 @@ class Loads:
         return late
 
 
-def _twist(ramps: Ramps) -> Callable[[Array], Array]:
+def _twist(lines: Midlines) -> Callable[[Array], Array]:
     """Return the twist of the spring by load, as a load that would twist a linear one as much.
 
-    It is a polynomial through the middle lines, beyond any backlash.
+    Args:
+        lines: the middle lines, which are fitted by a polynomial beyond any backlash.
     """
-    lines = Midlines.of(ramps.whole)
     load, angle = lines.load.ravel(), lines.angle.ravel()
     size = float(np.max(np.abs(load)))
     far = np.abs(load) > _FAR * size
@@ -143,6 +145,10 @@ class Creeping:
     """rad/(N·m), with the best time constant."""
     compliances: Array
     """rad/(N·m), with each time constant."""
+    standards: Array
+    """rad/(N·m), their standard uncertainties."""
+    usual: float
+    """rad/(N·m), a compliance that is usual for gears that creep."""
     likely: tuple[int, ...]
     """Numbers of the time constants that predict about as well, the best one first."""
 
@@ -166,13 +172,15 @@ class Creeping:
             ramps: with creep.
             figure: of ramps.
         """
-        used = figure(self.out_of(ramps))
-        without = [figure(self._without(ramps, k, self.compliances[k])) for k in self.likely]
-        by_constant = math.sqrt(float(np.mean((np.array(without) - used) ** 2)))
-        more = self.compliance.value + (self.compliance.standard or 0.0)
-        by_compliance = figure(self._without(ramps, self.likely[0], more)) - without[0]
-        by_model = _MISFIT * (used - figure(ramps))
-        return Component(math.hypot(by_constant, by_compliance, by_model))
+        recorded, likely = figure(ramps), list(self.likely)
+        # Figures change in proportion to the compliance.
+        changes = [figure(self._without(ramps, k, self.usual)) - recorded for k in likely]
+        slopes = np.array(changes) / self.usual
+        found = slopes * self.compliances[likely]
+        used = float(found[0]) if self.clear else 0.0
+        unknown = slopes * self.standards[likely]
+        by_constant = float(np.mean((found - used) ** 2 + unknown**2))
+        return Component(math.hypot(math.sqrt(by_constant), _MISFIT * used))
 
     def _without(self, ramps: Ramps, number: int, compliance: float) -> Ramps:
         return ramps.changed(
@@ -191,34 +199,60 @@ def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> C
         angle_step: rad, between readings of the encoder; 0 if unknown.
 
     Returns:
-        None if creep does not predict the standstills that were left out any better.
+        None if there are too few standstills to tell.
     """
-    loads = Loads(ramps[0].history, friction, _twist(ramps[-1]))
+    lines = Midlines.of(ramps[-1].whole)
+    usual = _USUAL * float(np.mean(np.ptp(lines.angle, axis=1) / np.ptp(lines.load, axis=1)))
+    loads = Loads(ramps[0].history, friction, _twist(lines))
     halves = (half for group in ramps for half in group.halves())
     stills = [still for half in halves if (still := _still(half, friction, loads))]
-    if len(stills) < _LEAST_STILLS:
+    if len(stills) < _LEAST_STILLS or not usual > 0.0:
         return None
-    both, square, angle = (np.array([still[k] for still in stills]) for k in range(3))
-    compliances = both.sum(0) / square.sum(0)
+    both, square, angle, change = (np.array([still[k] for still in stills]) for k in range(4))
+    compliances = np.maximum(both.sum(0) / square.sum(0), 0.0)
     # Compliances by all standstills but one, and how these predict that one: (stills, constants).
     without = (both.sum(0) - both) / (square.sum(0) - square)
     missed = angle[:, None] - 2.0 * without * both + without**2 * square
     best = int(np.argmin(missed.sum(0)))
     gain, error = _mean(angle - missed[:, best])
-    if gain <= 0.0 or compliances[best] <= 0.0:
-        return None
     count = len(stills)
-    standard = math.sqrt(count - 1) * float(np.std(without[:, best]))
-    compliance = Estimate(float(compliances[best]), standard, count - 1, count)
+    # What steps hide of the largest change, they hide in every loop, so that no mean shows it.
+    standards = np.hypot(
+        math.sqrt(count - 1) * np.std(without, axis=0),
+        resolution(angle_step) / np.sqrt(change.max(0)),
+    )
+    compliance = Estimate(float(compliances[best]), float(standards[best]), count - 1, count)
     least = max(angle_step, _ROUNDING) / ramps[-1].amplitude
-    clear = gain >= _STANDARD_ERRORS * error and compliance.value > max(
+    clear = gain >= max(0.0, _STANDARD_ERRORS * error) and compliance.value > max(
         compliance.uncertainty or 0.0, least
     )
+    if not clear:
+        compliances, standards = _usually(compliances, standards, usual)
     worse = [_mean(column - missed[:, best]) for column in missed.T]
     likely = [
         k for k, (mean, error) in enumerate(worse) if mean <= _UNLIKELY * error and k != best
     ]
-    return Creeping(clear, loads, compliance, compliances, (best, *likely))
+    return Creeping(clear, loads, compliance, compliances, standards, usual, (best, *likely))
+
+
+def _usually(compliances: Array, standards: Array, usual: float) -> tuple[Array, Array]:
+    """Estimate compliances that do not show, as most gears hardly creep.
+
+    Before the recording, creep is as likely as none, and usual compliances have the standard
+    deviation `usual`. What shows none makes it unlikely by the ratio of the standard uncertainties
+    after and before it (H. Jeffreys, Theory of Probability, 3rd ed. (1961), ch. V).
+
+    Args:
+        compliances: (constants,), rad/(N·m), as measured.
+        standards: (constants,), rad/(N·m), their standard uncertainties.
+        usual: rad/(N·m).
+
+    Returns:
+        Compliances and standard uncertainties.
+    """
+    share = usual**2 / (usual**2 + standards**2)
+    after = np.sqrt(share) * standards
+    return share * compliances, np.sqrt(after / usual) * after
 
 
 def _mean(values: Array) -> tuple[float, float]:
@@ -226,8 +260,13 @@ def _mean(values: Array) -> tuple[float, float]:
     return float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values))
 
 
-def _still(half: HalfLoop, friction: float, loads: Loads) -> tuple[Array, Array, float] | None:
-    """Return sums over a standstill: late loads by angle, late loads squared, angle squared."""
+def _still(
+    half: HalfLoop, friction: float, loads: Loads
+) -> tuple[Array, Array, float, Array] | None:
+    """Return sums over a standstill: late loads by angle, late loads squared, angle squared.
+
+    The last are the late loads' changes during it, squared, each from its variance.
+    """
     back = np.abs(half.torque - half.start)
     rows = (back > max(4.0 * half.blur, _SETTLED * friction)) & (back < STANDSTILL * friction)
     if np.count_nonzero(rows) < _ROWS:
@@ -235,4 +274,6 @@ def _still(half: HalfLoop, friction: float, loads: Loads) -> tuple[Array, Array,
     angle = half.angle[rows] - np.mean(half.angle[rows])
     late = np.array([loads.late(half.times[rows], k) for k in loads.numbers])
     late -= np.mean(late, axis=1, keepdims=True)
-    return late @ angle, np.sum(late**2, axis=1), float(angle @ angle)
+    square = np.sum(late**2, axis=1)
+    change = 12.0 * square / len(angle)  # that of a straight line
+    return late @ angle, square, float(angle @ angle), change

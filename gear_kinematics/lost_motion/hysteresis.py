@@ -9,6 +9,7 @@ import numpy as np
 
 from gear_kinematics.lost_motion.play import Cause, PlayModel
 from gear_kinematics.lost_motion.ramps import HalfLoop, Loop, RampError, Ramps
+from gear_kinematics.lost_motion.rate import rate_of
 from gear_kinematics.state.uncertainty import (
     Component,
     Estimate,
@@ -105,7 +106,7 @@ def figures(
         Figures(
             amplitude=group.amplitude,
             loops=len(group.loops),
-            hysteresis=_hysteresis(group.loops, settings),
+            hysteresis=_hysteresis(group, settings),
             lost_motion=_lost_motion(group.loops, settings),
             stiffness=_stiffness(group, settings),
             play_model=model,
@@ -134,24 +135,26 @@ def _still(ramps: Ramps, angle_step: float) -> float:
     return max(angle_step, _ROUNDING * float(np.max(np.abs(np.concatenate(angles)))))
 
 
-def _hysteresis(loops: Sequence[Loop], settings: Settings) -> Estimate:
+def _hysteresis(ramps: Ramps, settings: Settings) -> Estimate:
+    loops = ramps.loops
     widths = [loop.width(0.0) for loop in loops]
     return Estimate.of_mean(
         widths,
         Component(hidden_resolution(settings.angle_step, widths, readings=2)),
         _rounded([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops]),
-        Component(_late(loops, settings.late)),
+        Component(_late(ramps, settings.late)),
     )
 
 
-def _late(loops: Sequence[Loop], late: float) -> float:
+def _late(ramps: Ramps, late: float) -> float:
     """Change of the width by a time by which the encoder may be late, s, in rad."""
-    if not late:
+    rate = rate_of(ramps) if late else None
+    if not rate:
         return 0.0
-    torques = [loop.fall.rate * late for loop in loops]
+    torque = rate.rate * late
     widths = [
         loop.fall.angle_at(torque) - loop.rise.angle_at(-torque) - loop.width(0.0)
-        for loop, torque in zip(loops, torques, strict=True)
+        for loop in ramps.loops
     ]
     return abs(float(np.mean(widths)))
 

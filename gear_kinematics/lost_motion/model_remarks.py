@@ -1,13 +1,17 @@
 """Remarks on the models of torque ramps, in sentences."""
 
+import math
 from collections.abc import Iterator
 
 from gear_kinematics.lost_motion.comparison import SIGNIFICANCE, holm
+from gear_kinematics.lost_motion.lag import OF_GEAR
 from gear_kinematics.lost_motion.play import SOFTEST, Cause, PlayModel
 from gear_kinematics.lost_motion.report import HysteresisReport
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, PERCENT, plus_minus, torque
 from gear_kinematics.report.document import number
 
+_MOSTLY = 0.7
+"""Share of a standard uncertainty from which on one part of it exceeds all others together."""
 _LARGER = 3.0
 """Amplitude of ramps that load the spring well, as a multiple of the friction."""
 
@@ -27,6 +31,7 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
         )
     if beyond := found.leaving.play_model:
         yield from _backlash(beyond)
+    yield from _unseen_lag(found, model)
     if model.growth:
         yield f'The friction grows by {plus_minus(model.growth, 100.0)} % of the load.'
     if model.missing:
@@ -71,6 +76,27 @@ def _effects(found: HysteresisReport) -> Iterator[str]:
             'friction and the stiffness of the spring are without creep; hysteresis, lost motion '
             'and the other stiffnesses contain it.'
         )
+
+
+def _unseen_lag(found: HysteresisReport, model: PlayModel) -> Iterator[str]:
+    """Say where a lag of the encoder would change the friction most, and does not show."""
+    rate, late = found.rates[0], found.effects.late
+    if found.effects.lag or not rate:
+        return
+    if late is None:
+        unseen = 'No reversal shows whether the encoder is late.'
+    elif late > OF_GEAR and late * rate.rate > _MOSTLY * (model.friction.standard or math.inf):
+        unseen = (
+            'Most of the ± of the friction comes from a possible lag of the encoder: the '
+            f'reversals do not exclude one of about {number(1e3 * late, 2)} ms.'
+        )
+    else:
+        return
+    yield (
+        f'{unseen} Each millisecond would add {number(1e-3 * rate.rate, 2)} N·m to the friction, '
+        'and twice the twist by this torque to the hysteresis. Reversals with a corner, and finer '
+        'steps of the encoder, show a lag.'
+    )
 
 
 def _backlash(model: PlayModel) -> Iterator[str]:

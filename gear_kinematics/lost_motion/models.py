@@ -13,9 +13,12 @@ from gear_kinematics.lost_motion.lag import encoder_lag, of_encoder, without_lag
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
+from gear_kinematics.lost_motion.rate import rate_of
 from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.state.uncertainty import Estimate, by_steps, slope_resolution
 
+_CLEARLY = 1.5
+"""Ratio to its ± from which on a lag is taken out, as gears do not stand perfectly still."""
 _LOADED = 0.5
 """Share of the greatest load from which on the stiffness of the spring is taken."""
 _LEVELS = 100
@@ -42,8 +45,8 @@ class Effects:
     """s, by which corners of the angle come later than those of the torque."""
     removed: Estimate | None
     """s, what of it is ascribed to the encoder; taken out."""
-    late: float
-    """s, standard uncertainty of how late the angle still is."""
+    late: float | None
+    """s, standard uncertainty of how late the angle still is; None if nothing shows it."""
     drifts: tuple[Drift | None, ...]
     """Of the ramps of each amplitude; taken out."""
 
@@ -78,16 +81,16 @@ def settled(loading: Loading) -> Settled:
     torque, angle, time = loading.torque, loading.angle, loading.time
     ramps = find_ramps(torque, angle, time)
     if time is None:
-        return Settled(ramps, Effects(None, None, 0.0, (None,) * len(ramps)))
+        return Settled(ramps, Effects(None, None, None, (None,) * len(ramps)))
     friction = _friction(ramps)
-    lag = encoder_lag(time, torque, angle, ramps, friction)
-    removed, late = None, 0.0
-    if lag and lag.value > (lag.uncertainty or 0.0):
+    lag = encoder_lag(time, loading, ramps, friction)
+    removed, late = None, None
+    if lag and lag.value > _CLEARLY * (lag.uncertainty or 0.0):
         removed = of_encoder(lag)
-        late = removed.standard or 0.0
+        late = removed.standard
         ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
     elif lag:
-        late, lag = max(lag.value, lag.standard or 0.0), None
+        late, lag = max(abs(lag.value), lag.standard or 0.0), None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
     creeping = creeping_of(ramps, _friction(ramps), loading.angle_step.size)
     drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)
@@ -114,7 +117,7 @@ def models_of(found: Settled, angle_step: float) -> Models:
         found: the ramps of a recording.
         angle_step: rad, between readings of the encoder; 0 if unknown.
     """
-    creeping, late = found.creeping, found.effects.late
+    creeping, late = found.creeping, found.effects.late or 0.0
     plays = [_play(group, angle_step, late, creeping) for group in found.ramps]
     spring = _spring(found.ramps[-1], angle_step, creeping)
     if spring:
@@ -135,7 +138,8 @@ def _play(
         creeping: of the recording.
     """
     still = _without(creeping, ramps)
-    by_time = late * ramps.loops[0].fall.rate if late else 0.0
+    rate = rate_of(ramps)
+    by_time = late * rate.rate if rate else 0.0
     if creeping:
         by_time = math.hypot(by_time, creeping.part(ramps, _friction_of).standard)
     hysteresis = float(np.mean([loop.width(0.0) for loop in still.loops]))

@@ -72,11 +72,6 @@ class HalfLoop:
             raise ValueError('the times of these ramps are not known')
         return self.time
 
-    @property
-    def rate(self) -> float:
-        """Mean change of the torque with time, where it is known, N·m/s, positive."""
-        return abs(self.end - self.start) / float(self.times[-1] - self.times[0])
-
     def reaches(self, torque: float) -> bool:
         """Whether the half loop includes a torque, within the noise."""
         low, high = sorted((self.start, self.end))
@@ -87,7 +82,7 @@ class HalfLoop:
         """The angle at torques, rad, of the same shape."""
         return self._at(torque, self.angle)
 
-    def time_at(self, torque: Array | float) -> Array:
+    def time_at(self, torque: Array | Sequence[float] | float) -> Array:
         """The time at torques, s, of the same shape.
 
         Raises:
@@ -95,7 +90,7 @@ class HalfLoop:
         """
         return self._at(torque, self.times)
 
-    def _at(self, torque: Array | float, values: Array) -> Array:
+    def _at(self, torque: Array | Sequence[float] | float, values: Array) -> Array:
         sign = 1.0 if self.rising else -1.0
         return np.interp(sign * np.asarray(torque), sign * self.torque, values)
 

@@ -36,12 +36,12 @@ class Rate:
 
 def rates(ramps: Sequence[Ramps]) -> tuple[Rate | None, ...]:
     """Find the rates of ramps, one per amplitude; None without times."""
-    return tuple(map(_rate, ramps))
+    return tuple(map(rate_of, ramps))
 
 
-def _rate(ramps: Ramps) -> Rate | None:
-    halves = [half for loop in ramps.loops for half in (loop.fall, loop.rise)]
-    found = [rate for half in halves if (rate := _of_half(half, ramps.amplitude))]
+def rate_of(ramps: Ramps) -> Rate | None:
+    """Find the rate of ramps of one amplitude; None without times."""
+    found = [rate for half in ramps.halves() if (rate := _of_half(half, ramps.amplitude))]
     if not found:
         return None
     # The last half loop may go on to ramps of another amplitude, at their rate.

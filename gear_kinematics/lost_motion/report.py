@@ -119,7 +119,7 @@ def _hysteresis(
     rated = ramps[-1].amplitude if rated_torque is None else rated_torque
     if corners is None:
         corners = tuple(share * rated for share in STIFFNESS_SHARES)
-    settings = Settings(rated, corners, step, found.effects.late)
+    settings = Settings(rated, corners, step, found.effects.late or 0.0)
     return HysteresisReport(
         settings,
         'largest ramps' if rated_torque is None else 'given',

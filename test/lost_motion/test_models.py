@@ -69,6 +69,11 @@ def loading(scenario: Scenario, *, times: bool = True, seed: int = 3) -> Loading
     )
 
 
+def quantised(fine: Loading, step: float) -> Loading:
+    angle = np.round(fine.angle / step) * step
+    return replace(fine, angle=angle, angle_step=Step(step, Source.GIVEN))
+
+
 def test_a_late_encoder_is_found_and_taken_out():
     late = scenario('encoder 20 ms late')
     found = models.settled(loading(late))
@@ -80,6 +85,18 @@ def test_a_late_encoder_is_found_and_taken_out():
     assert np.mean(widths) == pytest.approx(hysteresis(late), abs=0.5 * ARC_MINUTE)
 
 
+def test_a_late_encoder_is_found_where_the_torque_arrives_at_a_pause():
+    late = scenario('encoder 20 ms late, pauses')
+    assert models.settled(loading(late)).effects.removed.value == pytest.approx(0.02, abs=0.003)
+
+
+def test_coarse_steps_tell_nothing_of_a_lag():
+    """The gear turns by 0.002 rad in the window before a reversal, that is, by a step or two."""
+    late = scenario('encoder 20 ms late')
+    coarse = quantised(loading(late), 2.0 * np.pi / 4096.0)
+    assert models.settled(coarse).effects.late is None
+
+
 @pytest.mark.parametrize('friction', [0.2, 0.6, 1.5])
 def test_an_encoder_in_time_is_not_late_with_any_friction(friction):
     """The gear stands still for twice the friction after a reversal, however small that is."""
@@ -88,9 +105,10 @@ def test_an_encoder_in_time_is_not_late_with_any_friction(friction):
 
 
 def test_a_lag_that_may_be_the_gears_is_half_taken_out():
-    effects = models.settled(loading(scenario('inertia, no play'))).effects
+    heavy = replace(scenario('inertia, no play'), inertia=0.02)
+    effects = models.settled(loading(heavy)).effects
     lag, removed = effects.lag.value, effects.removed
-    assert 0.002 < lag < 0.008  # about sqrt(0.01 kg·m² / 300 N·m/rad)
+    assert 0.003 < lag < 0.01  # half of sqrt(0.02 kg·m² / 300 N·m/rad) to all of it
     assert removed.value == pytest.approx(0.5 * lag)
     assert removed.value - removed.uncertainty < 0.0
     assert removed.value + removed.uncertainty > lag
@@ -148,6 +166,24 @@ def test_the_stiffness_of_the_spring_covers_creep_that_is_hardly_known(gear):
     assert abs(spring.stiffness.value - true) < spring.stiffness.uncertainty
     alone = models.models_of(replace(found, creeping=None), STEP).spring.stiffness
     assert true - alone.value > 0.01 * true > alone.uncertainty
+
+
+def test_the_stiffness_of_the_spring_covers_creep_that_is_below_the_steps():
+    hardly = scenario('creep of 10 %')
+    step = 2.0 * np.pi / 4096.0
+    found = models.settled(quantised(loading(hardly), step))
+    assert found.creeping.creep is None
+    stiffness = models.models_of(found, step).spring.stiffness
+    assert abs(stiffness.value - 300.0) < stiffness.uncertainty
+    alone = models.models_of(replace(found, creeping=None), step).spring.stiffness
+    assert 300.0 - alone.value > alone.uncertainty
+
+
+def test_steps_that_show_no_creep_hardly_widen_the_stiffness():
+    found = models.settled(loading(scenario('play, linear spring')))
+    assert found.creeping.creep is None
+    stiffness = models.models_of(found, STEP).spring.stiffness
+    assert stiffness.uncertainty < 3e-3 * stiffness.value
 
 
 def test_without_times_nothing_is_said_of_time():

@@ -16,10 +16,14 @@ import numpy as np
 INTERVAL = 2.5e-3  # s
 STEP = 2.0 * math.pi / 65536.0  # rad, of the encoder
 SMALL, LARGE = 4.0, 40.0  # N·m
+_CORNERS = np.array([0.0, 1.0, 1.0, -1.0, -1.0, 0.0])
+"""Of the torque in a loop, with pauses at its peaks."""
 LOOPS = ((SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0)) + 3 * (
     (LARGE, 20.0),
 )
 """Amplitude, N·m, and duration, s, of the loops of a recording."""
+_REPEATS = 100
+"""Recordings whose mean is the hysteresis of a gear."""
 Loops = tuple[tuple[float, float], ...]
 
 Spring = Callable[[np.ndarray], np.ndarray]
@@ -74,6 +78,8 @@ class Scenario:
     """Amplitude, rad, and period, s, of a wandering zero."""
     lag: float = 0.0
     """s, by which the readings of the encoder are late."""
+    pause: float = 0.0
+    """Share of the time for which the torque stays at its peaks."""
     noise: float = 0.1
     """N·m, of the torque sensor."""
     repeat: float = 0.01
@@ -94,6 +100,8 @@ SCENARIOS = (
     Scenario('drift', play=0.01, drift=3e-5),
     Scenario('thermal sine', play=0.01, thermal=(1e-3, 60.0)),
     Scenario('encoder 20 ms late', play=0.01, lag=0.02),
+    Scenario('encoder 20 ms late, pauses', play=0.01, lag=0.02, pause=0.5),
+    Scenario('creep of 10 %, pauses', play=0.01, creeps=((0.1, 5.0),), pause=0.5),
     Scenario('soft middle', contained=False, spring=soft_middle),
     Scenario(
         'creep with two times', contained=False, play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))
@@ -158,21 +166,20 @@ class Ramps(NamedTuple):
 
 
 def hysteresis(scenario: Scenario) -> float:
-    """Return the hysteresis of the small loops by definition, without the errors of sensors."""
+    """Return the hysteresis of the small loops by definition, without the errors of sensors.
+
+    It is the mean over many recordings, as the steps of stick-slip lie elsewhere in each.
+    """
     small = LOOPS[:5]
-    ideal = replace(scenario, repeat=0.0)
-    angle = _motion(ideal, small, 1, np.random.default_rng(0))[:, 0]
-    widths = []
+    angle = _motion(scenario, small, _REPEATS, np.random.default_rng(0))
     rows = round(small[0][1] / INTERVAL)
-    for k in range(1, 5):
-        half, end = k * rows + rows // 2, (k + 1) * rows
-        widths.append(angle[half] - angle[end])
-    return float(np.mean(widths))
+    ends = np.arange(1, 5) * rows
+    return float(np.mean(angle[ends + rows // 2] - angle[ends + rows]))
 
 
 def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ramps:
     """Record a gear many times."""
-    time, torque = _torque(LOOPS)
+    time, torque = _torque(LOOPS, scenario.pause)
     angle = _motion(scenario, LOOPS, count, random)
     size, period = scenario.thermal
     phase = random.uniform(-np.pi, np.pi, count)
@@ -186,12 +193,13 @@ def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ram
     return Ramps(time, torque[:, None] + noise, np.round((angle + zero) / STEP) * STEP)
 
 
-def _torque(loops: Loops) -> tuple[np.ndarray, np.ndarray]:
+def _torque(loops: Loops, pause: float) -> tuple[np.ndarray, np.ndarray]:
     parts = []
     for amplitude, duration in loops:
         quarter = round(0.25 * duration / INTERVAL)
-        for start, end, quarters in ((0, 1, 1), (1, -1, 2), (-1, 0, 1)):
-            parts.append(amplitude * np.linspace(start, end, quarters * quarter, endpoint=False))
+        still = round(pause * quarter)
+        times = quarter * np.array([0, 1, 1, 3, 3, 4]) + still * np.array([0, -1, 1, -1, 1, 0])
+        parts.append(np.interp(np.arange(4 * quarter), times, amplitude * _CORNERS))
     torque = np.concatenate([*parts, [0.0]])
     return INTERVAL * np.arange(len(torque)), torque
 
@@ -203,7 +211,7 @@ def _loops_of_rows(loops: Loops) -> np.ndarray:
 
 def _motion(s: Scenario, loops: Loops, count: int, random: np.random.Generator) -> np.ndarray:
     """Angle, (time, recordings), without the errors of the encoder."""
-    _, torque = _torque(loops)
+    _, torque = _torque(loops, s.pause)
     # The curve of the spring with its play: twist at loads, and loads at twists.
     loads = np.linspace(-1.5 * LARGE, 1.5 * LARGE, 240001)
     twists = s.spring(loads) + 0.5 * s.play * np.sign(loads)
