@@ -13,7 +13,7 @@ import numpy as np
 from gear_kinematics.lost_motion.lag import STANDSTILL
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution, unclear
 
 _LEVELS = 100
 """Torques of a half loop at which loads are computed."""
@@ -216,10 +216,10 @@ def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> C
     best = int(np.argmin(missed.sum(0)))
     gain, error = _mean(angle - missed[:, best])
     count = len(stills)
-    # What steps hide of the largest change, they hide in every loop, so that no mean shows it.
+    # Steps hide the same in every loop, so that the largest changes count once, on either side.
     standards = np.hypot(
         math.sqrt(count - 1) * np.std(without, axis=0),
-        resolution(angle_step) / np.sqrt(change.max(0)),
+        resolution(angle_step) / np.sqrt(2.0 * change.max(0)),
     )
     compliance = Estimate(float(compliances[best]), float(standards[best]), count - 1, count)
     least = max(angle_step, _ROUNDING) / ramps[-1].amplitude
@@ -227,32 +227,13 @@ def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> C
         compliance.uncertainty or 0.0, least
     )
     if not clear:
-        compliances, standards = _usually(compliances, standards, usual)
+        standards = unclear(compliances, standards, usual)
+        compliances = np.zeros_like(compliances)
     worse = [_mean(column - missed[:, best]) for column in missed.T]
     likely = [
         k for k, (mean, error) in enumerate(worse) if mean <= _UNLIKELY * error and k != best
     ]
     return Creeping(clear, loads, compliance, compliances, standards, usual, (best, *likely))
-
-
-def _usually(compliances: Array, standards: Array, usual: float) -> tuple[Array, Array]:
-    """Estimate compliances that do not show, as most gears hardly creep.
-
-    Before the recording, creep is as likely as none, and usual compliances have the standard
-    deviation `usual`. What shows none makes it unlikely by the ratio of the standard uncertainties
-    after and before it (H. Jeffreys, Theory of Probability, 3rd ed. (1961), ch. V).
-
-    Args:
-        compliances: (constants,), rad/(N·m), as measured.
-        standards: (constants,), rad/(N·m), their standard uncertainties.
-        usual: rad/(N·m).
-
-    Returns:
-        Compliances and standard uncertainties.
-    """
-    share = usual**2 / (usual**2 + standards**2)
-    after = np.sqrt(share) * standards
-    return share * compliances, np.sqrt(after / usual) * after
 
 
 def _mean(values: Array) -> tuple[float, float]:

@@ -9,7 +9,7 @@ import numpy as np
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 from gear_kinematics.lost_motion.rate import rate_of
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Component, Estimate
+from gear_kinematics.state.uncertainty import Component, Estimate, unclear
 
 STANDSTILL = 1.5
 """The torque goes back by this times the friction while the gear certainly stands still."""
@@ -27,6 +27,9 @@ _NEAR = 0.6
 OF_GEAR = 0.01
 """s, up to which it may well be the gear that is late. Its inertia moves it on after a reversal,
 for about an eighth of the period with which it swings on its spring: at 10 ms, that is 12 Hz."""
+
+_USUAL = 0.02
+"""s, lag of encoders that are late, as a scale."""
 
 
 def encoder_lag(
@@ -65,6 +68,12 @@ def of_encoder(lag: Estimate) -> Estimate:
     if lag.value > OF_GEAR:
         return lag
     return lag.times(0.5).joined(Component(0.5 * lag.value))
+
+
+def not_clear(lag: Estimate) -> float:
+    """Return the standard uncertainty of a lag that is not taken out, s."""
+    values = np.array([lag.value]), np.array([lag.standard or 0.0])
+    return float(unclear(*values, _USUAL)[0])
 
 
 def _seen(before: HalfLoop, window: float, angle_step: float) -> bool:

@@ -88,7 +88,7 @@ def _unseen_lag(found: HysteresisReport, model: PlayModel) -> Iterator[str]:
     elif late > OF_GEAR and late * rate.rate > _MOSTLY * (model.friction.standard or math.inf):
         unseen = (
             'Most of the ± of the friction comes from a possible lag of the encoder: the '
-            f'reversals do not exclude one of about {number(1e3 * late, 2)} ms.'
+            f'reversals do not exclude one of about {1e3 * late:.0f} ms.'
         )
     else:
         return

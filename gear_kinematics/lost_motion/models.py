@@ -9,7 +9,7 @@ import numpy as np
 from gear_kinematics.lost_motion.creep import Creeping, creeping_of
 from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
 from gear_kinematics.lost_motion.friction import friction_of
-from gear_kinematics.lost_motion.lag import encoder_lag, of_encoder, without_lag
+from gear_kinematics.lost_motion.lag import encoder_lag, not_clear, of_encoder, without_lag
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
@@ -90,7 +90,7 @@ def settled(loading: Loading) -> Settled:
         late = removed.standard
         ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
     elif lag:
-        late, lag = max(abs(lag.value), lag.standard or 0.0), None
+        late, lag = not_clear(lag), None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
     creeping = creeping_of(ramps, _friction(ramps), loading.angle_step.size)
     drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)

@@ -14,6 +14,8 @@ COVERAGE = 0.95
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
 _MANY = 10_000
+_EXACT = 1e-6
+"""Least standard uncertainty of an effect in usual effects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,6 +224,29 @@ def common_part(errors: NDArray[np.float64]) -> float:
         return 0.0
     scatter = float(np.mean(np.var(errors, axis=0, ddof=1))) / count
     return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
+
+
+def unclear(
+    values: NDArray[np.float64], standards: NDArray[np.float64], usual: float
+) -> NDArray[np.float64]:
+    """Return the root mean squares of effects that are not clear, as most often there are none.
+
+    Before the measurement, an effect is as likely as none, and effects have the standard deviation
+    `usual`. Against an effect is then the reciprocal of the Bayes factor (H. Jeffreys, Theory of
+    Probability, 3rd ed. (1961), ch. V).
+
+    Args:
+        values: (n,), as measured.
+        standards: (n,), their standard uncertainties.
+        usual: of the same unit.
+    """
+    # Equal readings have no scatter, but are not exact.
+    known = np.maximum(standards, _EXACT * usual)
+    share = usual**2 / (usual**2 + known**2)
+    means, variances = share * values, share * known**2
+    against = np.hypot(usual, known) / known * np.exp(-0.5 * share * (values / known) ** 2)
+    rms: NDArray[np.float64] = np.sqrt((means**2 + variances) / (1.0 + against))
+    return rms
 
 
 @cache
