@@ -27,7 +27,6 @@ _NEAR = 0.6
 OF_GEAR = 0.01
 """s, up to which it may well be the gear that is late. Its inertia moves it on after a reversal,
 for about an eighth of the period with which it swings on its spring: at 10 ms, that is 12 Hz."""
-
 _USUAL = 0.02
 """s, lag of encoders that are late, as a scale."""
 
