@@ -14,6 +14,8 @@ _MOSTLY = 0.7
 """Share of a standard uncertainty from which on one part of it exceeds all others together."""
 _LARGER = 3.0
 """Amplitude of ramps that load the spring well, as a multiple of the friction."""
+_TOO_LARGE = 2.5
+"""Multiple of that from which on ramps bend the spring more than need be."""
 
 
 def model_remarks(found: HysteresisReport) -> Iterator[str]:
@@ -30,7 +32,7 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
             f'stiffness of its spring. Those to {torque(found.leaving.amplitude)} N·m leave it.'
         )
     if beyond := found.leaving.play_model:
-        yield from _backlash(beyond)
+        yield from _backlash(beyond, found.smallest.amplitude)
     yield from _unseen_lag(found, model)
     if model.growth:
         yield f'The friction grows by {plus_minus(model.growth, 100.0)} % of the load.'
@@ -99,13 +101,13 @@ def _unseen_lag(found: HysteresisReport, model: PlayModel) -> Iterator[str]:
     )
 
 
-def _backlash(model: PlayModel) -> Iterator[str]:
+def _backlash(model: PlayModel, least: float) -> Iterator[str]:
     yield (
         f'The backlash is that of the simplest plausible model: {model.name}, '
         f'{number(model.stiffness, 4)} N·m/rad, with a residual of {number(model.residual)} N·m '
         '(root mean square) on the middle line of the hysteresis curve.'
     )
-    yield from _play(model)
+    yield from _play(model, least)
     if model.more:
         yield (
             f'The friction within the backlash exceeds that beyond it by {plus_minus(model.more)} '
@@ -115,7 +117,7 @@ def _backlash(model: PlayModel) -> Iterator[str]:
     yield from _tests(model)
 
 
-def _play(model: PlayModel) -> Iterator[str]:
+def _play(model: PlayModel, least: float) -> Iterator[str]:
     soft = (
         f'Over it the gear yields at {number(model.softness, 2)} of its stiffness beyond'
         if model.softness
@@ -139,8 +141,8 @@ def _play(model: PlayModel) -> Iterator[str]:
         case Cause.MODELS:
             yield (
                 'The backlash is not separable from the spring, because the interval of a model '
-                'that describes the ramps equally well reaches the hysteresis. More repeats, and '
-                'slower ramps, tell the models apart.'
+                'that describes the ramps equally well reaches the hysteresis. '
+                f'{_apart(model, least)} tell the models apart.'
             )
         case Cause.FLANKS:
             yield (
@@ -150,6 +152,14 @@ def _play(model: PlayModel) -> Iterator[str]:
             )
         case Cause.SINGLE:
             yield 'No backlash shows. Without repeats there is no upper bound.'
+
+
+def _apart(model: PlayModel, least: float) -> str:
+    """Say which ramps tell models apart, where the smallest recorded are those to least, N·m."""
+    enough = _LARGER * model.friction.value
+    if 0.0 < _TOO_LARGE * enough < least:
+        return f'Ramps to about {torque(enough)} N·m, in which the spring is less bent,'
+    return 'More repeats, and slower ramps,'
 
 
 def _tests(model: PlayModel) -> Iterator[str]:

@@ -1,11 +1,11 @@
 """Models of the ramps of a recording: the spring, its play and friction, and what time does."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gear_kinematics.lost_motion.breakaway import breakaway_friction
 from gear_kinematics.lost_motion.creep import Creeping, creeping_of
 from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
 from gear_kinematics.lost_motion.friction import friction_of
@@ -82,8 +82,7 @@ def settled(loading: Loading) -> Settled:
     ramps = find_ramps(torque, angle, time)
     if time is None:
         return Settled(ramps, Effects(None, None, None, (None,) * len(ramps)))
-    friction = _friction(ramps)
-    lag = encoder_lag(time, loading, ramps, friction)
+    lag = encoder_lag(time, loading, ramps, breakaway_friction(ramps[0]))
     removed, late = None, None
     if lag and lag.value > _CLEARLY * (lag.uncertainty or 0.0):
         removed = of_encoder(lag)
@@ -92,18 +91,13 @@ def settled(loading: Loading) -> Settled:
     elif lag:
         late, lag = not_clear(lag), None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
-    creeping = creeping_of(ramps, _friction(ramps), loading.angle_step.size)
+    creeping = creeping_of(ramps, breakaway_friction(ramps[0]), loading.angle_step.size)
     drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)
     still = (
         without_drift(group, drift) if drift else group
         for group, drift in zip(ramps, drifts, strict=True)
     )
     return Settled(tuple(still), Effects(lag, removed, late, drifts), creeping)
-
-
-def _friction(ramps: Sequence[Ramps]) -> float:
-    """About the friction, N·m."""
-    return float(np.median(Midlines.of(ramps[0].whole).friction))
 
 
 def _without(creeping: Creeping | None, ramps: Ramps) -> Ramps:

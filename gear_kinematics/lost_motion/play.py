@@ -12,6 +12,7 @@ from enum import StrEnum
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.creep import transmitted
 from gear_kinematics.lost_motion.friction import friction_of, more_within, without_build_up
@@ -39,8 +40,13 @@ _CLEAR_OF_BLUR = 4.0
 """In a soft middle, the load rises by more than this many times the blur of corners."""
 _CLEAR_OF_LOAD = 0.02
 """And by more than this share of the greatest load."""
-_MISFIT = 2.0 / math.sqrt(3.0)
-"""Share of a misfit, at both ends of the gap, that counts as standard uncertainty (GUM 4.3.7)."""
+_BESIDE = 6
+"""Levels beside either end of a gap by which the misfit there is known."""
+_MISFIT = 3.5
+"""Standard uncertainty of a gap over the misfit beside it. Simulated springs that no model of the
+family fits, of ramps much larger than the gap, had gaps that were wrong by 5 to 7 misfits."""
+_UNLIKE = 0.1
+"""A model whose hysteresis differs by this share from the one measured is not that of the gear."""
 _ROUNDING = 1e-3
 """Share of the greatest load by which predictions may differ and still be as good."""
 _BEYOND = 1.6
@@ -142,7 +148,7 @@ def play_model(
     Args:
         loops: at least one.
         angle_step: rad, between readings of the encoder; 0 if unknown.
-        hysteresis: rad, the width of the loops at zero torque, which play does not exceed.
+        hysteresis: rad, the width of the loops at zero torque, which no free play exceeds.
         by_time: N·m, standard uncertainty of the friction by a lag of the encoder and by creep.
     """
     lines = Midlines.of(loops)
@@ -168,22 +174,29 @@ def play_model(
         return None
     rest = lines.load - fitting.load(chosen, springs, lines.angle)
     half = 0.5 * float(np.mean(springs.gap))
-    off = np.abs(np.mean(lines.angle - springs.centre[:, None], axis=0)) - half
+    off = np.mean(lines.angle - springs.centre[:, None], axis=0)
     corner = lines.blur / stiffness  # corners are rounded
-    beyond = off > corner
-    more = more_within(lines, off < -corner, beyond)
+    sides = off < -half - corner, off > half + corner
+    more = more_within(lines, np.abs(off) < half - corner, np.logical_or(*sides))
     excess = more.value if more else 0.0
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
+    angles = _BEYOND * lines.reach * np.linspace(-1.0, 1.0, _LEVELS)
+    curves = fitting.load(chosen, springs, np.tile(angles, (len(loops), 1)))
+    loads = np.maximum.accumulate(np.mean(curves, axis=0))
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
         reading = end_resolution(angle_step, lines.reach - half)
-        hidden = _hidden(rest[:, beyond] / stiffness, excess / stiffness, reading)
+        beside = np.flatnonzero(sides[0])[-_BESIDE:], np.flatnonzero(sides[1])[:_BESIDE]
+        hidden = _hidden(_misfit(rest, lines, beside), excess / stiffness, reading)
         play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
         play, limit, cause = _single(float(springs.gap[0]))
-    angles = _BEYOND * lines.reach * np.linspace(-1.0, 1.0, _LEVELS)
-    curves = fitting.load(chosen, springs, np.tile(angles, (len(loops), 1)))
+    if play and play.value > hysteresis:
+        # Only a soft middle exceeds it, in which friction holds the gear.
+        width = float(np.ptp(np.interp([-friction.value, friction.value], loads, angles)))
+        if abs(width - hysteresis) > _UNLIKE * hysteresis:
+            play, cause = None, Cause.MODELS
     return PlayModel(
         chosen.name,
         stiffness,
@@ -199,15 +212,32 @@ def play_model(
         residual_tests(rest, lines.load, lines.pace),
         _candidates(tried, middles) if middles else (),
         angles + float(np.mean(lines.centre)),
-        np.maximum.accumulate(np.mean(curves, axis=0)),
+        loads,
     )
+
+
+def _misfit(rest: Array, lines: Midlines, parts: Sequence[NDArray[np.intp]]) -> Array:
+    """Return what a model leaves of parts of middle lines, by their own stiffness, rad.
+
+    Args:
+        rest: (loops, levels), N·m.
+        lines: of these levels.
+        parts: levels of each.
+    """
+    angle, load = np.mean(lines.angle, axis=0), np.mean(lines.load, axis=0)
+    left = [
+        rest[:, part] * (np.ptp(angle[part]) / rise)
+        for part in parts
+        if len(part) and (rise := np.ptp(load[part]))
+    ]
+    return np.concatenate([rest[:, :0], *left], axis=1)
 
 
 def _hidden(misfit: Array, excess: float, reading: float) -> float:
     """Standard uncertainty of the gap by what repeats do not show, rad.
 
     Args:
-        misfit: (loops, angles), rad, what the model leaves beyond the gap.
+        misfit: (loops, angles), rad, what the model leaves beside the gap.
         excess: rad, by which the friction within the gap moves each of its ends.
         reading: rad, standard uncertainty of an end by the steps of the encoder.
     """

@@ -15,6 +15,7 @@ from blocked_bags import facts, refusal
 from dask_cluster import cluster
 from gear_recordings import Gear, Samples, creep, ramps, write_csv, write_recording
 from lxml import html
+from simulated_ramps import SCENARIOS, simulate
 
 from gear_kinematics.commands import lost_motion
 from gear_kinematics.commands.cli import main
@@ -326,6 +327,21 @@ def test_play_that_ramps_hardly_pass_is_not_separable(tmp_path, capsys):
     told = capsys.readouterr().out
     assert 'not separable' in told
     assert 'Record ramps to 11.7 N·m or more.' in told
+
+
+def test_ramps_much_larger_than_the_friction_do_not_separate_play_from_a_bent_spring(
+    tmp_path, capsys
+):
+    """A soft middle and a gap with a bent spring describe them alike."""
+    gear = next(s for s in SCENARIOS if s.name == 'play, hardening spring, large loops only')
+    recorded = simulate(gear, 1, np.random.default_rng(3))
+    path = write_csv(
+        tmp_path / 'large.csv', angle=recorded.angle[:, 0], torque=recorded.torque[:, 0]
+    )
+    assert main(['lost-motion', str(path)]) == 0
+    told = ' '.join(capsys.readouterr().out.split())
+    assert 'not separable' in told
+    assert 'Ramps to about 2.99 N·m, in which the spring is less bent, tell' in told
 
 
 def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):

@@ -10,10 +10,12 @@ from judging_ramps import judge
 from simulated_ramps import SCENARIOS, STEP, Scenario, hysteresis, simulate
 
 from gear_kinematics.lost_motion import models
+from gear_kinematics.lost_motion.breakaway import breakaway_friction
 from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.friction import friction_of, without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import Cause
+from gear_kinematics.lost_motion.ramps import find_ramps
 from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.lost_motion.residuals import residual_tests
 from gear_kinematics.lost_motion.springs import SHAPES, Fitting, Gap, Model, Springs
@@ -137,6 +139,16 @@ def test_an_uneven_drift_is_followed():
     before = models.settled(loading(wandering, times=False)).ramps
     wandered = [loop.middle(0.0) for loop in before[0].loops]
     assert np.ptp(middles) < 0.1 * np.ptp(wandered)
+
+
+def test_creep_does_not_move_the_corner_where_the_gear_breaks_away():
+    """It widens the large loops as if there were 1.2 N·m more friction."""
+    creeping = scenario('creep of 10 %, large loops only')
+    recorded = loading(creeping)
+    group = find_ramps(recorded.torque, recorded.angle, recorded.time)[0]
+    assert np.median(Midlines.of(group.whole).friction) > 2.0 * creeping.friction
+    assert breakaway_friction(group) == pytest.approx(creeping.friction, rel=0.05)
+    assert models.settled(recorded).effects.removed is None  # no late encoder
 
 
 def test_creep_is_found_where_the_gear_stands_still():
@@ -300,6 +312,28 @@ def test_a_soft_middle_is_a_bound_and_says_why():
     assert model.play is None
     assert model.cause == Cause.SOFT
     assert 0.2 < model.softness < 0.6
+
+
+def hardening_within(softer: float, **figures: float) -> models.Models:
+    """Of a spring that no model fits well: it hardens over a small part of the loops."""
+    hardening = scenario('play, hardening spring, large loops only')
+    spring = hardening.spring
+    gear = replace(hardening, spring=lambda load: softer * spring(load), **figures)
+    return models.models_of(models.settled(loading(gear)), STEP)
+
+
+def test_a_spring_that_no_model_fits_widens_the_play():
+    """By more than its repeats scatter, and the models differ."""
+    play = hardening_within(0.4).plays[0].play
+    assert play.uncertainty > abs(play.value - 0.01) > 2e-3
+
+
+@pytest.mark.parametrize(('softer', 'friction'), [(0.6, 0.7), (0.65, 1.0)])
+def test_a_model_of_another_hysteresis_tells_no_play_beyond_it(softer, friction):
+    """The soft middles of these models are 24 and 26 mrad wide, the loops 16 and 19 mrad."""
+    model = hardening_within(softer, friction=friction).plays[0]
+    assert model.name == 'tanh spring, soft middle'
+    assert (model.play, model.limit, model.cause) == (None, None, Cause.MODELS)
 
 
 def test_a_soft_middle_is_no_stiff_one():

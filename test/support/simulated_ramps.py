@@ -18,13 +18,13 @@ STEP = 2.0 * math.pi / 65536.0  # rad, of the encoder
 SMALL, LARGE = 4.0, 40.0  # N·m
 _CORNERS = np.array([0.0, 1.0, 1.0, -1.0, -1.0, 0.0])
 """Of the torque in a loop, with pauses at its peaks."""
-LOOPS = ((SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0), (SMALL, 4.0)) + 3 * (
-    (LARGE, 20.0),
-)
-"""Amplitude, N·m, and duration, s, of the loops of a recording."""
 _REPEATS = 100
 """Recordings whose mean is the hysteresis of a gear."""
+
 Loops = tuple[tuple[float, float], ...]
+"""Amplitude, N·m, and duration, s, of the loops of a recording."""
+SMALL_AND_LARGE: Loops = 5 * ((SMALL, 4.0),) + 3 * ((LARGE, 20.0),)
+LARGE_ONLY: Loops = 5 * ((LARGE, 20.0),)
 
 Spring = Callable[[np.ndarray], np.ndarray]
 """Twist, rad, under a load, N·m, of either sign, without the play."""
@@ -84,6 +84,8 @@ class Scenario:
     """N·m, of the torque sensor."""
     repeat: float = 0.01
     """Relative scatter of the friction from loop to loop."""
+    loops: Loops = SMALL_AND_LARGE
+    """Those of the first amplitude are judged."""
 
 
 SCENARIOS = (
@@ -102,6 +104,10 @@ SCENARIOS = (
     Scenario('encoder 20 ms late', play=0.01, lag=0.02),
     Scenario('encoder 20 ms late, pauses', play=0.01, lag=0.02, pause=0.5),
     Scenario('creep of 10 %, pauses', play=0.01, creeps=((0.1, 5.0),), pause=0.5),
+    Scenario('creep of 10 %, large loops only', play=0.01, creeps=((0.1, 5.0),), loops=LARGE_ONLY),
+    Scenario(
+        'play, hardening spring, large loops only', play=0.01, spring=hardening, loops=LARGE_ONLY
+    ),
     Scenario('soft middle', contained=False, spring=soft_middle),
     Scenario(
         'creep with two times', contained=False, play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))
@@ -166,21 +172,21 @@ class Ramps(NamedTuple):
 
 
 def hysteresis(scenario: Scenario) -> float:
-    """Return the hysteresis of the small loops by definition, without the errors of sensors.
+    """Return the hysteresis of the first amplitude by definition, without the errors of sensors.
 
     It is the mean over many recordings, as the steps of stick-slip lie elsewhere in each.
     """
-    small = LOOPS[:5]
-    angle = _motion(scenario, small, _REPEATS, np.random.default_rng(0))
-    rows = round(small[0][1] / INTERVAL)
-    ends = np.arange(1, 5) * rows
+    first = tuple(loop for loop in scenario.loops if loop == scenario.loops[0])
+    angle = _motion(replace(scenario, loops=first), _REPEATS, np.random.default_rng(0))
+    rows = round(first[0][1] / INTERVAL)
+    ends = np.arange(1, len(first)) * rows
     return float(np.mean(angle[ends + rows // 2] - angle[ends + rows]))
 
 
 def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ramps:
     """Record a gear many times."""
-    time, torque = _torque(LOOPS, scenario.pause)
-    angle = _motion(scenario, LOOPS, count, random)
+    time, torque = _torque(scenario)
+    angle = _motion(scenario, count, random)
     size, period = scenario.thermal
     phase = random.uniform(-np.pi, np.pi, count)
     angle = angle + scenario.drift * time[:, None]
@@ -193,11 +199,11 @@ def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ram
     return Ramps(time, torque[:, None] + noise, np.round((angle + zero) / STEP) * STEP)
 
 
-def _torque(loops: Loops, pause: float) -> tuple[np.ndarray, np.ndarray]:
+def _torque(s: Scenario) -> tuple[np.ndarray, np.ndarray]:
     parts = []
-    for amplitude, duration in loops:
+    for amplitude, duration in s.loops:
         quarter = round(0.25 * duration / INTERVAL)
-        still = round(pause * quarter)
+        still = round(s.pause * quarter)
         times = quarter * np.array([0, 1, 1, 3, 3, 4]) + still * np.array([0, -1, 1, -1, 1, 0])
         parts.append(np.interp(np.arange(4 * quarter), times, amplitude * _CORNERS))
     torque = np.concatenate([*parts, [0.0]])
@@ -209,16 +215,16 @@ def _loops_of_rows(loops: Loops) -> np.ndarray:
     return np.append(np.repeat(np.arange(len(rows)), rows), len(rows) - 1)
 
 
-def _motion(s: Scenario, loops: Loops, count: int, random: np.random.Generator) -> np.ndarray:
+def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
     """Angle, (time, recordings), without the errors of the encoder."""
-    _, torque = _torque(loops, s.pause)
+    _, torque = _torque(s)
     # The curve of the spring with its play: twist at loads, and loads at twists.
     loads = np.linspace(-1.5 * LARGE, 1.5 * LARGE, 240001)
     twists = s.spring(loads) + 0.5 * s.play * np.sign(loads)
-    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(loops), count)))
+    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(s.loops), count)))
     if s.inertia:
-        return _moved(s, loops, torque, strength, lambda twist: np.interp(twist, twists, loads))
-    loop = _loops_of_rows(loops)
+        return _moved(s, torque, strength, lambda twist: np.interp(twist, twists, loads))
+    loop = _loops_of_rows(s.loops)
     twist = np.zeros(count)
     load = np.zeros(count)
     built = np.zeros(count)  # N·m, friction that has built up, with its sign
@@ -244,13 +250,11 @@ def _motion(s: Scenario, loops: Loops, count: int, random: np.random.Generator) 
     return angles
 
 
-def _moved(
-    s: Scenario, loops: Loops, torque: np.ndarray, strength: np.ndarray, spring: Spring
-) -> np.ndarray:
+def _moved(s: Scenario, torque: np.ndarray, strength: np.ndarray, spring: Spring) -> np.ndarray:
     """Angle of a gear with inertia, and friction by Haessig and Friedland's bristles."""
     substeps, bristle = 10, 2e4  # N·m/rad
     step = INTERVAL / substeps
-    loop = _loops_of_rows(loops)
+    loop = _loops_of_rows(s.loops)
     damping = s.damping + math.sqrt(bristle * s.inertia)  # of the bristles as well
     angle, speed, bent = np.zeros((3, strength.shape[1]))
     angles = np.empty((len(torque), len(angle)))
