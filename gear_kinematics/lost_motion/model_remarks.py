@@ -16,6 +16,8 @@ _LARGER = 3.0
 """Amplitude of ramps that load the spring well, as a multiple of the friction."""
 _TOO_LARGE = 2.5
 """Multiple of that from which on ramps bend the spring more than need be."""
+_SMALLER = 0.1
+"""Amplitude of ramps that bend it far less, as a share of those recorded."""
 
 
 def model_remarks(found: HysteresisReport) -> Iterator[str]:
@@ -156,8 +158,8 @@ def _play(model: PlayModel, least: float) -> Iterator[str]:
 
 def _apart(model: PlayModel, least: float) -> str:
     """Say which ramps tell models apart, where the smallest recorded are those to least, N·m."""
-    enough = _LARGER * model.friction.value
-    if 0.0 < _TOO_LARGE * enough < least:
+    enough = max(_LARGER * model.friction.value, _SMALLER * least)
+    if _TOO_LARGE * enough < least:
         return f'Ramps to about {torque(enough)} N·m, in which the spring is less bent,'
     return 'More repeats, and slower ramps,'
 

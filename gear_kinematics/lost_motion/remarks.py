@@ -104,6 +104,12 @@ def _doubts(found: HysteresisReport) -> Iterator[str]:
         )
     if smallest.loops == 1 or largest.loops == 1:
         yield 'There is no uncertainty where nothing was repeated.'
+    width = smallest.hysteresis
+    if width.value < -(width.uncertainty or 0.0):
+        yield (
+            'The hysteresis is negative, which no gear has: the torque comes later than the '
+            'angle, as behind a filter or from another clock.'
+        )
     yield from model_remarks(found)
     model, at = smallest.play_model, LOST_MOTION_SHARE * found.settings.rated_torque
     if model and model.friction.value > at and not found.measured:

@@ -341,7 +341,20 @@ def test_ramps_much_larger_than_the_friction_do_not_separate_play_from_a_bent_sp
     assert main(['lost-motion', str(path)]) == 0
     told = ' '.join(capsys.readouterr().out.split())
     assert 'not separable' in told
-    assert 'Ramps to about 2.99 N·m, in which the spring is less bent, tell' in told
+    assert 'Ramps to about 4 N·m, in which the spring is less bent, tell' in told
+
+
+@pytest.mark.parametrize('rows', [0, 15])
+def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(
+    tmp_path, capsys, rows
+):
+    torque = ramps(*[(4.0, 200)] * 3)
+    angle = creep(Gear(play=0.0, stiffness=300.0, friction=0.1), torque)
+    late = np.concatenate([np.zeros(rows), torque])[: len(torque)]
+    path = write_csv(tmp_path / 'late.csv', angle=angle, torque=late)
+    assert main(['lost-motion', str(path)]) == 0
+    told = 'The hysteresis is negative' in capsys.readouterr().out
+    assert told == (rows > 0)
 
 
 def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
