@@ -47,7 +47,14 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
 
 
 def _effects(found: HysteresisReport) -> Iterator[str]:
-    if lag := found.effects.lag:
+    lag = found.effects.lag
+    if lag and lag.value < 0.0:
+        yield (
+            f'The torque comes {plus_minus(lag.times(-1.0), 1e3)} ms later than the angle, as '
+            'behind a filter. The ± of hysteresis and friction contain that; slower ramps reduce '
+            'it.'
+        )
+    elif lag:
         late = (
             f'The angle reverses {plus_minus(lag, 1e3)} ms later than the torque: its encoder is '
             'late, or inertia moves the gear on.'

@@ -42,9 +42,9 @@ class Effects:
     """What time does to a recording; None where it does not show, or without times."""
 
     lag: Estimate | None
-    """s, by which corners of the angle come later than those of the torque."""
+    """s, by which corners of the angle come later than those of the torque; negative: earlier."""
     removed: Estimate | None
-    """s, what of it is ascribed to the encoder; taken out."""
+    """s, what of it is ascribed to the encoder; taken out. None if they come earlier."""
     late: float | None
     """s, standard uncertainty of how late the angle still is; None if nothing shows it."""
     drifts: tuple[Drift | None, ...]
@@ -84,12 +84,14 @@ def settled(loading: Loading) -> Settled:
         return Settled(ramps, Effects(None, None, None, (None,) * len(ramps)))
     lag = encoder_lag(time, loading, ramps, breakaway_friction(ramps[0]))
     removed, late = None, None
-    if lag and lag.value > _CLEARLY * (lag.uncertainty or 0.0):
+    if lag:
+        late = not_clear(lag)
+        if abs(lag.value) <= _CLEARLY * (lag.uncertainty or 0.0):
+            lag = None
+    if lag and lag.value > 0.0:
         removed = of_encoder(lag)
         late = removed.standard
         ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
-    elif lag:
-        late, lag = not_clear(lag), None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
     creeping = creeping_of(ramps, breakaway_friction(ramps[0]), loading.angle_step.size)
     drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)

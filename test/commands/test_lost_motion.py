@@ -357,6 +357,20 @@ def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(
     assert told == (rows > 0)
 
 
+def test_a_torque_behind_a_filter_is_late(tmp_path, capsys):
+    gear = replace(SCENARIOS[0], lag=-0.02)
+    recorded = simulate(gear, 1, np.random.default_rng(3))
+    path = write_csv(
+        tmp_path / 'filtered.csv',
+        time=recorded.time,
+        angle=recorded.angle[:, 0],
+        torque=recorded.torque[:, 0],
+    )
+    assert main(['lost-motion', str(path)]) == 0
+    (told,) = re.findall(r'The torque comes ([\d.]+) ± [\d.]+ ms later', capsys.readouterr().out)
+    assert float(told) == pytest.approx(20.0, abs=3.0)
+
+
 def test_remarks_tell_what_a_single_loop_cannot(tmp_path, capsys):
     torque = ramps((4.0, 200))
     path = write_csv(tmp_path / 'one.csv', angle=creep(GEAR, torque), torque=torque)

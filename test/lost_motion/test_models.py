@@ -92,6 +92,16 @@ def test_a_late_encoder_is_found_where_the_torque_arrives_at_a_pause():
     assert models.settled(loading(late)).effects.removed.value == pytest.approx(0.02, abs=0.003)
 
 
+def test_a_late_torque_is_told_and_stays_in_the_uncertainty():
+    early = replace(scenario('play, linear spring'), lag=-0.02)
+    found = models.settled(loading(early))
+    assert found.effects.lag.value == pytest.approx(-0.02, abs=0.003)
+    assert found.effects.removed is None
+    friction = models.models_of(found, STEP).plays[0].friction
+    off = early.friction - friction.value
+    assert friction.uncertainty > off > 0.05 * early.friction
+
+
 def test_coarse_steps_tell_nothing_of_a_lag():
     """The gear turns by 0.002 rad in the window before a reversal, that is, by a step or two."""
     late = scenario('encoder 20 ms late')
