@@ -27,6 +27,8 @@ _NEAR = 0.6
 OF_GEAR = 0.01
 """s, up to which it may well be the gear that is late. Its inertia moves it on after a reversal,
 for about an eighth of the period with which it swings on its spring: at 10 ms, that is 12 Hz."""
+_SURELY = 3.0
+"""Ratio to its ± from which on a torque is late."""
 _USUAL = 0.02
 """s, lag of encoders that are late, as a scale."""
 
@@ -67,6 +69,11 @@ def of_encoder(lag: Estimate) -> Estimate:
     if lag.value > OF_GEAR:
         return lag
     return lag.times(0.5).joined(Component(0.5 * lag.value))
+
+
+def of_torque(lag: Estimate) -> bool:
+    """Whether it is the torque that is late; stick-slip looks like that, but less clearly."""
+    return lag.value < -max(OF_GEAR, _SURELY * (lag.uncertainty or 0.0))
 
 
 def not_clear(lag: Estimate) -> float:

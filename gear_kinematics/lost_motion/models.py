@@ -9,7 +9,13 @@ from gear_kinematics.lost_motion.breakaway import breakaway_friction
 from gear_kinematics.lost_motion.creep import Creeping, creeping_of
 from gear_kinematics.lost_motion.drift import Drift, drift_of, without_drift
 from gear_kinematics.lost_motion.friction import friction_of
-from gear_kinematics.lost_motion.lag import encoder_lag, not_clear, of_encoder, without_lag
+from gear_kinematics.lost_motion.lag import (
+    encoder_lag,
+    not_clear,
+    of_encoder,
+    of_torque,
+    without_lag,
+)
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
@@ -84,14 +90,12 @@ def settled(loading: Loading) -> Settled:
         return Settled(ramps, Effects(None, None, None, (None,) * len(ramps)))
     lag = encoder_lag(time, loading, ramps, breakaway_friction(ramps[0]))
     removed, late = None, None
-    if lag:
-        late = not_clear(lag)
-        if abs(lag.value) <= _CLEARLY * (lag.uncertainty or 0.0):
-            lag = None
-    if lag and lag.value > 0.0:
+    if lag and lag.value > _CLEARLY * (lag.uncertainty or 0.0):
         removed = of_encoder(lag)
         late = removed.standard
         ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
+    elif lag:
+        late, lag = not_clear(lag), lag if of_torque(lag) else None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
     creeping = creeping_of(ramps, breakaway_friction(ramps[0]), loading.angle_step.size)
     drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)

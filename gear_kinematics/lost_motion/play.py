@@ -12,24 +12,17 @@ from enum import StrEnum
 from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.lost_motion.creep import transmitted
-from gear_kinematics.lost_motion.friction import friction_of, more_within, without_build_up
+from gear_kinematics.lost_motion.fitted_model import FittedModel
+from gear_kinematics.lost_motion.friction import friction_of, without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.ramps import Array, Loop
 from gear_kinematics.lost_motion.residuals import ResidualTest, residual_tests
-from gear_kinematics.lost_motion.soft_middle import soft_middle
+from gear_kinematics.lost_motion.soft_middle import SOFTEST, soft_middle
 from gear_kinematics.lost_motion.springs import SHAPES, Fit, Fitting, Gap, Model, Springs
-from gear_kinematics.state.uncertainty import (
-    Component,
-    Estimate,
-    common_part,
-    end_resolution,
-)
+from gear_kinematics.state.uncertainty import Component, Estimate, common_part
 
-SOFTEST = 0.2
-"""Play: the gear yields at less than this share of its stiffness beyond."""
 _HARDLY_SOFT = 0.5
 """A middle that is stiffer than this share of the stiffness beyond is no gap."""
 _FLANKS = 0.95
@@ -40,17 +33,10 @@ _CLEAR_OF_BLUR = 4.0
 """In a soft middle, the load rises by more than this many times the blur of corners."""
 _CLEAR_OF_LOAD = 0.02
 """And by more than this share of the greatest load."""
-_BESIDE = 6
-"""Levels beside either end of a gap by which the misfit there is known."""
-_MISFIT = 3.5
-"""Standard uncertainty of a gap over the misfit beside it. Simulated springs that no model of the
-family fits, of ramps much larger than the gap, had gaps that were wrong by 5 to 7 misfits."""
 _UNLIKE = 0.1
 """A model whose hysteresis differs by this share from the one measured is not that of the gear."""
 _ROUNDING = 1e-3
 """Share of the greatest load by which predictions may differ and still be as good."""
-_BEYOND = 1.6
-"""Share of half of a loop's angle up to which the curve of a model is drawn."""
 _LEVELS = 200
 """Torques of the loop of a model."""
 _FAMILY = [Model(shape, gap) for shape in SHAPES for gap in Gap]
@@ -168,38 +154,26 @@ def play_model(
     chosen = min(
         plausible or tried, key=lambda model: (model.size, float(np.mean(tried[model].errors)))
     )
-    springs = fitting.each(chosen, tried[chosen])
-    stiffness = soft_middle(chosen, springs, fitting, lines, SOFTEST).beyond
-    if not stiffness:
+    best = FittedModel.of(chosen, fitting, tried[chosen], lines)
+    if not best:
         return None
-    rest = lines.load - fitting.load(chosen, springs, lines.angle)
-    half = 0.5 * float(np.mean(springs.gap))
-    off = np.mean(lines.angle - springs.centre[:, None], axis=0)
-    corner = lines.blur / stiffness  # corners are rounded
-    sides = off < -half - corner, off > half + corner
-    more = more_within(lines, np.abs(off) < half - corner, np.logical_or(*sides))
+    more = best.more_friction
     excess = more.value if more else 0.0
     middles = {model: _Middle.of(model, fitting, tried, lines) for model in plausible}
-    angles = _BEYOND * lines.reach * np.linspace(-1.0, 1.0, _LEVELS)
-    curves = fitting.load(chosen, springs, np.tile(angles, (len(loops), 1)))
-    loads = np.maximum.accumulate(np.mean(curves, axis=0))
     if friction.value > _MOST_FRICTION * loops[0].amplitude:
         play, limit, cause = None, None, Cause.FLANKS
     elif middles:
-        reading = end_resolution(angle_step, lines.reach - half)
-        beside = np.flatnonzero(sides[0])[-_BESIDE:], np.flatnonzero(sides[1])[:_BESIDE]
-        hidden = _hidden(_misfit(rest, lines, beside), excess / stiffness, reading)
+        hidden = best.hidden(excess, angle_step)
         play, limit, cause = _verdict(chosen, middles, hidden, angle_step, hysteresis)
     else:
-        play, limit, cause = _single(float(springs.gap[0]))
-    if play and play.value > hysteresis:
-        # Only a soft middle exceeds it, in which friction holds the gear.
-        width = float(np.ptp(np.interp([-friction.value, friction.value], loads, angles)))
-        if abs(width - hysteresis) > _UNLIKE * hysteresis:
-            play, cause = None, Cause.MODELS
+        play, limit, cause = _single(2.0 * best.half)
+    off = abs(best.width(friction.value) - hysteresis)
+    # Only a soft middle, in which friction holds the gear, is wider than the loops.
+    if play and play.value > hysteresis and off > _UNLIKE * hysteresis:
+        play, cause = None, Cause.MODELS
     return PlayModel(
         chosen.name,
-        stiffness,
+        best.stiffness,
         play,
         limit,
         cause,
@@ -207,44 +181,13 @@ def play_model(
         growth,
         missing.near if missing else None,
         more,
-        float(np.sqrt(np.mean(rest**2))),
+        float(np.sqrt(np.mean(best.rest**2))),
         max((middle.ratio for middle in middles.values()), default=0.0) or None,
-        residual_tests(rest, lines.load, lines.pace),
+        residual_tests(best.rest, lines.load, lines.pace),
         _candidates(tried, middles) if middles else (),
-        angles + float(np.mean(lines.centre)),
-        loads,
+        best.angles + float(np.mean(lines.centre)),
+        best.loads,
     )
-
-
-def _misfit(rest: Array, lines: Midlines, parts: Sequence[NDArray[np.intp]]) -> Array:
-    """Return what a model leaves of parts of middle lines, by their own stiffness, rad.
-
-    Args:
-        rest: (loops, levels), N·m.
-        lines: of these levels.
-        parts: levels of each.
-    """
-    angle, load = np.mean(lines.angle, axis=0), np.mean(lines.load, axis=0)
-    left = [
-        rest[:, part] * (np.ptp(angle[part]) / rise)
-        for part in parts
-        if len(part) and (rise := np.ptp(load[part]))
-    ]
-    return np.concatenate([rest[:, :0], *left], axis=1)
-
-
-def _hidden(misfit: Array, excess: float, reading: float) -> float:
-    """Standard uncertainty of the gap by what repeats do not show, rad.
-
-    Args:
-        misfit: (loops, angles), rad, what the model leaves beside the gap.
-        excess: rad, by which the friction within the gap moves each of its ends.
-        reading: rad, standard uncertainty of an end by the steps of the encoder.
-    """
-    if not misfit.size:
-        return math.inf
-    # Both ends have the same misfit and the same excess, but readings of their own.
-    return math.hypot(_MISFIT * common_part(misfit), 2.0 * excess, math.sqrt(2.0) * reading)
 
 
 def _single(gap: float) -> tuple[Estimate | None, None, Cause]:
@@ -299,7 +242,7 @@ class _Middle:
     ) -> '_Middle':
         """Take the soft middle of a model, or the gap that a model without one could have."""
         springs = fitting.each(model, tried[model])
-        soft = soft_middle(model, springs, fitting, lines, SOFTEST)
+        soft = soft_middle(model, springs, fitting, lines)
         if soft.width.value and (model.gap == Gap.PLAY or soft.least > 0.0):
             most = soft.most if soft.most < _FLANKS * 2.0 * lines.reach else math.inf
             return cls(soft.widths, soft.least if math.isfinite(most) else 0.0, most, soft.ratio)

@@ -10,6 +10,8 @@ from gear_kinematics.lost_motion.ramps import Array
 from gear_kinematics.lost_motion.springs import Fitting, Model, Springs
 from gear_kinematics.state.uncertainty import Estimate
 
+SOFTEST = 0.2
+"""Play: the gear yields at less than this share of its stiffness beyond."""
 _POINTS = 4001
 """Angles at which the curve of a model is examined."""
 _ROUNDS = 4
@@ -43,7 +45,7 @@ class SoftMiddle(NamedTuple):
 
 
 def soft_middle(
-    model: Model, springs: Springs, fitting: Fitting, lines: Midlines, share: float
+    model: Model, springs: Springs, fitting: Fitting, lines: Midlines, share: float = SOFTEST
 ) -> SoftMiddle:
     """Find the soft middle of the curve of each loop, around the centre of its gap.
 
