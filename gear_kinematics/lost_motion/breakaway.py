@@ -21,7 +21,7 @@ def breakaway_friction(ramps: Ramps) -> float:
     angles. The median of all counts; it does not exceed the friction on the middle line.
     """
     middle = float(np.median(Midlines.of(ramps.whole).friction))
-    back = np.linspace(0.0, min(_REACH * middle, ramps.amplitude), _LEVELS)
+    back = np.linspace(0.0, min(_REACH * middle, ramps.amplitude + middle), _LEVELS)
     corners = 2.0 * middle * _SHARES
     angles = np.array(
         [half.angle_at(half.start - np.sign(half.start) * back) for half in ramps.halves()]

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gear_kinematics.lost_motion.lag import STANDSTILL
 from gear_kinematics.lost_motion.midline import Midlines
+from gear_kinematics.lost_motion.pause import STANDSTILL
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 from gear_kinematics.state.uncertainty import Component, Estimate, resolution, unclear
 
@@ -190,13 +190,20 @@ class Creeping:
         )
 
 
-def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> Creeping | None:
+def creeping_of(
+    ramps: Sequence[Ramps],
+    friction: float,
+    angle_step: float,
+    pauses: Sequence[tuple[Array, Array]] = (),
+) -> Creeping | None:
     """Estimate creep from where the gear stands still after reversals of the torque.
 
     Args:
         ramps: of the recording, with times.
         friction: N·m.
         angle_step: rad, between readings of the encoder; 0 if unknown.
+        pauses: times, s, and angles, rad, in which the torque pauses. If they are enough, they
+            tell creep better than the standstills after reversals.
 
     Returns:
         None if there are too few standstills to tell.
@@ -205,7 +212,9 @@ def creeping_of(ramps: Sequence[Ramps], friction: float, angle_step: float) -> C
     usual = _USUAL * float(np.mean(np.ptp(lines.angle, axis=1) / np.ptp(lines.load, axis=1)))
     loads = Loads(ramps[0].history, friction, _twist(lines))
     halves = (half for group in ramps for half in group.halves())
-    stills = [still for half in halves if (still := _still(half, friction, loads))]
+    reversals = (part for half in halves if (part := _after_reversal(half, friction)))
+    parts = pauses if len(pauses) >= _LEAST_STILLS else reversals
+    stills = [_still(*part, loads) for part in parts]
     if len(stills) < _LEAST_STILLS or not usual > 0.0:
         return None
     both, square, angle, change = (np.array([still[k] for still in stills]) for k in range(4))
@@ -241,20 +250,21 @@ def _mean(values: Array) -> tuple[float, float]:
     return float(np.mean(values)), float(np.std(values, ddof=1)) / math.sqrt(len(values))
 
 
-def _still(
-    half: HalfLoop, friction: float, loads: Loads
-) -> tuple[Array, Array, float, Array] | None:
+def _after_reversal(half: HalfLoop, friction: float) -> tuple[Array, Array] | None:
+    """Return times and angles of the standstill with which a half loop begins."""
+    back = np.abs(half.torque - half.start)
+    rows = (back > max(4.0 * half.blur, _SETTLED * friction)) & (back < STANDSTILL * friction)
+    return (half.times[rows], half.angle[rows]) if np.count_nonzero(rows) >= _ROWS else None
+
+
+def _still(time: Array, angle: Array, loads: Loads) -> tuple[Array, Array, float, Array]:
     """Return sums over a standstill: late loads by angle, late loads squared, angle squared.
 
     The last are the late loads' changes during it, squared, each from its variance.
     """
-    back = np.abs(half.torque - half.start)
-    rows = (back > max(4.0 * half.blur, _SETTLED * friction)) & (back < STANDSTILL * friction)
-    if np.count_nonzero(rows) < _ROWS:
-        return None
-    angle = half.angle[rows] - np.mean(half.angle[rows])
-    late = np.array([loads.late(half.times[rows], k) for k in loads.numbers])
+    off = angle - np.mean(angle)
+    late = np.array([loads.late(time, k) for k in loads.numbers])
     late -= np.mean(late, axis=1, keepdims=True)
     square = np.sum(late**2, axis=1)
-    change = 12.0 * square / len(angle)  # that of a straight line
-    return late @ angle, square, float(angle @ angle), change
+    change = 12.0 * square / len(off)  # that of a straight line
+    return late @ off, square, float(off @ off), change

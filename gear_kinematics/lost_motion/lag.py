@@ -2,21 +2,15 @@
 
 import math
 from collections.abc import Sequence
-from itertools import pairwise
 
 import numpy as np
 
+from gear_kinematics.lost_motion.pause import SHARP, pause_between, reversals, window_of
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 from gear_kinematics.lost_motion.rate import rate_of
 from gear_kinematics.lost_motion.recording import Loading
 from gear_kinematics.state.uncertainty import Component, Estimate, unclear
 
-STANDSTILL = 1.5
-"""The torque goes back by this times the friction while the gear certainly stands still."""
-_WINDOW = 0.15
-"""Share of a ramp's amplitude, before and after a reversal, in which corners are found."""
-_SHARP = 0.5
-"""Share of the time of the window up to which the torque does not pause at its peak."""
 _ROWS = 10
 """Least number of samples on either side of a corner."""
 _STEPS = 5.0
@@ -34,7 +28,7 @@ _USUAL = 0.02
 
 
 def encoder_lag(
-    time: Array, loading: Loading, ramps: Sequence[Ramps], friction: float
+    time: Array, loading: Loading, ramps: Sequence[Ramps], friction: float, about: float = 0.0
 ) -> Estimate | None:
     """Estimate by how much later than the torque the angle was sampled.
 
@@ -43,21 +37,26 @@ def encoder_lag(
         loading: the recording.
         ramps: found in it.
         friction: N·m.
+        about: s, the lag near which it is sought.
 
     Returns:
         In s; None if there are no two reversals whose corners can be seen in both.
     """
     found = []
     for group in ramps:
-        window = min(_WINDOW * group.amplitude, STANDSTILL * friction)
-        rate = rate_of(group)
-        own = {id(half) for half in group.halves()}
-        for before, half in pairwise(group.history):
-            if rate and id(half) in own and _seen(before, window, loading.angle_step.size):
+        rate, window = rate_of(group), window_of(group, friction)
+        for before, half in reversals(group):
+            if rate and _seen(before, window, loading.angle_step.size):
                 corner, after = _expected(before, half, window, window / rate.rate)
-                late = _late(time - corner, loading, window / rate.rate, after)
-                if late is not None:
-                    found.append(late)
+                first, second = (
+                    _corner(time - at, values, window / rate.rate, after)
+                    for at, values in (
+                        (corner, loading.torque),
+                        (corner + about, loading.angle),
+                    )
+                )
+                if first is not None and second is not None:
+                    found.append(about + second - first)
     return Estimate.of_mean(found) if len(found) > 1 else None
 
 
@@ -102,24 +101,12 @@ def _expected(before: HalfLoop, half: HalfLoop, window: float, span: float) -> t
         window: N·m, by which the torque changes before the corner.
         span: s, in which it does so.
     """
-    levels = [_below(half.start, share * window) for share in (0.5, 1.0)]
-    (last, earlier), (first, later) = before.time_at(levels), half.time_at(levels)
-    arrival, departure = 2.0 * last - earlier, 2.0 * first - later
-    pause = float(departure - arrival)
-    if pause < _SHARP * span:
+    arrival, departure = pause_between(before, half, window)
+    pause = departure - arrival
+    if pause < SHARP * span:
         return float(half.times[0]), span
     # The corner is where the torque arrives. That of a sine goes on to rise for half of its pause.
-    return float(arrival), min(span, 0.5 * pause)
-
-
-def _late(time: Array, loading: Loading, before: float, after: float) -> float | None:
-    """Time from the corner of the torque near zero time to that of the angle, s."""
-    rows = slice(*np.searchsorted(time, [-(1.0 + _NEAR) * before, _NEAR * before + after]))
-    first, second = (
-        _corner(time[rows], values[rows], before, after)
-        for values in (loading.torque, loading.angle)
-    )
-    return None if first is None or second is None else second - first
+    return arrival, min(span, 0.5 * pause)
 
 
 def _corner(time: Array, values: Array, before: float, after: float) -> float | None:
@@ -131,6 +118,8 @@ def _corner(time: Array, values: Array, before: float, after: float) -> float | 
         before: s, duration of the line before the corner.
         after: s, of that after it.
     """
+    near = slice(*np.searchsorted(time, [-(1.0 + _NEAR) * before, _NEAR * before + after]))
+    time, values = time[near], values[near]
     corner = 0.0
     for _ in range(_ITERATIONS):
         earlier = (time > corner - before) & (time < corner)

@@ -17,6 +17,7 @@ from gear_kinematics.lost_motion.lag import (
     without_lag,
 )
 from gear_kinematics.lost_motion.midline import Midlines
+from gear_kinematics.lost_motion.pause import pauses_of
 from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
 from gear_kinematics.lost_motion.rate import rate_of
@@ -88,16 +89,22 @@ def settled(loading: Loading) -> Settled:
     ramps = find_ramps(torque, angle, time)
     if time is None:
         return Settled(ramps, Effects(None, None, None, (None,) * len(ramps)))
-    lag = encoder_lag(time, loading, ramps, breakaway_friction(ramps[0]))
+    friction = breakaway_friction(ramps[0])
+    lag = encoder_lag(time, loading, ramps, friction)
     removed, late = None, None
     if lag and lag.value > _CLEARLY * (lag.uncertainty or 0.0):
+        # The latest corners were too late to be found from none.
+        lag = encoder_lag(time, loading, ramps, friction, lag.value) or lag
         removed = of_encoder(lag)
         late = removed.standard
-        ramps = find_ramps(torque, without_lag(time, angle, removed.value), time)
+        angle = without_lag(time, angle, removed.value)
+        ramps = find_ramps(torque, angle, time)
+        friction = breakaway_friction(ramps[0])
     elif lag:
         late, lag = not_clear(lag), lag if of_torque(lag) else None
     # A drift hardly shows in creep, which goes to and fro with the torque, but creep in a drift.
-    creeping = creeping_of(ramps, breakaway_friction(ramps[0]), loading.angle_step.size)
+    pauses = list(pauses_of(time, torque, angle, ramps[-1], friction))
+    creeping = creeping_of(ramps, friction, loading.angle_step.size, pauses)
     drifts = tuple(drift_of(_without(creeping, group)) for group in ramps)
     still = (
         without_drift(group, drift) if drift else group
