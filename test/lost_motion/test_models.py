@@ -14,6 +14,7 @@ from gear_kinematics.lost_motion.breakaway import breakaway_friction
 from gear_kinematics.lost_motion.encoder_step import Source, Step
 from gear_kinematics.lost_motion.friction import friction_of, without_build_up
 from gear_kinematics.lost_motion.midline import Midlines
+from gear_kinematics.lost_motion.pause import pauses_of
 from gear_kinematics.lost_motion.play import Cause
 from gear_kinematics.lost_motion.ramps import find_ramps
 from gear_kinematics.lost_motion.recording import Loading
@@ -102,6 +103,23 @@ def test_a_late_torque_is_told_and_stays_in_the_uncertainty():
     assert friction.uncertainty > off > 0.05 * early.friction
 
 
+def test_a_lag_is_found_that_is_about_as_long_as_the_search_for_it():
+    """Of the small ramps, those that seem latest by noise are only found near this lag."""
+    gear = scenario('encoder 20 ms late, pauses')
+    late = replace(gear, lag=0.04, noise=0.13)
+    lags = [models.settled(loading(late, seed=seed)).effects.lag.value for seed in range(4)]
+    assert np.mean(lags) == pytest.approx(0.04, abs=0.002)
+
+
+@pytest.mark.parametrize('friction', [0.7, 1.9])
+def test_a_gear_breaks_away_within_its_small_loops(friction):
+    """Of 4 N·m, twice the friction are up to 3.8 N·m."""
+    gear = replace(scenario('play, linear spring'), friction=friction)
+    recorded = loading(gear)
+    group = find_ramps(recorded.torque, recorded.angle, recorded.time)[0]
+    assert breakaway_friction(group) == pytest.approx(friction, rel=0.05)
+
+
 def test_coarse_steps_tell_nothing_of_a_lag():
     """The gear turns by 0.002 rad in the window before a reversal, that is, by a step or two."""
     late = scenario('encoder 20 ms late')
@@ -159,6 +177,29 @@ def test_creep_does_not_move_the_corner_where_the_gear_breaks_away():
     assert np.median(Midlines.of(group.whole).friction) > 2.0 * creeping.friction
     assert breakaway_friction(group) == pytest.approx(creeping.friction, rel=0.05)
     assert models.settled(recorded).effects.removed is None  # no late encoder
+
+
+@pytest.mark.parametrize('friction', [0.5, 1.5])
+def test_pauses_tell_creep(friction):
+    """And its time constant, by which the stiffness of the spring is known to 5 %."""
+    gear = replace(scenario('creep of 10 %, pauses'), friction=friction)
+    found = models.settled(loading(gear))
+    creep = found.creeping.creep
+    share, constant = gear.creeps[0]
+    assert creep.constant == pytest.approx(constant, rel=0.3)
+    assert 300.0 * creep.compliance.value == pytest.approx(share, rel=0.15)
+    stiffness = models.models_of(found, STEP).spring.stiffness
+    assert abs(stiffness.value - 300.0) < stiffness.uncertainty < 15.0
+
+
+def test_a_sine_has_no_pauses():
+    turn = 2.0 * np.pi * np.arange(24000) / 4000
+    torque, time = 40.0 * np.sin(turn), 5e-3 * np.arange(24000)
+    group = find_ramps(torque, torque / 300.0, time)[0]
+    assert not list(pauses_of(time, torque, torque / 300.0, group, 1.0))
+    flat = np.clip(torque, -35.0, 35.0)
+    group = find_ramps(flat, flat / 300.0, time)[0]
+    assert len(list(pauses_of(time, flat, flat / 300.0, group, 1.0))) > 8
 
 
 def test_creep_is_found_where_the_gear_stands_still():
