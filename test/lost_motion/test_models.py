@@ -24,6 +24,8 @@ from gear_kinematics.lost_motion.springs import SHAPES, Fitting, Gap, Model, Spr
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 
+pytestmark = pytest.mark.slow  # a recording takes 1 to 2 s to simulate
+
 
 def scenario(name: str) -> Scenario:
     return next(scenario for scenario in SCENARIOS if scenario.name == name)
@@ -43,7 +45,6 @@ def test_the_mean_of_loops_holds_although_two_share_a_quarter():
     assert (single.value, single.standard) == (3.0, None)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize('scenario', FEW, ids=lambda scenario: scenario.name)
 def test_figures_hold(scenario: Scenario):
     """Of 8 intervals of 95 %, fewer than 5 hold once in 2700 times, of 90 % once in 200."""
@@ -425,7 +426,6 @@ def test_rejected_models_have_their_scores():
     assert linear.error > 5.0 * errors[0]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(('folder', 'every'), [('torque_ramps', 2), ('torque_ramps_more', 5)])
 def test_no_play_of_a_measured_actuator_is_negative_or_exceeds_its_hysteresis(
     shared_path, folder, every
