@@ -100,6 +100,7 @@ def test_orders_of_less_than_two_cycles_are_refused_by_name():
     assert not {'output × 1'} & {f.term.name for f in result.terms}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('delay', [0.0, 2e-3])
 @pytest.mark.parametrize('fit_ratio', [False, True])
 @pytest.mark.parametrize('ratio', [-50, 100])
@@ -221,8 +222,7 @@ def test_standstill_and_short_recordings_are_refused():
     [*((name, 'fast') for name in IN_CLASS), *((name, 'slow') for name in HARD_WHEN_SLOW)],
 )
 def test_interval_and_correction_hold_on_another_recording(name, motion):
-    # Half of the gears each where there are two motions.
-    found = judged(IN_CLASS[name], 4 if name in HARD_WHEN_SLOW else 8, motion=motion)
+    found = judged(IN_CLASS[name], 4, motion=motion)
     assert np.mean([one.relative_rms for one in found]) <= 1.1
     # Of 200 gears, it is 0.93 to 0.97 (benchmark/calibration.py); few scatter more.
     assert 0.91 <= np.mean([one.coverage for one in found]) <= 0.99
@@ -231,4 +231,4 @@ def test_interval_and_correction_hold_on_another_recording(name, motion):
 @pytest.mark.slow
 @pytest.mark.parametrize('name', OUT_OF_CLASS)
 def test_interval_holds_where_the_model_does_not(name):
-    assert np.mean([one.coverage for one in judged(OUT_OF_CLASS[name], 8)]) >= 0.9
+    assert np.mean([one.coverage for one in judged(OUT_OF_CLASS[name], 4)]) >= 0.9

@@ -357,6 +357,7 @@ def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(
     assert told == (rows > 0)
 
 
+@pytest.mark.slow
 def test_a_torque_behind_a_filter_is_late(tmp_path, capsys):
     gear = replace(SCENARIOS[0], lag=-0.02)
     recorded = simulate(gear, 1, np.random.default_rng(3))
@@ -458,6 +459,7 @@ def test_groups_are_compared_by_the_spread_between_their_recordings(worn, capsys
     assert 'within single recordings' not in summary(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_recordings_of_no_group_keep_their_own_torque(worn, capsys):
     options = ['--group', '*_0900_new*', '--group', '*_1000_new*', '--json', '-']
     assert main(['lost-motion', *worn[1:3], worn[0], *options]) == 0

@@ -43,7 +43,7 @@ FOREIGN = [
 CORPUS = sorted((ROOT / 'test' / 'corpus').glob('*/*'))
 
 MUTATIONS, BATCH = 15_000, 20  # hostile payloads
-COUNT = 200_000  # of them into the node
+COUNT = 100_000  # of them into the node
 VALID_EVERY = 20  # of them comes a valid message
 WINDOW = 1000  # messages that the node may be behind: half of what its queue holds
 STEP = SECOND // 1000
