@@ -26,17 +26,24 @@ _ROWS = 10
 _LEAST_STILLS = 4
 _ROUNDING = 1e-9
 """rad."""
+_TINY = 1e-300
+"""rad², so that equal predictions can be divided by their standard error."""
 _STANDARD_ERRORS = 2.0
 """Creep has to predict better than none by this many standard errors."""
-_UNLIKELY = 3.0
-"""A time constant that predicts worse than the best one by so many standard errors is unlikely."""
+_SHARED = 2.0
+"""Factor by which errors of predictions exceed those of independent ones, as all standstills have
+the same shape, and steps of the encoder at the same angles."""
+_NEGLIGIBLE = 1e-3
+"""Least weight of a time constant, relative to the greatest one."""
+_TOLD = math.exp(-2.0)
+"""Relative weight of a time constant within two standard uncertainties of the likeliest one."""
 _MISFIT = 0.1
 """Share of a correction for creep that counts as standard uncertainty, as no material has just one
 time constant."""
 _USUAL = 0.1
 """Share of the twist that comes late in gears that creep, as a scale."""
 _CONSTANTS = np.geomspace(1.0, 50.0, 18)
-"""s, time constants that are tried; known by their numbers."""
+"""s, time constants that are tried, of creep after the load and of creep after the twist."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -48,7 +55,7 @@ class Creep:
     constant: float
     """s."""
     others: tuple[tuple[float, float], ...]
-    """Other time constants, s, that predict as well, with their compliances, rad/(N·m)."""
+    """Other time constants, s, that are about as likely, with their compliances, rad/(N·m)."""
 
 
 def transmitted(torque: Array, load: float, friction: float, growth: float = 0.0) -> Array:
@@ -96,20 +103,15 @@ class Loads:
             left = np.exp(-max(step, 0.0) / constants)
             self._late[k] = cause + (self._late[k - 1] - cause) * left
 
-    @property
-    def numbers(self) -> range:
-        """Numbers of the time constants: those after the load, and those after the twist."""
-        return range(self._late.shape[1])
-
-    def late(self, time: Array, number: int) -> Array:
-        """Return the loads as they come late by the time constant of a number, (n,), N·m.
+    def late(self, factors: Array) -> Callable[[Array], Array]:
+        """Return what comes late, by the time in s: a sum of loads, N·m.
 
         Args:
-            time: (n,), s.
-            number: of the time constant.
+            factors: (constants,), of what comes late by each time constant, first after the
+                load, then after the twist.
         """
-        late: Array = np.interp(time, self._time, self._late[:, number])
-        return late
+        loads = self._late @ factors
+        return lambda time: np.interp(time, self._time, loads)
 
 
 def _twist(lines: Midlines) -> Callable[[Array], Array]:
@@ -142,28 +144,30 @@ class Creeping:
     """Whether it certainly creeps."""
     loads: Loads
     compliance: Estimate
-    """rad/(N·m), with the best time constant."""
+    """rad/(N·m), with the likeliest time constant."""
     compliances: Array
-    """rad/(N·m), with each time constant."""
+    """(constants,), rad/(N·m), as expected with each time constant."""
     standards: Array
-    """rad/(N·m), their standard uncertainties."""
+    """(constants,), rad/(N·m), their standard uncertainties."""
     usual: float
     """rad/(N·m), a compliance that is usual for gears that creep."""
-    likely: tuple[int, ...]
-    """Numbers of the time constants that predict about as well, the best one first."""
+    weights: Array
+    """(constants,), how likely each time constant is; their sum is 1."""
 
     @property
     def creep(self) -> Creep | None:
         """What can be told of it; None if it is not clear."""
         if not self.clear:
             return None
-        best, *likely = (k % len(_CONSTANTS) for k in self.likely)
+        best = int(np.argmax(self.weights)) % len(_CONSTANTS)
+        told = np.flatnonzero(self.weights > _TOLD * np.max(self.weights))
+        likely = (int(k) % len(_CONSTANTS) for k in told)
         others = {float(_CONSTANTS[k]): float(self.compliances[k]) for k in likely if k != best}
         return Creep(self.compliance, float(_CONSTANTS[best]), tuple(others.items()))
 
     def out_of(self, ramps: Ramps) -> Ramps:
-        """Return the ramps without what comes late, if that is clear."""
-        return self._without(ramps, self.likely[0], self.compliance.value) if self.clear else ramps
+        """Return the ramps without what is expected to come late."""
+        return self._without(ramps, self.weights * self.compliances)
 
     def part(self, ramps: Ramps, figure: Callable[[Ramps], float]) -> Component:
         """Return what not knowing the creep adds to the uncertainty of a figure of ramps.
@@ -172,22 +176,19 @@ class Creeping:
             ramps: with creep.
             figure: of ramps.
         """
-        recorded, likely = figure(ramps), list(self.likely)
+        recorded, likely = figure(ramps), np.flatnonzero(self.weights)
         # Figures change in proportion to the compliance.
-        changes = [figure(self._without(ramps, k, self.usual)) - recorded for k in likely]
-        slopes = np.array(changes) / self.usual
-        found = slopes * self.compliances[likely]
-        used = float(found[0]) if self.clear else 0.0
-        unknown = slopes * self.standards[likely]
-        by_constant = float(np.mean((found - used) ** 2 + unknown**2))
-        return Component(math.hypot(math.sqrt(by_constant), _MISFIT * used))
+        usual = self.usual * np.eye(len(self.weights))[likely]
+        changes = [figure(self._without(ramps, factors)) - recorded for factors in usual]
+        slopes, weights = np.array(changes) / self.usual, self.weights[likely]
+        found, unknown = slopes * self.compliances[likely], slopes * self.standards[likely]
+        expected = float(weights @ found)
+        by_constant = float(weights @ ((found - expected) ** 2 + unknown**2))
+        return Component(math.hypot(math.sqrt(by_constant), _MISFIT * expected))
 
-    def _without(self, ramps: Ramps, number: int, compliance: float) -> Ramps:
-        return ramps.changed(
-            lambda half: replace(
-                half, angle=half.angle - compliance * self.loads.late(half.times, number)
-            )
-        )
+    def _without(self, ramps: Ramps, compliances: Array) -> Ramps:
+        late = self.loads.late(compliances)
+        return ramps.changed(lambda half: replace(half, angle=half.angle - late(half.times)))
 
 
 def creeping_of(
@@ -214,7 +215,8 @@ def creeping_of(
     halves = (half for group in ramps for half in group.halves())
     reversals = (part for half in halves if (part := _after_reversal(half, friction)))
     parts = pauses if len(pauses) >= _LEAST_STILLS else reversals
-    stills = [_still(*part, loads) for part in parts]
+    lates = [loads.late(factors) for factors in np.eye(2 * len(_CONSTANTS))]
+    stills = [_still(*part, lates) for part in parts]
     if len(stills) < _LEAST_STILLS or not usual > 0.0:
         return None
     both, square, angle, change = (np.array([still[k] for still in stills]) for k in range(4))
@@ -222,27 +224,30 @@ def creeping_of(
     # Compliances by all standstills but one, and how these predict that one: (stills, constants).
     without = (both.sum(0) - both) / (square.sum(0) - square)
     missed = angle[:, None] - 2.0 * without * both + without**2 * square
-    best = int(np.argmin(missed.sum(0)))
-    gain, error = _mean(angle - missed[:, best])
     count = len(stills)
     # Steps hide the same in every loop, so that the largest changes count once, on either side.
     standards = np.hypot(
         math.sqrt(count - 1) * np.std(without, axis=0),
         resolution(angle_step) / np.sqrt(2.0 * change.max(0)),
     )
+    worse = missed - missed[:, [np.argmin(missed.sum(0))]]
+    errors = _SHARED * np.std(worse, axis=0, ddof=1) / math.sqrt(count)
+    unlikely = (np.mean(worse, axis=0) / np.maximum(errors, _TINY)) ** 2
+    # By more creep than gears usually have.
+    unlikely += compliances**2 / (usual**2 + standards**2)
+    weights = np.exp(-0.5 * (unlikely - np.min(unlikely)))
+    weights[weights < _NEGLIGIBLE] = 0.0
+    best = int(np.argmax(weights))
+    gain, error = _mean(angle - missed[:, best])
     compliance = Estimate(float(compliances[best]), float(standards[best]), count - 1, count)
     least = max(angle_step, _ROUNDING) / ramps[-1].amplitude
     clear = gain >= max(0.0, _STANDARD_ERRORS * error) and compliance.value > max(
         compliance.uncertainty or 0.0, least
     )
     if not clear:
-        standards = unclear(compliances, standards, usual)
-        compliances = np.zeros_like(compliances)
-    worse = [_mean(column - missed[:, best]) for column in missed.T]
-    likely = [
-        k for k, (mean, error) in enumerate(worse) if mean <= _UNLIKELY * error and k != best
-    ]
-    return Creeping(clear, loads, compliance, compliances, standards, usual, (best, *likely))
+        compliances, standards = unclear(compliances, standards, usual)
+    weights /= np.sum(weights)
+    return Creeping(clear, loads, compliance, compliances, standards, usual, weights)
 
 
 def _mean(values: Array) -> tuple[float, float]:
@@ -257,13 +262,15 @@ def _after_reversal(half: HalfLoop, friction: float) -> tuple[Array, Array] | No
     return (half.times[rows], half.angle[rows]) if np.count_nonzero(rows) >= _ROWS else None
 
 
-def _still(time: Array, angle: Array, loads: Loads) -> tuple[Array, Array, float, Array]:
+def _still(
+    time: Array, angle: Array, lates: Sequence[Callable[[Array], Array]]
+) -> tuple[Array, Array, float, Array]:
     """Return sums over a standstill: late loads by angle, late loads squared, angle squared.
 
     The last are the late loads' changes during it, squared, each from its variance.
     """
     off = angle - np.mean(angle)
-    late = np.array([loads.late(time, k) for k in loads.numbers])
+    late = np.array([loads(time) for loads in lates])
     late -= np.mean(late, axis=1, keepdims=True)
     square = np.sum(late**2, axis=1)
     change = 12.0 * square / len(off)  # that of a straight line

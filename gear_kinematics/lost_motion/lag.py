@@ -78,7 +78,8 @@ def of_torque(lag: Estimate) -> bool:
 def not_clear(lag: Estimate) -> float:
     """Return the standard uncertainty of a lag that is not taken out, s."""
     values = np.array([lag.value]), np.array([lag.standard or 0.0])
-    return float(unclear(*values, _USUAL)[0])
+    (expected,), (standard,) = unclear(*values, _USUAL)
+    return math.hypot(expected, standard)
 
 
 def _seen(before: HalfLoop, window: float, angle_step: float) -> bool:

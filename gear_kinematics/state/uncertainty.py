@@ -228,8 +228,8 @@ def common_part(errors: NDArray[np.float64]) -> float:
 
 def unclear(
     values: NDArray[np.float64], standards: NDArray[np.float64], usual: float
-) -> NDArray[np.float64]:
-    """Return the root mean squares of effects that are not clear, as most often there are none.
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return what is expected of effects that are not clear, as most often there are none.
 
     Before the measurement, an effect is as likely as none, and effects have the standard deviation
     `usual`. Against an effect is then the reciprocal of the Bayes factor (H. Jeffreys, Theory of
@@ -239,14 +239,17 @@ def unclear(
         values: (n,), as measured.
         standards: (n,), their standard uncertainties.
         usual: of the same unit.
+
+    Returns:
+        The means, and their standard uncertainties.
     """
     # Equal readings have no scatter, but are not exact.
     known = np.maximum(standards, _EXACT * usual)
     share = usual**2 / (usual**2 + known**2)
     means, variances = share * values, share * known**2
     against = np.hypot(usual, known) / known * np.exp(-0.5 * share * (values / known) ** 2)
-    rms: NDArray[np.float64] = np.sqrt((means**2 + variances) / (1.0 + against))
-    return rms
+    effect = 1.0 / (1.0 + against)
+    return effect * means, np.sqrt(effect * (variances + (1.0 - effect) * means**2))
 
 
 @cache
