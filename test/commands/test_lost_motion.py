@@ -334,10 +334,8 @@ def test_ramps_much_larger_than_the_friction_do_not_separate_play_from_a_bent_sp
 ):
     """A soft middle and a gap with a bent spring describe them alike."""
     gear = next(s for s in SCENARIOS if s.name == 'play, hardening spring, large loops only')
-    recorded = simulate(gear, 1, np.random.default_rng(3))
-    path = write_csv(
-        tmp_path / 'large.csv', angle=recorded.angle[:, 0], torque=recorded.torque[:, 0]
-    )
+    recorded = simulate(gear, np.random.default_rng(3))
+    path = write_csv(tmp_path / 'large.csv', angle=recorded.angle, torque=recorded.torque)
     assert main(['lost-motion', str(path)]) == 0
     told = ' '.join(capsys.readouterr().out.split())
     assert 'not separable' in told
@@ -360,12 +358,12 @@ def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(
 @pytest.mark.slow
 def test_a_torque_behind_a_filter_is_late(tmp_path, capsys):
     gear = replace(SCENARIOS[0], lag=-0.02)
-    recorded = simulate(gear, 1, np.random.default_rng(3))
+    recorded = simulate(gear, np.random.default_rng(3))
     path = write_csv(
         tmp_path / 'filtered.csv',
         time=recorded.time,
-        angle=recorded.angle[:, 0],
-        torque=recorded.torque[:, 0],
+        angle=recorded.angle,
+        torque=recorded.torque,
     )
     assert main(['lost-motion', str(path)]) == 0
     (told,) = re.findall(r'The torque comes ([\d.]+) ± [\d.]+ ms later', capsys.readouterr().out)

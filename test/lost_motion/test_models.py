@@ -65,14 +65,14 @@ def test_figures_hold(scenario: Scenario):
 
 @cache
 def recording(scenario: Scenario, seed: int) -> Ramps:
-    return simulate(scenario, 1, np.random.default_rng(seed))
+    return simulate(scenario, np.random.default_rng(seed))
 
 
 def loading(scenario: Scenario, *, times: bool = True, seed: int = 3) -> Loading:
     recorded = recording(scenario, seed)
     return Loading(
-        recorded.torque[:, 0],
-        recorded.angle[:, 0],
+        recorded.torque,
+        recorded.angle,
         Step(STEP, Source.GIVEN),
         measured=True,
         time=recorded.time if times else None,

@@ -1,7 +1,7 @@
 """How often the figures of simulated torque ramps hold, in each scenario."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -40,32 +40,26 @@ class Judged(NamedTuple):
 def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
     """Measure simulated recordings, each of another gear, and compare with the gears."""
     random = np.random.default_rng(seed)
-    gears = [drawn(scenario, random) for _ in range(count)]
-    hystereses = [hysteresis(gear) for gear in gears]
-    found = [_measured(simulate(gear, 1, random)) for gear in gears]
+    gears = drawn(scenario, count, random)
+    recorded = simulate(gears, random)
+    found = [_measured(recorded, k) for k in range(count)]
     models = [one.smallest.play_model for one in found]
-    values = [(gear.play, m.play) for gear, m in zip(gears, models, strict=True) if m.play]
+    values = [(play, m.play) for play, m in zip(gears.play, models, strict=True) if m.play]
     limits = [
-        (gear.play, m.limit) for gear, m in zip(gears, models, strict=True) if m.limit is not None
+        (play, m.limit) for play, m in zip(gears.play, models, strict=True) if m.limit is not None
     ]
     told = len(values) + len(limits)
     held = sum(_holds(found, play) for play, found in values)
     held += sum(play <= limit for play, limit in limits)
     return Judged(
-        hysteresis=_share(
-            _holds(one.smallest.hysteresis, true)
-            for one, true in zip(found, hystereses, strict=True)
-        ),
+        hysteresis=_share((one.smallest.hysteresis for one in found), hysteresis(gears)),
         play=held / told if told else math.nan,
         friction=math.nan
         if scenario.slip
-        else _share(
-            _holds(model.friction, gear.friction)
-            for model, gear in zip(models, gears, strict=True)
-        ),
+        else _share((model.friction for model in models), gears.friction),
         spring=_share(
-            _holds(one.spring.stiffness, _stiffness(gear, one))
-            for one, gear in zip(found, gears, strict=True)
+            (one.spring.stiffness for one in found),
+            [_stiffness(scenario, one) for one in found] / gears.softness,
         ),
         valued=len(values) / count,
         refused=1.0 - told / count,
@@ -77,10 +71,10 @@ def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
     )
 
 
-def _measured(recorded: Ramps) -> HysteresisReport:
+def _measured(recorded: Ramps, gear: int) -> HysteresisReport:
     loading = Loading(
-        recorded.torque[:, 0],
-        recorded.angle[:, 0],
+        recorded.torque[:, gear],
+        recorded.angle[:, gear],
         Step(STEP, Source.GIVEN),
         measured=True,
         time=recorded.time,
@@ -92,15 +86,16 @@ def _measured(recorded: Ramps) -> HysteresisReport:
 def _stiffness(scenario: Scenario, found: HysteresisReport) -> float:
     """Stiffness of the true spring over the same loads: the line through its curve."""
     load = np.linspace(found.spring.low, found.spring.high, 400)
-    return 1.0 / float(np.polyfit(load, scenario.spring(load), 1)[0])
+    return 1.0 / float(np.polyfit(load, scenario.twist(load), 1)[0])
 
 
 def _holds(estimate: Estimate, value: float) -> bool:
     return abs(estimate.value - value) <= estimate.uncertainty
 
 
-def _share(held: Sequence[bool]) -> float:
-    return float(np.mean(list(held)))
+def _share(found: Iterable[Estimate], true: Sequence[float]) -> float:
+    """Share of the estimates that hold."""
+    return float(np.mean(list(map(_holds, found, true))))
 
 
 def _mean(values: Sequence[float]) -> float:

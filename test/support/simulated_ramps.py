@@ -1,13 +1,13 @@
 """Torque ramps of gears that are known, stepped through time; nothing under test is used.
 
 The load on the spring is the state: friction holds it until the torque differs from it by more
-than the friction, and then lets it follow just so far. Play is a step of the spring's curve, a
-table. Gears with inertia move by Newton's law instead, and speed up in their play. All recordings
-of a scenario step together: arrays are (time, recordings).
+than the friction, and then lets it follow just so far. Play is a step of the spring's curve. Gears
+with inertia move by Newton's law instead, and speed up in their play. All gears of a scenario step
+together: their figures are arrays (gears,), and what is recorded of them arrays (time, gears).
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -21,6 +21,8 @@ _CORNERS = np.array([0.0, 1.0, 1.0, -1.0, -1.0, 0.0])
 _REPEATS = 100
 """Recordings whose mean is the hysteresis of a gear."""
 
+Value = float | np.ndarray
+"""Of one gear, or of each of many, (gears,)."""
 Loops = tuple[tuple[float, float], ...]
 """Amplitude, N·m, and duration, s, of the loops of a recording."""
 SMALL_AND_LARGE: Loops = 5 * ((SMALL, 4.0),) + 3 * ((LARGE, 20.0),)
@@ -56,36 +58,42 @@ class Scenario:
     name: str
     contained: bool = True
     """Whether the family of models contains it."""
-    play: float = 0.0
+    play: Value = 0.0
     spring: Spring = linear
-    friction: float = 1.0
+    softness: Value = 1.0
+    """Factor of its twist."""
+    friction: Value = 1.0
     """N·m."""
-    load_friction: float = 0.0
+    load_friction: Value = 0.0
     """Share of the load that adds to it."""
-    creeps: tuple[tuple[float, float], ...] = ()
+    creeps: tuple[tuple[Value, Value], ...] = ()
     """Share of the twist, and time constant, s, of each."""
-    bristle: float = 0.0
+    bristle: Value = 0.0
     """N·m over which friction builds up after a reversal."""
-    slip: float = 0.0
+    slip: Value = 0.0
     """Share of the friction by which it falls once the gear moves (stick-slip)."""
-    inertia: float = 0.0
+    inertia: Value = 0.0
     """kg·m², at the output."""
-    damping: float = 0.0
+    damping: Value = 0.0
     """N·m·s/rad; of gears with inertia."""
-    drift: float = 0.0
+    drift: Value = 0.0
     """rad/s, of the encoder."""
-    thermal: tuple[float, float] = (0.0, 60.0)
+    thermal: tuple[Value, Value] = (0.0, 60.0)
     """Amplitude, rad, and period, s, of a wandering zero."""
-    lag: float = 0.0
+    lag: Value = 0.0
     """s, by which the readings of the encoder are late."""
-    pause: float = 0.0
+    pause: Value = 0.0
     """Share of the time for which the torque stays at its peaks."""
-    noise: float = 0.1
+    noise: Value = 0.1
     """N·m, of the torque sensor."""
-    repeat: float = 0.01
+    repeat: Value = 0.01
     """Relative scatter of the friction from loop to loop."""
     loops: Loops = SMALL_AND_LARGE
     """Those of the first amplitude are judged."""
+
+    def twist(self, load: np.ndarray) -> np.ndarray:
+        """Twist of the spring under a load, N·m, without the play, rad."""
+        return self.softness * self.spring(load)
 
 
 SCENARIOS = (
@@ -134,17 +142,17 @@ SCENARIOS = (
 )
 
 
-def drawn(scenario: Scenario, random: np.random.Generator) -> Scenario:
-    """Draw a gear and its sensors: each figure is that of the scenario or up to twice or half."""
+def drawn(scenario: Scenario, count: int, random: np.random.Generator) -> Scenario:
+    """Draw gears and their sensors: each figure is that of the scenario or up to twice or half."""
 
-    def about(value: float) -> float:
-        return value * 2.0 ** random.uniform(-1.0, 1.0)
+    def about(value: float) -> np.ndarray:
+        return value * 2.0 ** random.uniform(-1.0, 1.0, count)
 
-    softer, friction = about(1.0), about(scenario.friction)
+    friction = about(scenario.friction)
     return replace(
         scenario,
         play=about(scenario.play),
-        spring=lambda load: softer * scenario.spring(load),
+        softness=about(1.0),
         friction=friction,
         load_friction=about(scenario.load_friction),
         creeps=tuple((about(share), about(constant)) for share, constant in scenario.creeps),
@@ -152,7 +160,7 @@ def drawn(scenario: Scenario, random: np.random.Generator) -> Scenario:
         slip=about(scenario.slip),
         inertia=about(scenario.inertia),
         damping=about(scenario.damping),
-        drift=about(scenario.drift) * random.choice([-1.0, 1.0]),
+        drift=about(scenario.drift) * random.choice([-1.0, 1.0], count),
         thermal=(about(scenario.thermal[0]), about(scenario.thermal[1])),
         lag=about(scenario.lag),
         noise=about(scenario.noise),
@@ -161,42 +169,44 @@ def drawn(scenario: Scenario, random: np.random.Generator) -> Scenario:
 
 
 class Ramps(NamedTuple):
-    """Recordings of a scenario."""
+    """Recordings of a gear, or of many."""
 
     time: np.ndarray
     """(time,), s."""
     torque: np.ndarray
-    """(time, recordings), N·m, measured."""
+    """(time, gears), N·m, measured; (time,) of one gear."""
     angle: np.ndarray
-    """(time, recordings), rad, measured."""
+    """(time, gears), rad, measured; (time,) of one gear."""
 
 
-def hysteresis(scenario: Scenario) -> float:
+def hysteresis(scenario: Scenario) -> Value:
     """Return the hysteresis of the first amplitude by definition, without the errors of sensors.
 
     It is the mean over many recordings, as the steps of stick-slip lie elsewhere in each.
     """
     first = tuple(loop for loop in scenario.loops if loop == scenario.loops[0])
-    angle = _motion(replace(scenario, loops=first), _REPEATS, np.random.default_rng(0))
+    repeats = (_REPEATS, *np.shape(scenario.friction))
     rows = round(first[0][1] / INTERVAL)
-    ends = np.arange(1, len(first)) * rows
-    return float(np.mean(angle[ends + rows // 2] - angle[ends + rows]))
+    motion = _motion(replace(scenario, loops=first), repeats, np.random.default_rng(0))
+    at_zero = [angle for row, angle in enumerate(motion) if row % (rows // 2) == 0]
+    falls, rises = at_zero[3::2], at_zero[4::2]  # after the first loop
+    return np.mean(np.subtract(falls, rises), axis=(0, 1))
 
 
-def simulate(scenario: Scenario, count: int, random: np.random.Generator) -> Ramps:
-    """Record a gear many times."""
+def simulate(scenario: Scenario, random: np.random.Generator) -> Ramps:
+    """Record each gear of a scenario."""
     time, torque = _torque(scenario)
-    angle = _motion(scenario, count, random)
+    shape = np.shape(scenario.friction)
+    angle = np.array(list(_motion(scenario, shape, random)))
     size, period = scenario.thermal
-    phase = random.uniform(-np.pi, np.pi, count)
-    angle = angle + scenario.drift * time[:, None]
-    angle += size * np.sin(2.0 * np.pi * time[:, None] / period + phase)
-    if scenario.lag:
-        late = time - scenario.lag
-        angle = np.stack([np.interp(late, time, column) for column in angle.T], axis=1)
-    zero = random.uniform(0.0, STEP, count)
+    phase = random.uniform(-np.pi, np.pi, shape)
+    angle += np.multiply.outer(time, scenario.drift)
+    angle += size * np.sin(2.0 * np.pi * np.divide.outer(time, period) + phase)
+    for gear, lag in np.ndenumerate(scenario.lag):
+        angle[:, *gear] = np.interp(time - lag, time, angle[:, *gear])
+    zero = random.uniform(0.0, STEP, shape)
     noise = scenario.noise * random.standard_normal(angle.shape)
-    return Ramps(time, torque[:, None] + noise, np.round((angle + zero) / STEP) * STEP)
+    return Ramps(time, (noise.T + torque).T, np.round((angle + zero) / STEP) * STEP)
 
 
 def _torque(s: Scenario) -> tuple[np.ndarray, np.ndarray]:
@@ -215,24 +225,22 @@ def _loops_of_rows(loops: Loops) -> np.ndarray:
     return np.append(np.repeat(np.arange(len(rows)), rows), len(rows) - 1)
 
 
-def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
-    """Angle, (time, recordings), without the errors of the encoder."""
+def _motion(
+    s: Scenario, shape: tuple[int, ...], random: np.random.Generator
+) -> Iterator[np.ndarray]:
+    """Yield the angles, of a shape (..., gears), without the errors of the encoder."""
     _, torque = _torque(s)
-    # The curve of the spring with its play: twist at loads, and loads at twists.
-    loads = np.linspace(-1.5 * LARGE, 1.5 * LARGE, 240001)
-    twists = s.spring(loads) + 0.5 * s.play * np.sign(loads)
-    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(s.loops), count)))
-    if s.inertia:
-        return _moved(s, torque, strength, lambda twist: np.interp(twist, twists, loads))
     loop = _loops_of_rows(s.loops)
-    twist = np.zeros(count)
-    load = np.zeros(count)
-    built = np.zeros(count)  # N·m, friction that has built up, with its sign
-    late = np.zeros((len(s.creeps), count))
-    angles = np.empty((len(torque), count))
+    strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(s.loops), *shape)))
+    if np.any(s.inertia):
+        yield from _moved(s, torque, strength[loop])
+        return
+    load = np.zeros(shape)
+    built = np.zeros(shape)  # N·m, friction that has built up, with its sign
+    late = np.zeros((len(s.creeps), *shape))
     for k, applied in enumerate(torque):
         held = strength[loop[k]] + s.load_friction * np.abs(load)
-        if s.bristle:
+        if np.any(s.bristle):
             load, built = _bristles(applied, load, built, held, s.bristle)
         else:
             net = applied - load
@@ -243,34 +251,33 @@ def _motion(s: Scenario, count: int, random: np.random.Generator) -> np.ndarray:
             growing = towards * np.sign(applied - towards * sliding) * s.load_friction
             fresh = strength[loop[k]] * (1.0 - s.slip)
             load = np.where(moves, (applied - towards * fresh) / (1.0 + growing), load)
-        twist = np.interp(load, loads, twists)
+        twist = s.twist(load)
         for j, (share, constant) in enumerate(s.creeps):
-            late[j] += (share * s.spring(load) - late[j]) * -math.expm1(-INTERVAL / constant)
-        angles[k] = twist + late.sum(axis=0)
-    return angles
+            late[j] += (share * twist - late[j]) * -np.expm1(-INTERVAL / constant)
+        yield twist + 0.5 * s.play * np.sign(load) + late.sum(axis=0)
 
 
-def _moved(s: Scenario, torque: np.ndarray, strength: np.ndarray, spring: Spring) -> np.ndarray:
-    """Angle of a gear with inertia, and friction by Haessig and Friedland's bristles."""
+def _moved(s: Scenario, torque: np.ndarray, strength: np.ndarray) -> Iterator[np.ndarray]:
+    """Angles of gears with inertia, and friction by Haessig and Friedland's bristles."""
     substeps, bristle = 10, 2e4  # N·m/rad
     step = INTERVAL / substeps
-    loop = _loops_of_rows(s.loops)
-    damping = s.damping + math.sqrt(bristle * s.inertia)  # of the bristles as well
-    angle, speed, bent = np.zeros((3, strength.shape[1]))
-    angles = np.empty((len(torque), len(angle)))
-    for k in range(len(torque)):
-        angles[k] = angle
-        most = strength[loop[k]] / bristle
+    damping = s.damping + np.sqrt(bristle * s.inertia)  # of the bristles as well
+    loads = np.linspace(0.0, 1.5 * LARGE, 120001)
+    twists = s.spring(loads)
+    angle, speed, bent = np.zeros((3, *strength.shape[1:]))
+    for k, most in enumerate(strength / bristle):
+        yield angle
         ahead = np.interp(k + np.arange(substeps) / substeps, np.arange(len(torque)), torque)
         for applied in ahead:
             before = bent
             bent = np.clip(bent + step * speed, -most, most)
             sticking = bent != before
-            net = applied - spring(angle) - bristle * bent
+            beyond = np.maximum(np.abs(angle) - 0.5 * s.play, 0.0) / s.softness
+            load = np.sign(angle) * np.interp(beyond, twists, loads)
+            net = applied - load - bristle * bent
             net -= np.where(sticking, damping, s.damping) * speed
             speed = speed + step / s.inertia * net
             angle = angle + step * speed
-    return angles
 
 
 def _bristles(
