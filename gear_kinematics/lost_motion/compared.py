@@ -117,17 +117,18 @@ def _limits(
     said = []
     if without_play(reports, common, members):
         before, after = (_plays(reports, common, group) for group in (first, second))
-        said.append(f'backlash {before} → {after} arcmin')
+        both = f'{before} in both' if before == after else f'{before} → {after}'
+        said.append(f'backlash {both}')
     if rate_doubts(reports, common, members):
         said.append('at different rates of the torque')
     return said
 
 
 def _plays(reports: Sequence[LostMotionReport], common: Basis, group: Group) -> str:
-    """List the backlashes of a group, in arc minutes: values and bounds."""
+    """List the backlashes of a group: values and bounds."""
     plays = leaving(reports, common)
-    found = [play(figures.play_model) for number in group.members if (figures := plays[number])]
-    return ' / '.join(filter(None, found)) or 'unknown'
+    models = [figures.play_model for number in group.members if (figures := plays[number])]
+    return ' / '.join(filter(None, (play(model, ' arcmin') for model in models))) or 'unknown'
 
 
 def _sentence(pair: Sequence[Change], at: str, limits: Sequence[str]) -> str:

@@ -113,9 +113,9 @@ def _unseen_lag(found: HysteresisReport, model: PlayModel) -> Iterator[str]:
 
 def _backlash(model: PlayModel, least: float) -> Iterator[str]:
     yield (
-        f'The backlash is that of the simplest plausible model: {model.name}, '
-        f'{number(model.stiffness, 4)} N·m/rad, with a residual of {number(model.residual)} N·m '
-        '(root mean square) on the middle line of the hysteresis curve.'
+        f'The simplest plausible model is: {model.name}, {number(model.stiffness, 4)} N·m/rad. On '
+        f'the middle line of the hysteresis curve it leaves {number(model.residual)} N·m (root '
+        'mean square).'
     )
     yield from _play(model, least)
     if model.more:

@@ -7,6 +7,7 @@ from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
 from gear_kinematics.lost_motion.model_remarks import model_remarks
 from gear_kinematics.lost_motion.ratio import MOST_PAIRS, MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
+from gear_kinematics.lost_motion.tables import too_uncertain
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, PERCENT, torque
 from gear_kinematics.report.document import number, printable
 
@@ -110,6 +111,8 @@ def _doubts(found: HysteresisReport) -> Iterator[str]:
             'The hysteresis is negative, which no gear has: the torque comes later than the '
             'angle, as behind a filter or from another clock.'
         )
+    if vague := too_uncertain(found):
+        yield f'Too uncertain to tell, as the ± exceeds the value: {", ".join(vague)}.'
     yield from model_remarks(found)
     model, at = smallest.play_model, LOST_MOTION_SHARE * found.settings.rated_torque
     if model and model.friction.value > at and not found.measured:

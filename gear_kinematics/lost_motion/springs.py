@@ -55,7 +55,7 @@ class Shape:
 
 def _tanh(scale: float) -> Shape:
     end = float(1.0 / np.cosh(1.0 / scale) ** 2 / scale)
-    return Shape('tanh', lambda d: np.tanh(d / scale), (1.0 / scale, end), 2)
+    return Shape(f'tanh {scale:g}', lambda d: np.tanh(d / scale), (1.0 / scale, end), 2)
 
 
 def _sinh(scale: float) -> Shape:

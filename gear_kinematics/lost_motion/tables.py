@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
 from gear_kinematics.lost_motion.play import Candidate
@@ -74,46 +75,65 @@ def tables(report: LostMotionReport) -> Iterator[Table]:
         yield _order_table(report.transmission)
 
 
-def _figure_table(found: HysteresisReport) -> Table:
-    """Return the figures: of play and friction from small ramps, others from the largest."""
-    smallest, leaving, largest = found.smallest, found.leaving, found.largest
-    small, least, large = (
-        f'{_loops(f)} to {torque(f.amplitude)} N·m' for f in (smallest, leaving, largest)
-    )
+class _Figure(NamedTuple):
+    """A figure of torque ramps."""
+
+    label: str
+    unit: str
+    estimate: Estimate | None
+    source: str
+    scale: float = 1.0
+
+    @property
+    def row(self) -> tuple[Cell, ...] | None:
+        """In the table of the figures; None if it is not known, or hardly."""
+        return _row(*self) if self.estimate and self.estimate.clear else None
+
+
+def _figures(found: HysteresisReport) -> list[_Figure]:
+    """List the figures: of friction from small ramps, others from the largest."""
+    smallest, largest = found.smallest, found.largest
+    small, large = map(_source, (smallest, largest))
     at = torque(LOST_MOTION_SHARE * found.settings.rated_torque)
-    rows = [
-        _angle('hysteresis at zero torque', smallest.hysteresis, small),
-        _play_row(leaving, least),
-        _row('friction (play model)', 'N·m', smallest.friction, small),
-        _angle(f'lost motion at ±{at} N·m', largest.lost_motion, large),
-        *(
-            _row(f'stiffness {_range(s.low, s.high)}', 'N·m/rad', s.both, large)
-            for s in largest.stiffness
-        ),
-        *_spring_rows(found, large),
+    ranges = [(_range(s.low, s.high), s.both) for s in largest.stiffness]
+    if spring := found.spring:
+        ranges.append((f'of the spring {_range(spring.low, spring.high)}', spring.stiffness))
+    return [
+        _Figure('hysteresis at zero torque', 'arcmin', smallest.hysteresis, small, ARC_MINUTES),
+        _Figure('friction (play model)', 'N·m', smallest.friction, small),
+        _Figure(f'lost motion at ±{at} N·m', 'arcmin', largest.lost_motion, large, ARC_MINUTES),
+        *(_Figure(f'stiffness {name}', 'N·m/rad', value, large) for name, value in ranges),
     ]
+
+
+def too_uncertain(found: HysteresisReport) -> list[str]:
+    """Describe the figures that are left out of their table, as their ± exceed them."""
+    return [
+        f'{figure.label} ({plus_minus(figure.estimate, figure.scale)} {figure.unit})'
+        for figure in _figures(found)
+        if figure.estimate and not figure.estimate.clear
+    ]
+
+
+def _figure_table(found: HysteresisReport) -> Table:
+    hysteresis, *others = (figure.row for figure in _figures(found))
+    rows = (hysteresis, _play_row(found.leaving), *others)
     return Table(_FIGURES, tuple(row for row in rows if row), _WORDS)
 
 
-def _play_row(figures: Figures, source: str) -> tuple[Cell, ...] | None:
-    model, label = figures.play_model, 'backlash (play model)'
+def _play_row(figures: Figures) -> tuple[Cell, ...] | None:
+    model, label, source = figures.play_model, 'backlash (play model)', _source(figures)
     if not model or model.play:
         return _angle(label, figures.play, source)
     limit = number(math.degrees(model.limit)) if model.limit is not None else ''
     return (
         Cell(label, unit='arcmin'),
-        Cell(play(model), unit='arcmin'),
+        Cell(play(model), unit='arcmin' if limit else ''),
         Cell(''),
         Cell(f'below {limit}' if limit else '', unit='°'),
         Cell(str(figures.loops)),
         Cell(source),
     )
-
-
-def _spring_rows(found: HysteresisReport, source: str) -> Iterator[tuple[Cell, ...] | None]:
-    if spring := found.spring:
-        label = f'stiffness of the spring {_range(spring.low, spring.high)}'
-        yield _row(label, 'N·m/rad', spring.stiffness, source)
 
 
 def _candidate_table(candidates: Sequence[Candidate]) -> Table:
@@ -223,8 +243,10 @@ def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
         hysteresis, model = found.smallest.hysteresis, found.leaving.play_model
         lost_motion = found.largest.lost_motion
         spring = found.largest.stiffness[-1].both if found.largest.stiffness else None
-    angles = (arc_minutes(hysteresis), play(model), arc_minutes(lost_motion))
-    values = (*angles, plus_minus(spring), arc_minutes(accuracy))
+    known = (e if e and e.clear else None for e in (hysteresis, lost_motion, accuracy))
+    width, lost, accurate = map(arc_minutes, known)
+    stiff = plus_minus(spring) if spring and spring.clear else ''
+    values = (width, play(model), lost, stiff, accurate)
     return tuple(map(Cell, (printable(report.recording.name), *values)))
 
 
@@ -249,8 +271,9 @@ def _row(
     )
 
 
-def _loops(figures: Figures) -> str:
-    return f'{figures.loops} loop{"s" if figures.loops > 1 else ""}'
+def _source(figures: Figures) -> str:
+    several = 's' if figures.loops > 1 else ''
+    return f'{figures.loops} loop{several} to {torque(figures.amplitude)} N·m'
 
 
 def _range(low: float, high: float) -> str:

@@ -28,13 +28,19 @@ def arc_minutes(estimate: Estimate | None) -> str:
     return plus_minus(estimate, ARC_MINUTES)
 
 
-def play(model: PlayModel | None) -> str:
-    """Format the play by a model, in arc minutes: a value, a limit, or that there is neither."""
+def play(model: PlayModel | None, unit: str = '') -> str:
+    """Format the play by a model, in arc minutes: a value, a limit, or that there is neither.
+
+    Args:
+        model: None if there is none.
+        unit: follows a number.
+    """
     if model is None:
         return ''
-    if model.play:
-        return arc_minutes(model.play)
-    return 'not separable' if model.limit is None else f'below {number(model.limit * ARC_MINUTES)}'
+    if not model.play and model.limit is None:
+        return 'not separable'
+    limit = number((model.limit or 0.0) * ARC_MINUTES)
+    return f'{arc_minutes(model.play) or f"below {limit}"}{unit}'
 
 
 def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:

@@ -79,6 +79,11 @@ class Estimate:
             return None
         return student_t(_whole(self.degrees_of_freedom)) * self.standard
 
+    @property
+    def clear(self) -> bool:
+        """Whether the expanded uncertainty, if known, does not exceed the value."""
+        return (self.uncertainty or 0.0) <= abs(self.value)
+
     def minus(self, other: 'Estimate') -> 'Estimate':
         """Estimate the difference from a quantity that was measured independently.
 

@@ -21,6 +21,7 @@ from gear_kinematics.commands import lost_motion
 from gear_kinematics.commands.cli import main
 from gear_kinematics.lost_motion import Columns, measure, read_csv
 from gear_kinematics.lost_motion.curves import panels
+from gear_kinematics.lost_motion.tables import key
 from gear_kinematics.lost_motion.task import Outcome, measure_recording
 from gear_kinematics.lost_motion.wording import rounded
 from gear_kinematics.state.uncertainty import Component, Estimate
@@ -84,6 +85,29 @@ def test_report_says_what_is_inferred(recording, motion, capsys):
     assert main(['lost-motion', str(motion)]) == 0
     output = capsys.readouterr().out
     assert 'Inferred' not in output
+
+
+def test_figures_that_their_uncertainty_exceeds_are_named_beside_the_table(
+    tmp_path, actuator, capsys
+):
+    """The second of two large loops is three times as soft."""
+    torque = ramps(*[(4.0, 150)] * 3, *[(40.0, 300)] * 2)
+    angle = creep(GEAR, torque) * np.where(np.arange(len(torque)) < 3000, 1.0, 3.0)
+    path = write_csv(tmp_path / 'changed.csv', angle=angle, torque=torque)
+    assert main(['lost-motion', str(path)]) == 0
+    output = capsys.readouterr().out
+    told = facts(output)
+    assert told['hysteresis at zero torque: value']
+    assert 'stiffness 20 to 40 N·m: value' not in told
+    assert told['20 to 40 N·m, ramps to 40 N·m: both']
+    value, uncertainty = re.search(
+        r'Too uncertain to tell.* stiffness 20 to 40 N·m \((\d+) ± (\d+) N·m/rad\)', output
+    ).groups()
+    assert float(value) < float(uncertainty)
+    report = measure(read_csv(path, actuator, Columns(), 0.01), actuator)
+    headline = {label for _, label, _ in key(report).facts()}
+    assert 'hysteresis [arcmin]' in headline
+    assert 'stiffness [N·m/rad]' not in headline
 
 
 def test_json_is_in_si_units_and_has_every_figure(recording, capsys):

@@ -390,7 +390,7 @@ def test_a_spring_that_no_model_fits_widens_the_play():
 def test_a_model_of_another_hysteresis_tells_no_play_beyond_it(softer, friction):
     """The soft middles of these models are 24 and 26 mrad wide, the loops 16 and 19 mrad."""
     model = hardening_within(softer, friction=friction).plays[0]
-    assert model.name == 'tanh spring, soft middle'
+    assert model.name == 'tanh 0.3 spring, soft middle'
     assert (model.play, model.limit, model.cause) == (None, None, Cause.MODELS)
 
 
