@@ -112,7 +112,7 @@ def quantities(reports: Sequence[LostMotionReport], common: Basis | None) -> lis
         small, loaded = chosen(reports, common.small), chosen(reports, common.loaded)
         listed += [
             _angle('hysteresis', small, lambda figures: figures.hysteresis),
-            _angle('backlash', leaving(reports, common), lambda figures: figures.play),
+            backlash(reports, common),
             _of(small, lambda figures: figures.friction, 'friction', 'N·m'),
             _angle(LOST_MOTION, loaded, lambda figures: figures.lost_motion),
             *(_stiffness(loaded, low, high) for low, high in _ranges(loaded, common.reach)),
@@ -122,6 +122,11 @@ def quantities(reports: Sequence[LostMotionReport], common: Basis | None) -> lis
         _transmission(reports, 'transmission accuracy', 'forward'),
     ]
     return [q for q in listed if sum(value is not None for value in q.values) > 1]
+
+
+def backlash(reports: Sequence[LostMotionReport], common: Basis) -> Quantity:
+    """Return the backlash of recordings at a common torque, where it has a value."""
+    return _angle('backlash', leaving(reports, common), lambda figures: figures.play)
 
 
 def doubts(reports: Sequence[LostMotionReport], common: Basis) -> list[str]:

@@ -8,12 +8,12 @@ from os.path import commonprefix
 
 import numpy as np
 
-from gear_kinematics.lost_motion.common import LOST_MOTION, Basis, Quantity
+from gear_kinematics.lost_motion.common import LOST_MOTION, Basis, Quantity, backlash, leaving
 from gear_kinematics.lost_motion.comparison import Group, estimate
 from gear_kinematics.lost_motion.ramps import Array, Ramps
 from gear_kinematics.lost_motion.report import LostMotionReport
 from gear_kinematics.lost_motion.trend import Trend
-from gear_kinematics.lost_motion.wording import ARC_MINUTES, torque
+from gear_kinematics.lost_motion.wording import ARC_MINUTES, PERCENT, torque
 from gear_kinematics.report.document import Figure, Line, Panel, Pen, printable
 from gear_kinematics.state.uncertainty import Estimate
 
@@ -50,9 +50,14 @@ def overview(
         if common.small != common.loaded:
             panels.append(_loops(reports, common.loaded, f'at least {loaded}', groups))
     found = {trend.quantity.name: trend for trend in trends}
-    panels += [
-        _over_groups(q, groups, found.get(q.name)) for q in _shown(quantities, ramps=bool(common))
-    ]
+    shown = _shown(quantities, ramps=bool(common))
+    further: dict[str, tuple[Line, ...]] = {}
+    if common and (bounds := _bounds(reports, common, groups)):
+        gaps = backlash(reports, common)
+        further[gaps.name] = bounds
+        if gaps not in shown:  # less than two have a value
+            shown.insert(1, gaps)
+    panels += [_over_groups(q, groups, found.get(q.name), further.get(q.name, ())) for q in shown]
     return Figure(tuple(panels), columns=_COLUMNS)
 
 
@@ -105,13 +110,31 @@ def _mean_loop(ramps: Ramps) -> tuple[Array, Array]:
     return np.concatenate([load, load[::-1]]), np.concatenate([fall, rise]) - centre
 
 
-def _over_groups(quantity: Quantity, groups: Sequence[Group], trend: Trend | None) -> Panel:
+def _bounds(
+    reports: Sequence[LostMotionReport], common: Basis, groups: Sequence[Group]
+) -> tuple[Line, ...]:
+    """Draw upper bounds of the backlash, from zero up."""
+    found = leaving(reports, common)
+    models = [(x, f.play_model) for x, number in _places(groups) if (f := found[number])]
+    bounds = [(x, model.limit) for x, model in models if model and model.limit is not None]
+    if not bounds:
+        return ()
+    x, limits = np.array(bounds).T
+    y = np.stack([0.0 * limits, limits, np.full_like(limits, np.nan)], axis=1)
+    return (
+        Line(f'upper bounds ({PERCENT})', Pen.SECOND, np.repeat(x, 3), y.ravel() * ARC_MINUTES),
+    )
+
+
+def _over_groups(
+    quantity: Quantity, groups: Sequence[Group], trend: Trend | None, further: tuple[Line, ...]
+) -> Panel:
     unit = f'{quantity.name} [{quantity.unit}]'
     return Panel(
-        quantity.name,
+        f'{quantity.name} (lines: {further[0].name})' if further else quantity.name,
         '',
         unit,
-        tuple(_points(quantity, groups, trend)),
+        (*_points(quantity, groups, trend), *further),
         marks=tuple((step.since - 0.5, '') for step in trend.steps) if trend else (),
         ticks=tuple((float(k), name) for k, name in enumerate(_short(groups))),
     )
@@ -119,18 +142,28 @@ def _over_groups(quantity: Quantity, groups: Sequence[Group], trend: Trend | Non
 
 def _points(quantity: Quantity, groups: Sequence[Group], trend: Trend | None) -> Iterator[Line]:
     means = [(float(k), estimate(quantity, group)) for k, group in enumerate(groups)]
-    several = any(len(group.members) > 1 for group in groups)
-    if several:
-        own = [
-            (k + _ASIDE * (1.0 + place / len(group.members)), quantity.values[number])
-            for k, group in enumerate(groups)
-            for place, number in enumerate(group.members)
-        ]
+    if several := _several(groups):
+        own = [(x, quantity.values[number]) for x, number in _places(groups)]
         yield replace(_line('recordings', Pen.FAINT, quantity, own), error=None)
-    yield _line('means of groups' if several else 'recordings', Pen.FIRST, quantity, means)
+    if any(value for _, value in means):
+        yield _line('means of groups' if several else 'recordings', Pen.FIRST, quantity, means)
     if trend and trend.changed:
         x = np.array(trend.numbers, dtype=np.float64)
         yield Line('fit', Pen.MODEL, *_parts(x, trend))
+
+
+def _several(groups: Sequence[Group]) -> bool:
+    return any(len(group.members) > 1 for group in groups)
+
+
+def _places(groups: Sequence[Group]) -> list[tuple[float, int]]:
+    """Return the places of all recordings, with their numbers: beside the means, if there are."""
+    aside = _ASIDE if _several(groups) else 0.0
+    return [
+        (k + aside * (1.0 + place / len(group.members)), number)
+        for k, group in enumerate(groups)
+        for place, number in enumerate(group.members)
+    ]
 
 
 def _parts(x: Array, trend: Trend) -> tuple[Array, Array]:

@@ -126,7 +126,7 @@ def _sentence(found: Sequence[OverPositions]) -> str:
     count = max(combined.positions for combined in found)
     parts, vague = [], []
     for c in found:
-        if (c.mean.uncertainty or 0.0) > abs(c.mean.value):
+        if not c.mean.clear:
             vague.append(c.quantity.name)
             continue
         mean = plus_minus(c.mean, c.quantity.scale)

@@ -93,9 +93,10 @@ def interactive(figure: Figure, mechanism: MovingMechanism | None) -> dict[str, 
 
 
 def _legend(figure: Figure) -> dict[str, Any]:
-    """Return the place of the legend, above all curves."""
+    """Return the place of the legend, above all curves and beside the buttons on the right."""
     several = any(map(is_named, figure.panels))
-    place = {'yref': 'container', 'y': 1.0, 'yanchor': 'top', 'x': 1.0, 'xanchor': 'right'}
+    place = {'xref': 'container', 'x': 0.0, 'xanchor': 'left'}
+    place |= {'yref': 'container', 'y': 1.0, 'yanchor': 'top'}
     return {'showlegend': several, 'legend': {'orientation': 'h', **place}}
 
 
@@ -129,6 +130,7 @@ def _axes(
         values, texts = zip(*panel.ticks, strict=True)
         x |= {'tickvals': values, 'ticktext': [escape(text) for text in texts]}
         x |= {'tickangle': -tick_angle(panel), 'range': tick_range(panel), 'zeroline': False}
+        x['automargin'] = 'height'
     if figure.stacked:
         heights = figure.heights
         whole = sum(heights) - _STACK_GAP  # there is no gap below the last one

@@ -552,6 +552,31 @@ def test_several_recordings_are_drawn_together(worn, tmp_path, capsys):
     assert capsys.readouterr().out
 
 
+@pytest.mark.parametrize('play', [0.0, 0.01])
+def test_upper_bounds_of_the_backlash_are_drawn_from_zero_up(tmp_path, capsys, play):
+    """Of two gears, of which the first has none."""
+    torque, page = ramps(*[(4.0, 150)] * 4), tmp_path / 'x.html'
+    random = np.random.default_rng(5)
+    paths = []
+    for name, own in (('before', 0.0), ('after', play)):
+        angle = creep(Gear(play=own, stiffness=300.0, friction=0.5), torque)
+        noisy = torque + random.normal(0.0, 0.01, len(torque))
+        paths.append(write_csv(tmp_path / f'{name}.csv', angle=angle, torque=noisy))
+    assert main(['lost-motion', *map(str, paths), '--html', str(page)]) == 0
+    told = capsys.readouterr().out
+    pattern = r'^(.*)\.csv: backlash \(play model\): value: below (.*) arcmin'
+    bounds = {name: float(limit) for name, limit in re.findall(pattern, told, re.MULTILINE)}
+    assert bounds.keys() == ({'before'} if play else {'before', 'after'})
+    tree = html.document_fromstring(page.read_bytes(), parser=html.HTMLParser(encoding='utf-8'))
+    drawn, *_ = (json.loads(s.text) for s in tree.xpath('//script[@type="application/json"]'))
+    (lines,) = (trace for trace in drawn['data'] if trace['name'] == 'upper bounds (95 %)')
+    assert lines['x'][::3] == list(range(len(bounds)))
+    assert lines['y'][::3] == [0.0] * len(bounds)
+    assert lines['y'][1::3] == pytest.approx(list(bounds.values()), rel=0.01)
+    values = [t for t in drawn['data'] if t['yaxis'] == lines['yaxis'] and 'error_y' in t]
+    assert [trace['x'] for trace in values] == ([[1.0]] if play else [])
+
+
 @pytest.mark.slow
 def test_processes_measure_what_one_does(worn, tmp_path, capsys):
     bad = tmp_path / 'bad.csv'
