@@ -7,13 +7,14 @@ angle goes on while the load stays, it creeps.
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from gear_kinematics.lost_motion.midline import Midlines
 from gear_kinematics.lost_motion.pause import STANDSTILL
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution, unclear
+from gear_kinematics.state.uncertainty import Component, Estimate, expected_effect, resolution
 
 _LEVELS = 100
 """Torques of a half loop at which loads are computed."""
@@ -30,9 +31,11 @@ _TINY = 1e-300
 """rad², so that equal predictions can be divided by their standard error."""
 _STANDARD_ERRORS = 2.0
 """Creep has to predict better than none by this many standard errors."""
-_SHARED = 2.0
+_SHARED = 1.2
 """Factor by which errors of predictions exceed those of independent ones, as all standstills have
 the same shape, and steps of the encoder at the same angles."""
+_UNKNOWN = 1e3
+"""Standard uncertainty of a compliance that nothing shows, relative to a usual one."""
 _NEGLIGIBLE = 1e-3
 """Least weight of a time constant, relative to the greatest one."""
 _TOLD = math.exp(-2.0)
@@ -140,11 +143,9 @@ def _twist(lines: Midlines) -> Callable[[Array], Array]:
 class Creeping:
     """A gear that creeps, or may do so, through a recording."""
 
-    clear: bool
-    """Whether it certainly creeps."""
     loads: Loads
-    compliance: Estimate
-    """rad/(N·m), with the likeliest time constant."""
+    compliance: Estimate | None
+    """rad/(N·m), with the likeliest time constant; None if the gear may not creep."""
     compliances: Array
     """(constants,), rad/(N·m), as expected with each time constant."""
     standards: Array
@@ -156,8 +157,8 @@ class Creeping:
 
     @property
     def creep(self) -> Creep | None:
-        """What can be told of it; None if it is not clear."""
-        if not self.clear:
+        """What can be told of it; None if the gear may not creep."""
+        if not self.compliance:
             return None
         best = int(np.argmax(self.weights)) % len(_CONSTANTS)
         told = np.flatnonzero(self.weights > _TOLD * np.max(self.weights))
@@ -207,18 +208,59 @@ def creeping_of(
             tell creep better than the standstills after reversals.
 
     Returns:
-        None if there are too few standstills to tell.
+        None if the gear does not yield to the torque.
     """
     lines = Midlines.of(ramps[-1].whole)
     usual = _USUAL * float(np.mean(np.ptp(lines.angle, axis=1) / np.ptp(lines.load, axis=1)))
+    if not usual > 0.0:
+        return None
     loads = Loads(ramps[0].history, friction, _twist(lines))
     halves = (half for group in ramps for half in group.halves())
     reversals = (part for half in halves if (part := _after_reversal(half, friction)))
     parts = pauses if len(pauses) >= _LEAST_STILLS else reversals
     lates = [loads.late(factors) for factors in np.eye(2 * len(_CONSTANTS))]
     stills = [_still(*part, lates) for part in parts]
-    if len(stills) < _LEAST_STILLS or not usual > 0.0:
-        return None
+    if len(stills) >= _LEAST_STILLS:
+        least = max(angle_step, _ROUNDING) / ramps[-1].amplitude
+        seen = _seen(stills, angle_step, usual, least)
+    else:
+        seen = _unseen(usual)
+    expected = expected_effect(seen.compliances, seen.standards, usual)
+    return Creeping(loads, seen.compliance, *expected, usual, seen.weights)
+
+
+class _Seen(NamedTuple):
+    """What standstills show, rad/(N·m) with each time constant, (constants,)."""
+
+    compliance: Estimate | None
+    """With the likeliest one; None if the gear may not creep."""
+    compliances: Array
+    standards: Array
+    """Standard uncertainties."""
+    weights: Array
+    """How likely each time constant is; their sum is 1."""
+
+
+def _unseen(usual: float) -> _Seen:
+    """Return what no standstill shows: nothing, and nothing of any time constant."""
+    all_alike = np.ones(2 * len(_CONSTANTS))
+    return _Seen(None, 0.0 * all_alike, _UNKNOWN * usual * all_alike, all_alike / all_alike.size)
+
+
+def _seen(
+    stills: Sequence[tuple[Array, Array, float, Array]],
+    angle_step: float,
+    usual: float,
+    least: float,
+) -> _Seen:
+    """Estimate creep from standstills.
+
+    Args:
+        stills: as `_still` returns them.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+        usual: rad/(N·m), a compliance that is usual for gears that creep.
+        least: rad/(N·m), that can be told.
+    """
     both, square, angle, change = (np.array([still[k] for still in stills]) for k in range(4))
     compliances = np.maximum(both.sum(0) / square.sum(0), 0.0)
     # Compliances by all standstills but one, and how these predict that one: (stills, constants).
@@ -240,14 +282,10 @@ def creeping_of(
     best = int(np.argmax(weights))
     gain, error = _mean(angle - missed[:, best])
     compliance = Estimate(float(compliances[best]), float(standards[best]), count - 1, count)
-    least = max(angle_step, _ROUNDING) / ramps[-1].amplitude
     clear = gain >= max(0.0, _STANDARD_ERRORS * error) and compliance.value > max(
         compliance.uncertainty or 0.0, least
     )
-    if not clear:
-        compliances, standards = unclear(compliances, standards, usual)
-    weights /= np.sum(weights)
-    return Creeping(clear, loads, compliance, compliances, standards, usual, weights)
+    return _Seen(compliance if clear else None, compliances, standards, weights / np.sum(weights))
 
 
 def _mean(values: Array) -> tuple[float, float]:

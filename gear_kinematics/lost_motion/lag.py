@@ -9,7 +9,7 @@ from gear_kinematics.lost_motion.pause import SHARP, pause_between, reversals, w
 from gear_kinematics.lost_motion.ramps import Array, HalfLoop, Ramps
 from gear_kinematics.lost_motion.rate import rate_of
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Component, Estimate, unclear
+from gear_kinematics.state.uncertainty import Component, Estimate, expected_effect
 
 _ROWS = 10
 """Least number of samples on either side of a corner."""
@@ -78,7 +78,7 @@ def of_torque(lag: Estimate) -> bool:
 def not_clear(lag: Estimate) -> float:
     """Return the standard uncertainty of a lag that is not taken out, s."""
     values = np.array([lag.value]), np.array([lag.standard or 0.0])
-    (expected,), (standard,) = unclear(*values, _USUAL)
+    (expected,), (standard,) = expected_effect(*values, _USUAL)
     return math.hypot(expected, standard)
 
 

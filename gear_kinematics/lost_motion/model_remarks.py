@@ -13,6 +13,8 @@ from gear_kinematics.report.document import number
 
 _MOSTLY = 0.7
 """Share of a standard uncertainty from which on one part of it exceeds all others together."""
+_WELL_KNOWN = 0.01
+"""Relative ± of a stiffness up to which nobody needs to know it better."""
 _LARGER = 3.0
 """Amplitude of ramps that load the spring well, as a multiple of the friction."""
 _TOO_LARGE = 2.5
@@ -37,6 +39,7 @@ def model_remarks(found: HysteresisReport) -> Iterator[str]:
     if beyond := found.leaving.play_model:
         yield from _backlash(beyond, found.smallest.amplitude)
     yield from _unseen_lag(found, model)
+    yield from _unknown_creep(found)
     if model.growth:
         yield f'The friction grows by {plus_minus(model.growth, 100.0)} % of the load.'
     if model.missing:
@@ -109,6 +112,19 @@ def _unseen_lag(found: HysteresisReport, model: PlayModel) -> Iterator[str]:
         'and twice the twist by this torque to the hysteresis. Reversals with a corner, and finer '
         'steps of the encoder, show a lag.'
     )
+
+
+def _unknown_creep(found: HysteresisReport) -> Iterator[str]:
+    """Say where the stiffness of the spring would be known better without creep."""
+    if not (spring := found.spring) or spring.stiffness.standard is None:
+        return
+    uncertain = (spring.stiffness.uncertainty or 0.0) > _WELL_KNOWN * spring.stiffness.value
+    if uncertain and spring.by_creep > _MOSTLY * spring.stiffness.standard:
+        yield (
+            'Most of the ± of the stiffness of the spring comes from creep, which the recording '
+            f'{"shows, but not how fast it is" if found.creep else "does not exclude"}. Pauses of '
+            'some seconds at the peaks of the torque show it.'
+        )
 
 
 def _backlash(model: PlayModel, least: float) -> Iterator[str]:

@@ -22,7 +22,7 @@ from gear_kinematics.lost_motion.play import PlayModel, play_model
 from gear_kinematics.lost_motion.ramps import Array, Ramps, find_ramps
 from gear_kinematics.lost_motion.rate import rate_of
 from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.state.uncertainty import Estimate, by_steps, slope_resolution
+from gear_kinematics.state.uncertainty import Component, Estimate, by_steps, slope_resolution
 
 _CLEARLY = 1.5
 """Ratio to its ± from which on a lag is taken out, as gears do not stand perfectly still."""
@@ -42,6 +42,8 @@ class Spring:
     """N·m."""
     stiffness: Estimate
     """N·m/rad."""
+    by_creep: float
+    """N·m/rad, part of its standard uncertainty that comes from creep."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -173,17 +175,14 @@ def _spring(ramps: Ramps, angle_step: float, creeping: Creeping | None) -> Sprin
     if np.min(loops) <= 0.0:
         return None
     steps = slope_resolution(angle_step, high - low, float(np.mean(loops)), of_means=True)
-    parts = [by_steps(steps, len(loops))]
+    creep = Component(0.0)
     if creeping:
-        parts.append(
-            creeping.part(
-                ramps,
-                lambda ramps: float(np.mean(_compliances(Midlines.of(ramps.whole), low, high))),
-            )
+        creep = creeping.part(
+            ramps, lambda ramps: float(np.mean(_compliances(Midlines.of(ramps.whole), low, high)))
         )
-    return Spring(
-        low, high, mean_of_loops(loops, completed=ramps.completed).joined(*parts).inverse()
-    )
+    compliance = mean_of_loops(loops, completed=ramps.completed)
+    stiffness = compliance.joined(by_steps(steps, len(loops)), creep).inverse()
+    return Spring(low, high, stiffness, stiffness.value**2 * creep.standard)
 
 
 def mean_of_loops(loops: Array, *, completed: bool) -> Estimate:

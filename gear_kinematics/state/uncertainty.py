@@ -231,29 +231,32 @@ def common_part(errors: NDArray[np.float64]) -> float:
     return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
 
 
-def unclear(
+def expected_effect(
     values: NDArray[np.float64], standards: NDArray[np.float64], usual: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return what is expected of effects that are not clear, as most often there are none.
+    """Return what is expected of an effect that may not be there, by each of its explanations.
 
-    Before the measurement, an effect is as likely as none, and effects have the standard deviation
-    `usual`. Against an effect is then the reciprocal of the Bayes factor (H. Jeffreys, Theory of
-    Probability, 3rd ed. (1961), ch. V).
+    Before the measurement, an effect is as likely as none, all explanations are equally likely,
+    and effects have the standard deviation `usual`. The odds of an effect are then the Bayes
+    factor (H. Jeffreys, Theory of Probability, 3rd ed. (1961), ch. V), averaged over the
+    explanations.
 
     Args:
-        values: (n,), as measured.
-        standards: (n,), their standard uncertainties.
+        values: (..., explanations), as measured.
+        standards: of the same shape, their standard uncertainties.
         usual: of the same unit.
 
     Returns:
-        The means, and their standard uncertainties.
+        The means, and their standard uncertainties, of the same shape.
     """
     # Equal readings have no scatter, but are not exact.
     known = np.maximum(standards, _EXACT * usual)
     share = usual**2 / (usual**2 + known**2)
+    factors = 0.5 * (np.log1p(-share) + share * (values / known) ** 2)  # logarithms
+    most = np.max(factors, axis=-1, keepdims=True)
+    odds = np.mean(np.exp(factors - most), axis=-1, keepdims=True)  # times exp(most)
+    effect = odds / (odds + np.exp(-most))
     means, variances = share * values, share * known**2
-    against = np.hypot(usual, known) / known * np.exp(-0.5 * share * (values / known) ** 2)
-    effect = 1.0 / (1.0 + against)
     return effect * means, np.sqrt(effect * (variances + (1.0 - effect) * means**2))
 
 

@@ -380,6 +380,17 @@ def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(('pause', 'told'), [(0.0, True), (0.5, False)])
+def test_remarks_say_that_pauses_would_show_creep(tmp_path, capsys, pause, told):
+    gear = replace(SCENARIOS[0], friction=0.5, noise=0.2, loops=5 * ((40.0, 20.0),), pause=pause)
+    time, torque, angle = simulate(gear, np.random.default_rng(3))
+    path = write_csv(tmp_path / 'large.csv', time=time, angle=angle, torque=torque)
+    assert main(['lost-motion', str(path)]) == 0
+    remark = 'of the spring comes from creep, which the recording does not exclude. Pauses of'
+    assert (remark in capsys.readouterr().out) == told
+
+
+@pytest.mark.slow
 def test_a_torque_behind_a_filter_is_late(tmp_path, capsys):
     gear = replace(SCENARIOS[0], lag=-0.02)
     recorded = simulate(gear, np.random.default_rng(3))

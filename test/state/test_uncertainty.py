@@ -10,12 +10,12 @@ from gear_kinematics.state.uncertainty import (
     Component,
     Estimate,
     end_resolution,
+    expected_effect,
     hidden_resolution,
     resolution,
     slope_resolution,
     student_t,
     student_tail,
-    unclear,
 )
 
 # GUM, table G.2, fraction p = 95 %
@@ -228,7 +228,8 @@ def test_effects_that_are_not_clear_have_the_moments_of_simulated_ones(ratio):
     standards = np.full(400_000, 2.0 * ratio)
     values = rng.normal(effects, standards)
     order = np.argsort(abs(values))
-    means, standards = unclear(values, standards, 2.0)
+    found = expected_effect(values[:, None], standards[:, None], 2.0)
+    means, standards = (column[:, 0] for column in found)
     for group in np.array_split(order, 8):
         off = means[group] - effects[group]
         for moment, expected in ((off, 0.0), (off**2, np.mean(standards[group] ** 2))):
@@ -237,6 +238,24 @@ def test_effects_that_are_not_clear_have_the_moments_of_simulated_ones(ratio):
 
 
 def test_effects_known_without_scatter():
-    found = unclear(np.array([0.0, 0.3]), np.zeros(2), 2.0)
-    assert found[0] == pytest.approx([0.0, 0.3], abs=1e-5)
-    assert found[1] == pytest.approx([0.0, 0.0], abs=1e-5)
+    found = expected_effect(np.array([[0.0], [0.3]]), np.zeros((2, 1)), 2.0)
+    assert found[0][:, 0] == pytest.approx([0.0, 0.3], abs=1e-5)
+    assert found[1][:, 0] == pytest.approx([0.0, 0.0], abs=1e-5)
+
+
+@pytest.mark.parametrize('size', [0.3, 1.0, 4.0])
+def test_an_effect_with_several_explanations_is_as_likely_as_in_simulated_readings(size):
+    """Half of the readings have an effect, in proportion to one of three curves."""
+    rng = np.random.default_rng(4)
+    curves = np.array([[1.0, 1.0, 0.0, 0.0], [0.0, 1.0, 2.0, 0.0], [0.1, 0.0, 0.1, 0.3]])
+    count = 300_000
+    which, there = rng.integers(3, size=count), rng.random(count) < 0.5
+    effects = rng.normal(0.0, size, count) * there
+    readings = effects[:, None] * curves[which] + rng.standard_normal((count, 4))
+    squares = np.sum(curves**2, axis=1)
+    values, standards = readings @ curves.T / squares, np.tile(squares**-0.5, (count, 1))
+    means, _ = expected_effect(values, standards, size)
+    # The share of effects among readings of which as much is left of one explanation.
+    left = means[:, 1] / (size**2 / (size**2 + 1.0 / squares[1]) * values[:, 1])
+    for group in np.array_split(np.argsort(left), 10):
+        assert np.mean(left[group]) == pytest.approx(np.mean(there[group]), abs=0.015)
