@@ -19,7 +19,11 @@ from gear_kinematics.calibration.recording import Recording, thinned
 from gear_kinematics.calibration.result import Fit, is_certain
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.ratio import RatioEstimate, estimate_ratio, with_candidates
+from gear_kinematics.lost_motion.dynamic.ratio import (
+    RatioEstimate,
+    estimate_ratio,
+    with_candidates,
+)
 from gear_kinematics.state.uncertainty import Estimate
 
 _SHIFTS = 4

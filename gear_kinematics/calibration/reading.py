@@ -26,7 +26,7 @@ from gear_kinematics.calibration.recording import (
     spread,
 )
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, split_turns
-from gear_kinematics.lost_motion.csv_files import ENCODERS, Columns, read_columns
+from gear_kinematics.lost_motion.recorded.csv_files import ENCODERS, Columns, read_columns
 from gear_kinematics.state.output_encoder import EncoderSettings
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.batches import JointStates, decode_joint_states

@@ -12,7 +12,7 @@ from gear_kinematics.calibration.normal import Array
 from gear_kinematics.calibration.spectrum import Spectrum
 from gear_kinematics.calibration.terms import Term
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.lost_motion.ratio import RatioEstimate
+from gear_kinematics.lost_motion.dynamic.ratio import RatioEstimate
 from gear_kinematics.state.uncertainty import Estimate
 
 _CERTAIN = 2.0

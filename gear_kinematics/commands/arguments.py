@@ -11,8 +11,8 @@ from gear_kinematics.commands.targets import add_force
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.csv_files import Columns
-from gear_kinematics.lost_motion.encoder_step import UNITS
+from gear_kinematics.lost_motion.recorded.csv_files import Columns
+from gear_kinematics.lost_motion.recorded.encoder_step import UNITS
 from gear_kinematics.state import parameters
 from gear_kinematics.wire.nearest import among
 

@@ -15,7 +15,7 @@ from gear_kinematics.calibration.to_file import to_calibration
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress, write
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
-from gear_kinematics.lost_motion.csv_files import is_csv
+from gear_kinematics.lost_motion.recorded.csv_files import is_csv
 from gear_kinematics.state.calibration_file import Calibration
 
 HELP = 'calibrate the real output angle, from recordings with an encoder at rotor and output'

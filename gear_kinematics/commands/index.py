@@ -14,7 +14,7 @@ from gear_kinematics.kinematics import vernier
 from gear_kinematics.kinematics.preload import Preload, ring_phase
 from gear_kinematics.kinematics.vernier import Choice, PinSetting
 from gear_kinematics.lost_motion.document import plain
-from gear_kinematics.lost_motion.preload_file import MeasuredPreload, read_advice
+from gear_kinematics.lost_motion.preload.file import MeasuredPreload, read_advice
 from gear_kinematics.lost_motion.wording import PERCENT, plus_minus, torque
 from gear_kinematics.report.document import (
     Cell,

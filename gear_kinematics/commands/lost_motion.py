@@ -10,18 +10,18 @@ from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.lost_motion import LostMotionReport
-from gear_kinematics.lost_motion.common import at_common_torque
-from gear_kinematics.lost_motion.compared import Compared, compared
-from gear_kinematics.lost_motion.comparison import at_positions, grouped
 from gear_kinematics.lost_motion.document import document
-from gear_kinematics.lost_motion.encoder_step import UNITS
-from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES
-from gear_kinematics.lost_motion.over_preload import over_preload
-from gear_kinematics.lost_motion.over_time import over_time
-from gear_kinematics.lost_motion.positions import DEFAULT_PATTERN, over_positions
-from gear_kinematics.lost_motion.preload_settings import settings_of
+from gear_kinematics.lost_motion.preload.over_preload import over_preload
+from gear_kinematics.lost_motion.preload.settings import settings_of
+from gear_kinematics.lost_motion.recorded.encoder_step import UNITS
+from gear_kinematics.lost_motion.recorded.times import common_times
+from gear_kinematics.lost_motion.several.common import at_common_torque
+from gear_kinematics.lost_motion.several.compared import Compared, compared
+from gear_kinematics.lost_motion.several.comparison import at_positions, grouped
+from gear_kinematics.lost_motion.several.over_time import over_time
+from gear_kinematics.lost_motion.several.positions import DEFAULT_PATTERN, over_positions
+from gear_kinematics.lost_motion.static.hysteresis import STIFFNESS_SHARES
 from gear_kinematics.lost_motion.task import WORK, Outcome, Task, measure_recording
-from gear_kinematics.lost_motion.times import common_times
 
 HELP = 'lost motion, stiffness, play and transmission error from recordings'
 

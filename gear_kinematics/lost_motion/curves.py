@@ -5,9 +5,9 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
-from gear_kinematics.lost_motion.ramps import HalfLoop, Ramps
 from gear_kinematics.lost_motion.report import LostMotionReport
+from gear_kinematics.lost_motion.static.hysteresis import LOST_MOTION_SHARE, Figures
+from gear_kinematics.lost_motion.static.ramps import HalfLoop, Ramps
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, arc_minutes, torque
 from gear_kinematics.report.document import Array, Line, Panel, Pen
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from gear_kinematics.lost_motion.compared import Compared
 from gear_kinematics.lost_motion.curves import panels
 from gear_kinematics.lost_motion.remarks import remarks
 from gear_kinematics.lost_motion.report import LostMotionReport
+from gear_kinematics.lost_motion.several.compared import Compared
 from gear_kinematics.lost_motion.tables import head, key, summary, tables
 from gear_kinematics.report.document import (
     Document,

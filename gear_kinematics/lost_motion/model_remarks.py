@@ -3,11 +3,11 @@
 import math
 from collections.abc import Iterator
 
-from gear_kinematics.lost_motion.comparison import SIGNIFICANCE, holm
-from gear_kinematics.lost_motion.lag import OF_GEAR
-from gear_kinematics.lost_motion.play import Cause, PlayModel
 from gear_kinematics.lost_motion.report import HysteresisReport
-from gear_kinematics.lost_motion.soft_middle import SOFTEST
+from gear_kinematics.lost_motion.several.comparison import SIGNIFICANCE, holm
+from gear_kinematics.lost_motion.static.lag import OF_GEAR
+from gear_kinematics.lost_motion.static.play import Cause, PlayModel
+from gear_kinematics.lost_motion.static.soft_middle import SOFTEST
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, PERCENT, plus_minus, torque
 from gear_kinematics.report.document import number
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE
+from gear_kinematics.lost_motion.dynamic.ratio import MOST_PAIRS, MOST_TEETH, RatioEstimate
 from gear_kinematics.lost_motion.model_remarks import model_remarks
-from gear_kinematics.lost_motion.ratio import MOST_PAIRS, MOST_TEETH, RatioEstimate
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
+from gear_kinematics.lost_motion.static.hysteresis import LOST_MOTION_SHARE
 from gear_kinematics.lost_motion.tables import too_uncertain
 from gear_kinematics.lost_motion.wording import ARC_MINUTES, PERCENT, torque
 from gear_kinematics.report.document import number, printable

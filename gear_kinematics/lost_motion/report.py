@@ -4,15 +4,16 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from gear_kinematics.kinematics import Gear, GearRatio
-from gear_kinematics.lost_motion import hysteresis, transmission
-from gear_kinematics.lost_motion.creep import Creep
-from gear_kinematics.lost_motion.hysteresis import STIFFNESS_SHARES, Figures, Settings
-from gear_kinematics.lost_motion.models import Effects, Spring, models_of, settled
-from gear_kinematics.lost_motion.ramps import RampError, Ramps
-from gear_kinematics.lost_motion.rate import Rate, rates
-from gear_kinematics.lost_motion.ratio import RatioEstimate, check_ratio
-from gear_kinematics.lost_motion.recording import Loading, Recording
-from gear_kinematics.lost_motion.transmission import TransmissionFigures
+from gear_kinematics.lost_motion.dynamic import transmission
+from gear_kinematics.lost_motion.dynamic.ratio import RatioEstimate, check_ratio
+from gear_kinematics.lost_motion.dynamic.transmission import TransmissionFigures
+from gear_kinematics.lost_motion.recorded.recording import Loading, Recording
+from gear_kinematics.lost_motion.static import hysteresis
+from gear_kinematics.lost_motion.static.creep import Creep
+from gear_kinematics.lost_motion.static.hysteresis import STIFFNESS_SHARES, Figures, Settings
+from gear_kinematics.lost_motion.static.models import Effects, Spring, models_of, settled
+from gear_kinematics.lost_motion.static.ramps import RampError, Ramps
+from gear_kinematics.lost_motion.static.rate import Rate, rates
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -4,10 +4,10 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from gear_kinematics.lost_motion.hysteresis import LOST_MOTION_SHARE, Figures
-from gear_kinematics.lost_motion.play import Candidate
+from gear_kinematics.lost_motion.dynamic.transmission import TransmissionFigures
 from gear_kinematics.lost_motion.report import HysteresisReport, LostMotionReport
-from gear_kinematics.lost_motion.transmission import TransmissionFigures
+from gear_kinematics.lost_motion.static.hysteresis import LOST_MOTION_SHARE, Figures
+from gear_kinematics.lost_motion.static.play import Candidate
 from gear_kinematics.lost_motion.wording import (
     ARC_MINUTES,
     PERCENT,

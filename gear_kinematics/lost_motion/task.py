@@ -8,14 +8,14 @@ from typing import Any
 from gear_kinematics.bag import ReportProgress, fleet
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.kinematics import Gear, gear_from_mapping
-from gear_kinematics.lost_motion.bags import read_bag
-from gear_kinematics.lost_motion.csv_files import Columns, is_csv, read_csv
-from gear_kinematics.lost_motion.motion import MotionError
-from gear_kinematics.lost_motion.ramps import RampError
-from gear_kinematics.lost_motion.ratio import fit_ratio
-from gear_kinematics.lost_motion.recording import Recording
+from gear_kinematics.lost_motion.dynamic.ratio import fit_ratio
+from gear_kinematics.lost_motion.recorded.bags import read_bag
+from gear_kinematics.lost_motion.recorded.csv_files import Columns, is_csv, read_csv
+from gear_kinematics.lost_motion.recorded.motion import MotionError
+from gear_kinematics.lost_motion.recorded.recording import Recording
+from gear_kinematics.lost_motion.recorded.times import Times, times_of
 from gear_kinematics.lost_motion.report import LostMotionReport, measure
-from gear_kinematics.lost_motion.times import Times, times_of
+from gear_kinematics.lost_motion.static.ramps import RampError
 
 
 @dataclass(frozen=True, slots=True)

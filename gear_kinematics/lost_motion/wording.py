@@ -2,8 +2,8 @@
 
 import math
 
-from gear_kinematics.lost_motion.play import PlayModel
-from gear_kinematics.lost_motion.rate import Rate
+from gear_kinematics.lost_motion.static.play import PlayModel
+from gear_kinematics.lost_motion.static.rate import Rate
 from gear_kinematics.report.document import number
 from gear_kinematics.state.uncertainty import COVERAGE, Estimate
 

@@ -8,10 +8,15 @@ import pytest
 from advising import LOADS, Scatter, coverage, readings
 from braced_gears import BracedGear
 
-from gear_kinematics.lost_motion.advice import advise, without
-from gear_kinematics.lost_motion.over_preload import told
-from gear_kinematics.lost_motion.preload_settings import Scale
-from gear_kinematics.lost_motion.preloaded import PlayLine, Reading, coverage_factor, regression
+from gear_kinematics.lost_motion.preload.advice import advise, without
+from gear_kinematics.lost_motion.preload.model import (
+    PlayLine,
+    Reading,
+    coverage_factor,
+    regression,
+)
+from gear_kinematics.lost_motion.preload.over_preload import told
+from gear_kinematics.lost_motion.preload.settings import Scale
 from gear_kinematics.state.uncertainty import Estimate
 
 GEAR = BracedGear()

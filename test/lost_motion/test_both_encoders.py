@@ -20,10 +20,10 @@ from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import split_turns
 from gear_kinematics.lost_motion import measure, read_bag
-from gear_kinematics.lost_motion.encoder_step import step_of
-from gear_kinematics.lost_motion.motion import Motion, MotionError
-from gear_kinematics.lost_motion.ratio import check_ratio
-from gear_kinematics.lost_motion.transmission import figures, separate_delay
+from gear_kinematics.lost_motion.dynamic.ratio import check_ratio
+from gear_kinematics.lost_motion.dynamic.transmission import figures, separate_delay
+from gear_kinematics.lost_motion.recorded.encoder_step import step_of
+from gear_kinematics.lost_motion.recorded.motion import Motion, MotionError
 from gear_kinematics.state import parameters
 from gear_kinematics.state.transmission_error import TransmissionError
 

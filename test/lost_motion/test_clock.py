@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gear_kinematics.lost_motion.clock import ClockError, times_of_rows, unit_since_1970
+from gear_kinematics.lost_motion.recorded.clock import ClockError, times_of_rows, unit_since_1970
 
 
 @pytest.mark.parametrize(

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from gear_kinematics.lost_motion.common import Quantity
-from gear_kinematics.lost_motion.comparison import Group, changes, grouped, holm, spread
+from gear_kinematics.lost_motion.several.common import Quantity
+from gear_kinematics.lost_motion.several.comparison import Group, changes, grouped, holm, spread
 from gear_kinematics.state.uncertainty import Estimate
 
 NAMES = ['before_1.csv', 'other.csv', 'before_2.csv', 'after_1.csv']

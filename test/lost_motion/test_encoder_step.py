@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from simulated_encoders import TURN, sine_strokes, stepped
 
-from gear_kinematics.lost_motion.encoder_step import Source, Step, find_step, step_of
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step, find_step, step_of
 
 STEP = TURN / 2**14  # 1.318 arcmin
 TIMES = np.arange(8000) / 500.0

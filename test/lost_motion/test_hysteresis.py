@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, quantised, ramps
 
-from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.lost_motion.hysteresis import Figures, Settings, check, figures
-from gear_kinematics.lost_motion.models import models_of, settled
-from gear_kinematics.lost_motion.ramps import RampError, find_ramps
-from gear_kinematics.lost_motion.recording import Loading
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
+from gear_kinematics.lost_motion.recorded.recording import Loading
+from gear_kinematics.lost_motion.static.hysteresis import Figures, Settings, check, figures
+from gear_kinematics.lost_motion.static.models import models_of, settled
+from gear_kinematics.lost_motion.static.ramps import RampError, find_ramps
 from gear_kinematics.state.uncertainty import student_t
 
 RATED = 40.0

@@ -10,17 +10,17 @@ from gear_recordings import ramps
 from judging_ramps import judge
 from simulated_ramps import SCENARIOS, STEP, Ramps, Scenario, hysteresis, simulate
 
-from gear_kinematics.lost_motion import models
-from gear_kinematics.lost_motion.breakaway import breakaway_friction
-from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.lost_motion.friction import friction_of, without_build_up
-from gear_kinematics.lost_motion.midline import Midlines
-from gear_kinematics.lost_motion.pause import pauses_of
-from gear_kinematics.lost_motion.play import Cause
-from gear_kinematics.lost_motion.ramps import find_ramps
-from gear_kinematics.lost_motion.recording import Loading
-from gear_kinematics.lost_motion.residuals import residual_tests
-from gear_kinematics.lost_motion.springs import SHAPES, Fitting, Gap, Model, Springs
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
+from gear_kinematics.lost_motion.recorded.recording import Loading
+from gear_kinematics.lost_motion.static import models
+from gear_kinematics.lost_motion.static.breakaway import breakaway_friction
+from gear_kinematics.lost_motion.static.friction import friction_of, without_build_up
+from gear_kinematics.lost_motion.static.midline import Midlines
+from gear_kinematics.lost_motion.static.pause import pauses_of
+from gear_kinematics.lost_motion.static.play import Cause
+from gear_kinematics.lost_motion.static.ramps import find_ramps
+from gear_kinematics.lost_motion.static.residuals import residual_tests
+from gear_kinematics.lost_motion.static.springs import SHAPES, Fitting, Gap, Model, Springs
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 

@@ -7,9 +7,9 @@ import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
 
 from gear_kinematics.lost_motion import Columns, measure, read_csv
-from gear_kinematics.lost_motion.common import at_common_torque
-from gear_kinematics.lost_motion.comparison import Group, at_positions
-from gear_kinematics.lost_motion.positions import DEFAULT_PATTERN, over_positions
+from gear_kinematics.lost_motion.several.common import at_common_torque
+from gear_kinematics.lost_motion.several.comparison import Group, at_positions
+from gear_kinematics.lost_motion.several.positions import DEFAULT_PATTERN, over_positions
 
 PLAYS = {'1': 0.010, '2': 0.014, '3': 0.011}
 STIFFNESS, FRICTION = 300.0, 0.8

@@ -8,7 +8,7 @@ from gear_recordings import Gear, creep, ramps
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gear_kinematics.lost_motion.ramps import RampError, _isotonic, find_ramps
+from gear_kinematics.lost_motion.static.ramps import RampError, _isotonic, find_ramps
 
 GEAR = Gear(play=0.01, stiffness=200.0, friction=1.0)
 

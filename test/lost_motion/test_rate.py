@@ -5,10 +5,10 @@ import pytest
 from gear_recordings import Gear, creep, ramps, write_csv
 
 from gear_kinematics.lost_motion import Columns, measure, read_csv
-from gear_kinematics.lost_motion.common import at_common_torque, basis, doubts
-from gear_kinematics.lost_motion.compared import compared
-from gear_kinematics.lost_motion.ramps import find_ramps
-from gear_kinematics.lost_motion.rate import rates
+from gear_kinematics.lost_motion.several.common import at_common_torque, basis, doubts
+from gear_kinematics.lost_motion.several.compared import compared
+from gear_kinematics.lost_motion.static.ramps import find_ramps
+from gear_kinematics.lost_motion.static.rate import rates
 
 GEAR = Gear(play=0.01, stiffness=300.0, friction=0.8)
 TORQUE = ramps(*[(5.0, 100)] * 3, *[(40.0, 200)] * 2)

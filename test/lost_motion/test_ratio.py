@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.lost_motion.motion import Motion, MotionError
-from gear_kinematics.lost_motion.ratio import estimate_ratio, fit_ratio
+from gear_kinematics.lost_motion.dynamic.ratio import estimate_ratio, fit_ratio
+from gear_kinematics.lost_motion.recorded.motion import Motion, MotionError
 from gear_kinematics.state.transmission_error import TransmissionError
 
 TURN = 2.0 * math.pi

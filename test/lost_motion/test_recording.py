@@ -8,7 +8,7 @@ from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, w
 
 from gear_kinematics.bag import BagError
 from gear_kinematics.lost_motion import Columns, CsvError, measure, read_bag, read_csv
-from gear_kinematics.lost_motion.encoder_step import Source, Step
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
 
 TURN = 2.0 * math.pi
 MS = 10**6

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 import pytest
 from gear_recordings import Samples, write_csv, write_recording
 
-from gear_kinematics.lost_motion.times import Times, common_times, named_time, times_of
+from gear_kinematics.lost_motion.recorded.times import Times, common_times, named_time, times_of
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,9 @@ from gear_recordings import Samples, quantised, write_csv, write_recording
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.lost_motion import Columns, measure, read_bag, read_csv
-from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.lost_motion.motion import Motion, MotionError
-from gear_kinematics.lost_motion.transmission import figures, marked_orders
+from gear_kinematics.lost_motion.dynamic.transmission import figures, marked_orders
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
+from gear_kinematics.lost_motion.recorded.motion import Motion, MotionError
 
 TURN = 2.0 * math.pi
 MS = 10**6

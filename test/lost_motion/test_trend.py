@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from gear_kinematics.lost_motion.common import Quantity
-from gear_kinematics.lost_motion.trend import trends
+from gear_kinematics.lost_motion.several.common import Quantity
+from gear_kinematics.lost_motion.several.trend import trends
 from gear_kinematics.state.uncertainty import Estimate
 
 

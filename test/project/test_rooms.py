@@ -153,6 +153,14 @@ ROOMS = {
     ),
 }
 """Each room of the package and the rooms it imports, all of which stand before it."""
+LOST_MOTION = {
+    'recorded': (),
+    'static': ('recorded',),
+    'dynamic': ('recorded',),
+    'several': ('recorded', 'static', 'dynamic'),
+    'preload': ('recorded', 'static', 'dynamic', 'several'),
+}
+"""Rooms within `lost_motion`, and those of them that each may import."""
 TENANTS = {
     'rclpy': ['ros'],
     'rosbags': ['bag'],
@@ -170,7 +178,7 @@ def test_a_listing_of_the_package_shows_the_rooms():
     assert len(names) <= 15
 
 
-@pytest.mark.parametrize('room', ROOMS)
+@pytest.mark.parametrize('room', [*ROOMS, *(f'lost_motion/{room}' for room in LOST_MOTION)])
 def test_room_says_in_a_sentence_what_it_is(room):
     document = ast.parse((PACKAGE / room / '__init__.py').read_text('utf-8'))
     first = (ast.get_docstring(document) or '').partition('\n')[0]
@@ -223,6 +231,18 @@ def test_rooms_import_only_rooms_before_them():
     for room, below in ROOMS.items():
         assert set(below) <= set(before), room
         before.append(room)
+
+
+def test_imports_within_lost_motion_point_one_way(imports):
+    inside = {path: path.split('/') for path in imports if path.startswith('lost_motion/')}
+    rooms = {path: parts[1] for path, parts in inside.items() if len(parts) > 2}
+    assert set(rooms.values()) == LOST_MOTION.keys()
+    for path, room in rooms.items():
+        names = (name for name in imports[path] if within(name, 'gear_kinematics.lost_motion'))
+        taken = {name.split('.')[2] for name in names}
+        assert taken & LOST_MOTION.keys() <= {room, *LOST_MOTION[room]}, path
+        if room in {'recorded', 'static', 'dynamic'}:  # reports stand above them
+            assert taken <= LOST_MOTION.keys(), path
 
 
 @pytest.mark.parametrize('library', TENANTS)

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from braced_gears import BracedGear
 
-from gear_kinematics.lost_motion.advice import advise
-from gear_kinematics.lost_motion.preloaded import Reading
+from gear_kinematics.lost_motion.preload.advice import advise
+from gear_kinematics.lost_motion.preload.model import Reading
 from gear_kinematics.state.uncertainty import Estimate
 
 LOADS = (8.0, 20.0)  # N·m

@@ -8,8 +8,8 @@ import numpy as np
 from simulated_ramps import STEP, Ramps, Scenario, drawn, hysteresis, simulate
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.lost_motion.encoder_step import Source, Step
-from gear_kinematics.lost_motion.recording import Loading, Recording
+from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
+from gear_kinematics.lost_motion.recorded.recording import Loading, Recording
 from gear_kinematics.lost_motion.report import HysteresisReport, measure
 from gear_kinematics.state.uncertainty import Estimate
 

@@ -1,0 +1,1 @@
+"""Rotor and output in motion: transmission error, lost motion on reversals, gear ratio."""

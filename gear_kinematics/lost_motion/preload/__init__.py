@@ -1,0 +1,1 @@
+"""Recordings at several settings of the preload, and the setting that they advise."""

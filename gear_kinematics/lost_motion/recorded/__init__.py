@@ -1,0 +1,1 @@
+"""Recordings of a gear, as CSV files or bags: what they contain and when they were made."""

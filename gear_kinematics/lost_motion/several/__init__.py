@@ -1,0 +1,1 @@
+"""Several recordings: at one torque, before and after, over time, over positions."""
