@@ -15,6 +15,8 @@ _MOSTLY = 0.7
 """Share of a standard uncertainty from which on one part of it exceeds all others together."""
 _WELL_KNOWN = 0.01
 """Relative ± of a stiffness up to which nobody needs to know it better."""
+_ALL = 0.995
+"""Share of a lag that counts as all of it."""
 _LARGER = 3.0
 """Amplitude of ramps that load the spring well, as a multiple of the friction."""
 _TOO_LARGE = 2.5
@@ -63,12 +65,14 @@ def _effects(found: HysteresisReport) -> Iterator[str]:
             f'The angle reverses {plus_minus(lag, 1e3)} ms later than the torque: its encoder is '
             'late, or inertia moves the gear on.'
         )
-        if found.effects.removed == lag:
+        removed = found.effects.removed
+        share = removed.value / lag.value if removed else 0.0
+        if share > _ALL:
             yield f'{late} This has been taken out as a lag of the encoder.'
         else:
             yield (
-                f'{late} Half of this has been taken out; the ± of hysteresis and friction '
-                'contain both.'
+                f'{late} Of this, {100.0 * share:.0f} % have been taken out; the ± of hysteresis '
+                'and friction contain both.'
             )
     for drift, figures in zip(found.effects.drifts, found.figures, strict=True):
         if drift:

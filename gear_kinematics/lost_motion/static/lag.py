@@ -61,13 +61,17 @@ def encoder_lag(
 
 
 def of_encoder(lag: Estimate) -> Estimate:
-    """Return how much of a lag is ascribed to the encoder, s: half of one that may be the gear's.
+    """Return how much of a lag is expected to be the encoder's, s.
 
-    Its uncertainty contains that it may be all or nothing of that.
+    One of up to `OF_GEAR` is the gear's as likely as the encoder's, a longer one the encoder's.
     """
-    if lag.value > OF_GEAR:
-        return lag
-    return lag.times(0.5).joined(Component(0.5 * lag.value))
+    if not lag.standard:
+        longer = float(lag.value > OF_GEAR)
+    else:
+        longer = 0.5 * (1.0 + math.erf((lag.value - OF_GEAR) / (math.sqrt(2.0) * lag.standard)))
+    share = 0.5 + 0.5 * longer
+    by_gear = Component(lag.value * math.sqrt(share * (1.0 - share)))
+    return lag.times(share).joined(by_gear)
 
 
 def of_torque(lag: Estimate) -> bool:
