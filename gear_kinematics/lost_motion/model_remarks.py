@@ -149,7 +149,7 @@ def _backlash(model: PlayModel, least: float) -> Iterator[str]:
 
 def _play(model: PlayModel, least: float) -> Iterator[str]:
     soft = (
-        f'Over it the gear yields at {number(model.softness, 2)} of its stiffness beyond'
+        f'Over the backlash the gear yields at {number(model.softness, 2)} of its stiffness beyond'
         if model.softness
         else ''
     )
