@@ -243,10 +243,11 @@ def _summary_row(report: LostMotionReport) -> tuple[Cell, ...]:
         hysteresis, model = found.smallest.hysteresis, found.leaving.play_model
         lost_motion = found.largest.lost_motion
         spring = found.largest.stiffness[-1].both if found.largest.stiffness else None
-    known = (e if e and e.clear else None for e in (hysteresis, lost_motion, accuracy))
-    width, lost, accurate = map(arc_minutes, known)
-    stiff = plus_minus(spring) if spring and spring.clear else ''
-    values = (width, play(model), lost, stiff, accurate)
+    hysteresis, lost_motion, spring, accuracy = (
+        e if e and e.clear else None for e in (hysteresis, lost_motion, spring, accuracy)
+    )
+    angles = (arc_minutes(hysteresis), play(model), arc_minutes(lost_motion))
+    values = (*angles, plus_minus(spring), arc_minutes(accuracy))
     return tuple(map(Cell, (printable(report.recording.name), *values)))
 
 

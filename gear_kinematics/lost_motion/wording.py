@@ -37,10 +37,11 @@ def play(model: PlayModel | None, unit: str = '') -> str:
     """
     if model is None:
         return ''
-    if not model.play and model.limit is None:
+    if model.play:
+        return f'{arc_minutes(model.play)}{unit}'
+    if model.limit is None:
         return 'not separable'
-    limit = number((model.limit or 0.0) * ARC_MINUTES)
-    return f'{arc_minutes(model.play) or f"below {limit}"}{unit}'
+    return f'below {number(model.limit * ARC_MINUTES)}{unit}'
 
 
 def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:

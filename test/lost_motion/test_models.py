@@ -388,8 +388,7 @@ def test_a_soft_middle_is_a_bound_and_says_why():
 def hardening_within(softer: float, **figures: float) -> models.Models:
     """Of a spring that no model fits well: it hardens over a small part of the loops."""
     hardening = scenario('play, hardening spring, large loops only')
-    spring = hardening.spring
-    gear = replace(hardening, spring=lambda load: softer * spring(load), **figures)
+    gear = replace(hardening, softness=softer, **figures)
     return models.models_of(models.settled(loading(gear)), STEP)
 
 

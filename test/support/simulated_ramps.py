@@ -238,9 +238,11 @@ def _motion(
     load = np.zeros(shape)
     built = np.zeros(shape)  # N·m, friction that has built up, with its sign
     late = np.zeros((len(s.creeps), *shape))
+    creeps = [(share, -np.expm1(-INTERVAL / constant)) for share, constant in s.creeps]
+    builds_up = np.any(s.bristle)
     for k, applied in enumerate(torque):
         held = strength[loop[k]] + s.load_friction * np.abs(load)
-        if np.any(s.bristle):
+        if builds_up:
             load, built = _bristles(applied, load, built, held, s.bristle)
         else:
             net = applied - load
@@ -252,8 +254,8 @@ def _motion(
             fresh = strength[loop[k]] * (1.0 - s.slip)
             load = np.where(moves, (applied - towards * fresh) / (1.0 + growing), load)
         twist = s.twist(load)
-        for j, (share, constant) in enumerate(s.creeps):
-            late[j] += (share * twist - late[j]) * -np.expm1(-INTERVAL / constant)
+        for j, (share, gain) in enumerate(creeps):
+            late[j] += (share * twist - late[j]) * gain
         yield twist + 0.5 * s.play * np.sign(load) + late.sum(axis=0)
 
 

@@ -243,8 +243,9 @@ class _Seen(NamedTuple):
 
 def _unseen(usual: float) -> _Seen:
     """Return what no standstill shows: nothing, and nothing of any time constant."""
-    all_alike = np.ones(2 * len(_CONSTANTS))
-    return _Seen(None, 0.0 * all_alike, _UNKNOWN * usual * all_alike, all_alike / all_alike.size)
+    count = 2 * len(_CONSTANTS)
+    unknown, alike = np.full(count, _UNKNOWN * usual), np.full(count, 1.0 / count)
+    return _Seen(None, np.zeros(count), unknown, alike)
 
 
 def _seen(
