@@ -11,7 +11,7 @@ EXPLAIN_PIP = if grep -q 'connection broken' $(PIP_LOG); then \
 	echo 'pip cannot reach the package index: see $(PIP_LOG); is there a network?'; \
 	elif test "$$(uname -sm)" != 'Linux x86_64'; then \
 	echo "ROS has no wheels for $$(uname -sm): install ROS 2 Jazzy, then colcon build"; \
-	else tail -n 1 $(PIP_LOG); fi
+	else grep -m 1 '^ERROR' $(PIP_LOG) || tail -n 1 $(PIP_LOG); fi
 # Live tests wait most of the time, so that three workers keep two processors busy.
 # Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
 # may wait for good after that.
@@ -91,4 +91,5 @@ $(VENV)/%.stamp: requirements/%.txt setup.py setup.cfg pyproject.toml
 	@echo 'installing $< into $(VENV)'
 	@$(BIN)/python requirements/install.py $< $(PIP_LOG) || { $(EXPLAIN_PIP) >&2; exit 1; }
 	$(PIP_INSTALL) --no-deps --no-build-isolation -e .
+	@broken=$$($(BIN)/pip check --disable-pip-version-check) || { echo "$$broken" >&2; exit 1; }
 	@touch $@

@@ -25,7 +25,8 @@ def main(requirements: str, log: str) -> int:
     before = _installed()
     seen: Counter[str] = Counter()
     pip = ('-m', 'pip', 'install', '--disable-pip-version-check', '--progress-bar', 'off')
-    options = ('--no-compile', '--require-hashes', '-r', requirements)
+    # The pins are complete. Resolved anew, `name[extra]` would be the newest, which has no hash.
+    options = ('--no-compile', '--no-deps', '--require-hashes', '-r', requirements)
     with (
         Path(log).open('wb') as errors,
         subprocess.Popen(  # noqa: S603, pip

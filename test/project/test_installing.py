@@ -1,14 +1,19 @@
 """What `make` shows while it builds its virtual environment."""
 
+import importlib.metadata
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 from terminals import ENVIRONMENT, Terminal
 
-PROGRAM = Path(__file__).resolve().parents[2] / 'requirements' / 'install.py'
+REQUIREMENTS = Path(__file__).resolve().parents[2] / 'requirements'
+PROGRAM = REQUIREMENTS / 'install.py'
 PIP = """
 import sys
 print("Ignoring three: markers 'python_version < \\\\'3\\\\'' don't match your environment")
@@ -57,4 +62,51 @@ def test_elsewhere_nothing_is_shown_and_the_log_has_what_pip_said(command, tmp_p
     assert (done.returncode, done.stdout, done.stderr) == (7, '', '')
     options = (tmp_path / 'pip.log').read_text().split()
     assert options[0] == 'install'
-    assert {'--require-hashes', '--no-compile', '-r', str(tmp_path / 'demo.txt')} <= set(options)
+    assert {
+        '--require-hashes',
+        '--no-compile',
+        '--no-deps',
+        '-r',
+        str(tmp_path / 'demo.txt'),
+    } <= set(options)
+
+
+def pins(lock: str) -> dict[str, str]:
+    """Return the version of each package that a lock file installs on this Python."""
+    lines = re.findall(r'^[\w.-]+==[^\\\n]+', (REQUIREMENTS / lock).read_text(), re.MULTILINE)
+    pinned = [Requirement(line) for line in lines]
+    return {
+        canonicalize_name(pin.name): next(iter(pin.specifier)).version
+        for pin in pinned
+        if pin.marker is None or pin.marker.evaluate()
+    }
+
+
+def wanted(source: str) -> list[Requirement]:
+    """Return what a file of direct requirements asks for, and those that it includes."""
+    found = []
+    for line in (REQUIREMENTS / source).read_text().splitlines():
+        if line.startswith('-r '):
+            found += wanted(line.removeprefix('-r '))
+        elif line and not line.startswith('#'):
+            found.append(Requirement(line))
+    return found
+
+
+@pytest.mark.parametrize('name', ['demo', 'test'])
+def test_a_lock_meets_every_requirement_of_its_packages_and_extras(name):
+    """pip installs the pins without resolving them, so that nothing else may be missing."""
+    versions = pins(f'{name}.txt')
+    waiting, seen = wanted(f'{name}.in'), set()
+    while waiting:
+        requirement = waiting.pop()
+        package = canonicalize_name(requirement.name)
+        assert package in versions, f'{requirement} is not locked'
+        assert requirement.specifier.contains(versions[package], prereleases=True), requirement
+        for extra in {'', *requirement.extras} - {e for p, e in seen if p == package}:
+            seen.add((package, extra))
+            for text in importlib.metadata.requires(package) or ():
+                needed = Requirement(text)
+                if needed.marker is None or needed.marker.evaluate({'extra': extra}):
+                    waiting.append(needed)
+    assert {package for package, _ in seen} == set(versions)

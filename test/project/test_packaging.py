@@ -278,6 +278,21 @@ def test_make_demo_says_that_it_needs_a_network(tree, environment_of_make):
     assert lines == [f'pip cannot reach the package index: see {log}; is there a network?']
 
 
+def test_make_demo_says_which_requirement_cannot_be_installed(tree, environment_of_make):
+    lock = tree / 'requirements/demo.txt'
+    locked = lock.read_text('utf-8')
+    lock.write_text('no-such-package\n')
+    try:
+        (line,) = words_of_make(
+            tree, f'PYTHON={sys.executable}', f'VENV={environment_of_make}', PIP_NO_INDEX='1'
+        )
+    finally:
+        lock.write_text(locked, 'utf-8')
+    assert line.startswith(
+        'ERROR: Could not find a version that satisfies the requirement no-such'
+    )
+
+
 def test_make_demo_says_where_ros_has_no_wheels(tree, environment_of_make, tmp_path):
     script(tmp_path / 'uname', 'echo Linux aarch64')
     lines = words_of_make(
