@@ -232,7 +232,7 @@ class RotorInput:
         direction = self._settings.rotor_direction
         samples = RotorSamples(
             stamps,
-            direction * (turns - zero_turns),
+            direction * (turns - zero_turns) + 0.0,  # turns that are int have no -0.0
             direction * (angle - zero_angle),
             direction * values[:, 1],
             direction * values[:, 2],

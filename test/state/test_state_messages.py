@@ -233,6 +233,7 @@ rates = st.none() | st.floats(-1e300, 1e300)
     st.sampled_from([1, -1]),
 )
 @example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0)] * 2, -1)
+@example(Mechanism(2, 1, 1.0, (Branch('a'),)), [(1, 0.0, None, None), (1, -0.0, None, None)], -1)
 def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction):
     """To the last bit, from samples of `RotorInput`, which have NaN instead of None."""
     settings = InputSettings('', direction, 0.0, 'multi_turn', 650.0, 6500.0)
