@@ -39,6 +39,8 @@ class Contents(NamedTuple):
     """Topics by name; empty without metadata.yaml."""
     message_count: int | None
     """None without metadata.yaml."""
+    custom: dict[str, str]
+    """The recorder's custom_data."""
 
 
 def find_contents(path: Path) -> Contents:
@@ -51,7 +53,7 @@ def find_contents(path: Path) -> Contents:
         ValueError: or other exceptions, if this is not a recording.
     """
     if path.is_file():
-        return Contents([path], {}, None)
+        return Contents([path], {}, None, {})
     if not path.is_dir():
         raise ValueError(f'no such file or folder{bags_beside(path)}')
     metadata = path / 'metadata.yaml'
@@ -67,7 +69,7 @@ def find_contents(path: Path) -> Contents:
         raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')
     if len({_STORAGE_NAME.sub('', file.name) for file in files}) > 1:
         raise ValueError('several recordings without a metadata.yaml; name one of its files')
-    return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
+    return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None, {})
 
 
 def bags_beside(path: Path) -> str:
@@ -144,7 +146,10 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     files = [_listed_file(path, name) for name in names]
     if len(set(files)) < len(files):
         raise ValueError('a file is listed more than once')
-    return Contents(files, topics, message_count)
+    custom = information.get('custom_data') or {}
+    if not isinstance(custom, dict):
+        raise ValueError('custom_data is no mapping')  # noqa: TRY004, about data on disk
+    return Contents(files, topics, message_count, {str(k): str(v) for k, v in custom.items()})
 
 
 def _listed_topic(known: Any) -> Topic:

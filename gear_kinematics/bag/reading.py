@@ -57,6 +57,8 @@ class Bag:
     """Types by name, such as sensor_msgs/msg/JointState."""
     message_count: int | None
     """On all topics; None if unknown without reading all of them."""
+    named: Mapping[str, str]
+    """Its topics by the names that the recorder gave them, see `BagWriter.name_topic`."""
 
     def __init__(self, path: Path | str) -> None:
         """Read the topics and the number of messages.
@@ -68,11 +70,12 @@ class Bag:
         self._readings = ExitStack()
         self._described: dict[str, Topic] = {}
         with bag_errors(self.path):
-            self._files, self._listed, self.message_count = find_contents(self.path)
+            self._files, self._listed, self.message_count, custom = find_contents(self.path)
         if not self._listed:
             self._describe()
         known = self._listed or self._described
         self.topics = MappingProxyType({topic.name: topic.type for topic in known.values()})
+        self.named = {name: topic for name, topic in custom.items() if topic in self.topics}
 
     def __enter__(self) -> Self:
         return self

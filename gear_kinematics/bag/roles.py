@@ -52,6 +52,8 @@ def find_topics(
 ) -> Topics:
     """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
 
+    Those that `gearkin compute` has named in the recording are taken, unless the rotor's is given.
+
     Args:
         bag: an open bag.
         given: names of known topics by their parts.
@@ -69,7 +71,8 @@ def find_topics(
         poses = TOPICS[BODY_POSES].type in bag.topics.values()
     left_out = {'output': not outputs, 'poses': not (outputs and poses)}
     parts = [part for part in _PARTS if not left_out.get(part)]
-    found = {part: topic for part in parts if (topic := given.get(part))}
+    named = {} if given.get('rotor') else {part: bag.named.get(_PARTS[part]) for part in parts}
+    found = {part: topic for part in parts if (topic := given.get(part) or named.get(part))}
     left = dict(bag.topics)
     if 'rotor' in found:
         for part, topic in Topics.beside(found['rotor'])._asdict().items():
@@ -139,11 +142,13 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
 
 
-def missing_encoder(bag: Bag) -> BagError:
+def missing_encoder(bag: Bag, also: str = '') -> BagError:
     """Return the error for a bag without a topic of the output encoder."""
     topics = _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)
     hint = among(OUTPUT_ENCODER, topics)
-    return BagError(f'{bag.path}: no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}')
+    return BagError(
+        f'{bag.path}: {also}no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}'
+    )
 
 
 def corrected_beside(output: str = Topics().output) -> dict[str, str]:

@@ -144,6 +144,10 @@ class BagWriter:
             self._add(topic, parse_qos(qos))
         return topic
 
+    def name_topic(self, name: str, topic: str) -> None:
+        """Name a topic in the metadata, by which it is found again: `Bag.named`."""
+        self._writer.set_custom_data(name, topic)
+
     def write(self, topic: str, received: int, data: bytes) -> None:
         """Write a message.
 

@@ -20,6 +20,7 @@ from gear_kinematics.wire.topics import (
     BODY_POSES,
     JOINT_STATE,
     OUTPUT_STATE,
+    ROTOR_STATE,
     TOPICS,
 )
 
@@ -114,6 +115,8 @@ def compute(
         written = [writer.copy_topic(source, topic) for topic in kept]
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
+        for name, topic in {ROTOR_STATE: rotor_topic, **topic_of}.items():
+            writer.name_topic(name, topic)
         total = source.message_count if topics is None else None
         for batch in in_batches(source.messages({*kept, *outputs}), _BATCH, progress, total):
             messages = [message for message in batch if message[0] not in outputs]

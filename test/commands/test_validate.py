@@ -626,6 +626,25 @@ def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    'outputs', [(), ('--output-topic', '/x/shaft', '--poses-topic', '/y/bodies')]
+)
+def test_a_computed_bag_validates_without_repeating_its_topics(outputs, tmp_path):
+    bag, out = tmp_path / 'two', tmp_path / 'out'
+    with BagWriter(bag) as writer:
+        for place, topic in enumerate(('/left', '/right'), 1):
+            writer.add_topic(topic, JOINT_STATE)
+            for stamp in range(10**9, 2 * 10**9, 10**7):
+                angle = place * stamp * 1e-9
+                writer.write(topic, stamp, rotor_bytes(stamp, ('motor',), (angle,)))
+    assert 'name it with --rotor-topic' in refusal('compute', bag, out, '--joint', 'motor')
+    words = ('--rotor-topic', '/right', '--joint', 'motor', *outputs)
+    assert gearkin_here('compute', bag, out, *words).returncode == 0
+    assert gearkin_here('validate', out).returncode == 0
+    # Named topics stand back where another one is asked for.
+    assert gearkin_here('validate', out, '--rotor-topic', '/left').returncode != 0
+
+
 def test_compute_uses_the_config_beside_the_bag(tmp_path):
     out = tmp_path / 'out'
     assert gearkin_here('compute', SINGLE_TURN, out).returncode == 0
