@@ -76,6 +76,8 @@ setup(
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin animate` to an .mp4, where the system has no ffmpeg
         'video': ['imageio-ffmpeg'],
+        # `gearkin lost-motion` and `calibrate`
+        'measure': ['scipy>=1.11'],
         # `gearkin completion`
         'completion': ['shtab'],
         # `gearkin urdf --meshes`

@@ -32,22 +32,14 @@ def main() -> None:
         print(json.dumps({s.name: one._asdict() for s, one in zip(SCENARIOS, found, strict=True)}))
         return
     print(
-        '| scenario | play | of these values | values: bias ± | bounds below | not separable '
-        '| hysteresis | friction | spring |'
+        '| scenario | hysteresis | friction | backlash | median width | 95 % of them | above 0 |'
     )
-    print('|---|---|---|---|---|---|---|---|---|')
+    print('|---|---|---|---|---|---|---|')
     for scenario, one in zip(SCENARIOS, found, strict=True):
-        shares = (one.play, one.valued, one.refused, one.hysteresis, one.friction, one.spring)
-        play, valued, refused, hysteresis, friction, spring = map(_percent, shares)
-        bias, spread, limit = (
-            '' if math.isnan(value) else f'{ARC_MINUTES * value:.2f}′'
-            for value in (one.play_bias, one.play_uncertainty, one.limit)
-        )
+        held = map(_percent, (one.hysteresis, one.friction, one.backlash))
+        widths = (f'{ARC_MINUTES * width:.1f}′' for width in (one.width, one.widest))
         name = scenario.name if scenario.contained else f'*{scenario.name}*'
-        print(
-            f'| {name} | {play} | {valued} | {f"{bias} ± {spread}" if bias else ""} | {limit} '
-            f'| {refused} | {hysteresis} | {friction} | {spring} |'
-        )
+        print(f'| {" | ".join([name, *held, *widths, _percent(one.above_zero)])} |')
     print(f'{options.seeds} recordings each, {time.perf_counter() - start:.0f} s')
 
 

@@ -15,14 +15,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('--seeds', type=int, default=1000, help='of each choice')
     parser.add_argument('--load', type=float, default=2.0, help='N·m')
+    parser.add_argument('--scatter', type=float, default=0.1, help='relative, of recordings')
     parser.add_argument('--settings', nargs='+', choices=SETTINGS)
     parser.add_argument('--json', action='store_true')
     options = parser.parse_args()
     results = {}
     for name in options.settings or SETTINGS:
-        results[name] = coverage(name, options.seeds, options.load)
+        results[name] = coverage(name, options.seeds, options.load, options.scatter)
         if not options.json:
-            shares = ', '.join(f'{what} {100 * s:.1f} %' for what, s in results[name].items())
+            shares = ', '.join(f'{what} {s:.3f}' for what, s in results[name].items())
             print(f'{name}: {shares}', flush=True)
     if options.json:
         print(json.dumps(results))

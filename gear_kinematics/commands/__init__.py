@@ -22,9 +22,6 @@ class ExitCode(IntEnum):
 class Command(Protocol):
     """Interface of the module of a subcommand, which has the subcommand's name."""
 
-    HELP: str
-    """Purpose of the command, in one line."""
-
     def add_arguments(self, parser: argparse.ArgumentParser, /) -> None:
         """Add the arguments of the command."""
 

@@ -14,7 +14,6 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.state.trajectory import Trajectory
 
-HELP = 'animate the mechanism as a GIF or an MP4'
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _BOUNDS = {'width': (100, 1920), 'fps': (1, 50)}
 _MOST_FRAMES = 2000

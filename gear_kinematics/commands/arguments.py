@@ -11,8 +11,7 @@ from gear_kinematics.commands.targets import add_force
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.lost_motion.recorded.csv_files import Columns
-from gear_kinematics.lost_motion.recorded.encoder_step import UNITS
+from gear_kinematics.measurement.columns import ANGLE_UNITS, Columns
 from gear_kinematics.state import parameters
 from gear_kinematics.wire.nearest import among
 
@@ -103,23 +102,43 @@ _COLUMNS = {
 
 
 def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
-    """Add the options for the columns of a CSV file; see `columns`."""
+    """Add the options for the columns of a CSV file, and for encoders; see `columns`."""
     group = parser.add_argument_group('columns of a CSV', 'by default found by name')
     for role in roles:
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
     group.add_argument(
-        '--angle-unit', choices=tuple(UNITS), help='of all angles (default: by name, or rad)'
+        '--angle-unit', choices=ANGLE_UNITS, help='of all angles (default: by name, or rad)'
     )
     what = 'angle and torque are' if 'angle' in roles else 'the torque is'
     group.add_argument(
-        '--on-rotor', action='store_true', help=f'{what} of the rotor, not the output'
+        '--on-rotor',
+        action='store_true',
+        help=f'{what} of the rotor, unless the name of the column says output',
+    )
+    encoders = parser.add_argument_group('encoders')
+    encoders.add_argument(
+        '--rotor-counts',
+        '--counts',
+        type=count,
+        metavar='N',
+        help='steps per turn of the encoder of the rotor, or of the angle column: in them are the '
+        'angles of columns such as motor_inc (default: from the readings)',
+    )
+    encoders.add_argument(
+        '--output-counts', type=count, metavar='N', help='the same of the output encoder'
     )
 
 
 def columns(options: argparse.Namespace) -> Columns:
     """The columns given by the options."""
     names = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
-    return Columns(**names, unit=options.angle_unit, on_rotor=options.on_rotor)
+    return Columns(
+        **names,
+        unit=options.angle_unit,
+        on_rotor=options.on_rotor,
+        rotor_counts=options.rotor_counts,
+        output_counts=options.output_counts,
+    )
 
 
 def add_fleet(ways: argparse._ActionsContainer) -> None:

@@ -5,20 +5,14 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.calibration import judgement
-from gear_kinematics.calibration.document import document
-from gear_kinematics.calibration.fit import fit
-from gear_kinematics.calibration.judgement import judge
-from gear_kinematics.calibration.reading import read_bag, read_csv
-from gear_kinematics.calibration.recording import Recording
-from gear_kinematics.calibration.to_file import to_calibration
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress, write
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
-from gear_kinematics.lost_motion.recorded.csv_files import is_csv
+from gear_kinematics.measurement.calibration import fit, judge, to_calibration
+from gear_kinematics.measurement.calibration.document import check_document, document
+from gear_kinematics.measurement.reading import read_encoders
+from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
 from gear_kinematics.state.calibration_file import Calibration
-
-HELP = 'calibrate the real output angle, from recordings with an encoder at rotor and output'
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,27 +67,30 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Reporter) -> ExitCode:
     calibration = Calibration.load(options.check)
     config['gear_ratio'] = str(calibration.gear_ratio)
-    judgements = [judge(recording, calibration) for recording in _read(options, config)]
+    judgements = []
+    for recording, encoders in _read(options, config):
+        try:
+            judgements.append(judge(recording, encoders, calibration))
+        except RecordingError as error:
+            complain(error)
     if judgements:
         configs = [arguments.config_path(options, options.recordings[0])]
-        reporter.write(judgement.document(options.check, judgements), configs)
+        reporter.write(check_document(options.check, judgements), configs)
     if len(judgements) < len(options.recordings):
         return ExitCode.UNUSABLE
     return ExitCode.DONE if all(one.holds for one in judgements) else ExitCode.FAILED
 
 
-def _read(options: argparse.Namespace, config: Mapping[str, Any]) -> Iterator[Recording]:
+def _read(
+    options: argparse.Namespace, config: Mapping[str, Any]
+) -> Iterator[tuple[Recording, Encoders]]:
     """Read the recordings, and complain about those that cannot be read."""
     for path in options.recordings:
         try:
-            yield _read_one(path, options, config)
+            with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
+                yield read_encoders(
+                    path, config, arguments.columns(options), options.rotor_topic,
+                    options.encoder_topic, progress,
+                )  # fmt: skip
         except (ValueError, OSError) as error:
             complain(error)
-
-
-def _read_one(path: Path, options: argparse.Namespace, config: Mapping[str, Any]) -> Recording:
-    if is_csv(path):
-        ratio = gear_from_mapping(config).gear_ratio
-        return read_csv(path, arguments.columns(options), float(ratio))
-    with bags.naming(path), message_progress(path.name, quiet=options.quiet) as report_progress:
-        return read_bag(path, config, options.rotor_topic, options.encoder_topic, report_progress)

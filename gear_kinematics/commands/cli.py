@@ -7,32 +7,14 @@ import argparse
 import re
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from io import TextIOWrapper
 from typing import Any, NoReturn
 
 import numpy as np
 
 from gear_kinematics.bag.errors import unexpected
-from gear_kinematics.commands import (
-    Command,
-    ExitCode,
-    animate,
-    calibrate,
-    completion,
-    compute,
-    demo,
-    describe,
-    index,
-    info,
-    init,
-    lost_motion,
-    plot,
-    preload,
-    replay,
-    urdf,
-    validate,
-    watch,
-)
+from gear_kinematics.commands import Command, ExitCode
 from gear_kinematics.commands.arguments import parsers
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.origin import command_line
@@ -40,24 +22,25 @@ from gear_kinematics.commands.output import closed_pipe_ignored, complain
 from gear_kinematics.state.share import version
 from gear_kinematics.wire.nearest import among
 
-COMMANDS: dict[str, Command] = {
-    'info': info,
-    'validate': validate,
-    'compute': compute,
-    'replay': replay,
-    'demo': demo,
-    'init': init,
-    'watch': watch,
-    'describe': describe,
-    'index': index,
-    'preload': preload,
-    'lost-motion': lost_motion,
-    'calibrate': calibrate,
-    'plot': plot,
-    'animate': animate,
-    'urdf': urdf,
-    'completion': completion,
+COMMANDS: dict[str, str] = {
+    'info': 'what is in recordings: duration, topics, rates, joints and gaps',
+    'validate': 'compare recorded outputs with recomputed ones',
+    'compute': 'write a bag with the outputs for a recorded rotor topic',
+    'replay': "publish a bag's rotor topic with the timing of the recording",
+    'demo': 'play the shipped bag into the live node and validate its outputs',
+    'init': 'list the drivers that are running, and write a parameter file for one',
+    'watch': 'show a running node and its driver live: on a page, or in the terminal',
+    'describe': 'properties of a gear: ratio, mobility, vernier, interference of the teeth',
+    'index': 'pin holes for a turn of the ring gear, a preload or the phase of branch B',
+    'preload': 'preload, torque limits and torque split, and the ring turn for them',
+    'lost-motion': 'lost motion, stiffness, play and transmission error from recordings',
+    'calibrate': 'calibrate the real output, from recordings with an encoder at rotor and output',
+    'plot': 'draw figures: kinematic scheme, roses, slides, output over time',
+    'animate': 'animate the mechanism as a GIF or an MP4',
+    'urdf': 'print the URDF, and write its meshes',
+    'completion': 'print what completes commands in a shell',
 }
+"""The subcommands, each with its purpose in one line."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -93,12 +76,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
-    options, unknown = make_parser().parse_known_args(arguments)
-    if unknown:
-        options.parser.refuse(unknown)
-    options.command_line = command_line(arguments)
     code = ExitCode.DONE
     try:
+        options, unknown = _parser_for(arguments).parse_known_args(arguments)
+        if unknown:
+            options.parser.refuse(unknown)
+        options.command_line = command_line(arguments)
         # Overflows show in the results.
         with closed_pipe_ignored(), np.errstate(all='ignore'):
             code = options.run(options)
@@ -109,19 +92,33 @@ def main(arguments: Sequence[str] | None = None) -> int:
         complain(remedy(error))
         code = ExitCode.UNUSABLE
     except Exception as error:  # noqa: BLE001, the traceback is shown with --debug
-        complain(unexpected(error, debug=options.debug))
+        complain(unexpected(error, debug='--debug' in (arguments or sys.argv)))
         code = ExitCode.UNUSABLE
     return code
 
 
-def make_parser() -> argparse.ArgumentParser:
-    """Build the parser of the program, with those of its subcommands."""
+def _parser_for(arguments: Sequence[str] | None) -> argparse.ArgumentParser:
+    """Build the parser with the arguments of the subcommand that is called, if any."""
+    words = sys.argv[1:] if arguments is None else arguments
+    called = next((word for word in words if not word.startswith('-')), '')
+    return make_parser(*([] if called == 'completion' else [called]))
+
+
+def make_parser(*called: str) -> argparse.ArgumentParser:
+    """Build the parser of the program.
+
+    Args:
+        called: the subcommands whose modules are imported, for their arguments; all if none.
+    """
     parser = _Parser(prog='gearkin', description=__doc__)
     parser.set_defaults(program=parser)
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
-    for name, command in COMMANDS.items():
-        added = commands.add_parser(name, help=command.HELP, description=command.HELP)
+    for name, purpose in COMMANDS.items():
+        added = commands.add_parser(name, help=purpose, description=purpose)
+        if called and name not in called:
+            continue
+        command: Command = import_module(f'{__package__}.{name.replace("-", "_")}')
         command.add_arguments(added)
         added.add_argument(
             '--debug', action='store_true', help='print the traceback of an unexpected error'

@@ -5,7 +5,6 @@ import argparse
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.arguments import parsers
 
-HELP = 'print what completes commands in a shell'
 _SHELLS = ('bash', 'zsh', 'tcsh')
 _FILES = {'FILE', 'BAG', 'BAG|CSV', 'OUT'}
 """Names of arguments that are paths."""

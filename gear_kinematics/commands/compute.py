@@ -14,8 +14,6 @@ from gear_kinematics.state import parameters
 from gear_kinematics.state.compute import ComputeResult, compute
 from gear_kinematics.wire.nearest import listed
 
-HELP = 'write a bag with the outputs for a recorded rotor topic'
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""

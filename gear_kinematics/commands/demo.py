@@ -9,8 +9,6 @@ from gear_kinematics.report.document import Cell, Document, Section, Table, Tone
 from gear_kinematics.report.text import render
 from gear_kinematics.validation.report import BagReport
 
-HELP = 'play the shipped bag into the live node and validate its outputs'
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""

@@ -11,7 +11,6 @@ from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table, number
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
-HELP = 'properties of a gear: ratio, mobility, vernier, interference of the teeth'
 _DIGITS = 3
 _GIVEN_DIGITS = 6
 _ANGLES = ((1.0, '°'), (60.0, '′'), (3600.0, '″'))

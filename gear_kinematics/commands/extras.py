@@ -10,6 +10,7 @@ EXTRAS = {
     'shtab': 'completion',
     'mapbox_earcut': 'mesh',
     'tornado': 'watch',
+    'scipy': 'measure',
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'

@@ -13,9 +13,8 @@ from gear_kinematics.commands.output import Reporter, write
 from gear_kinematics.kinematics import vernier
 from gear_kinematics.kinematics.preload import Preload, ring_phase
 from gear_kinematics.kinematics.vernier import Choice, PinSetting
-from gear_kinematics.lost_motion.document import plain
-from gear_kinematics.lost_motion.preload.file import MeasuredPreload, read_advice
-from gear_kinematics.lost_motion.wording import PERCENT, plus_minus, torque
+from gear_kinematics.measurement.preload.file import MeasuredPreload, read_advice
+from gear_kinematics.measurement.wording import PERCENT, plain, plus_minus
 from gear_kinematics.report.document import (
     Cell,
     Document,
@@ -37,7 +36,6 @@ _SENSES = (
     'Seen against the z axis, angles, teeth and chassis holes count counterclockwise, ring holes '
     'clockwise, from 0 at the zero marks.'
 )
-HELP = 'pin holes for a turn of the ring gear, a preload or the phase of branch B'
 
 
 class _Row(NamedTuple):
@@ -61,8 +59,6 @@ class _Answer(NamedTuple):
     """Preload at the wanted turn, N·m; None without a stiffness."""
     rows: tuple[_Row, ...]
     measured: MeasuredPreload | None = None
-    load: float = 0.0
-    """N·m, for which `measured` gives the turn."""
 
     @property
     def nearest(self) -> _Row:
@@ -85,14 +81,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--measured',
         type=Path,
         metavar='JSON',
-        help='the least turn without play by measured ramps: from gearkin lost-motion --preloads '
-        '--json',
+        help='the least turn by measured ramps: from gearkin lost-motion --preloads --json',
     )
     parser.add_argument(
         '--load',
         type=arguments.positive,
         metavar='N·m',
-        help='under which there must be no play, with --measured (default: none)',
+        help='that --measured must be for (default: any)',
     )
     parser.add_argument(
         '--phase-b', action='store_true', help='add the turn for the cam phase of branch B'
@@ -138,7 +133,10 @@ def _answer(options: argparse.Namespace) -> _Answer:
     if options.measured:
         if known:
             raise ValueError('--measured contains the stiffness and backlash, give no others')
-        measured = read_advice(options.measured, options.load or 0.0)
+        measured = read_advice(options.measured)
+        if options.load and options.load != measured.load:
+            made = f'for {measured.load:g} N·m' if measured.load else 'without --load'
+            raise ValueError(f'{options.measured}: made {made}, not for {options.load:g} N·m')
         known, backlash = measured.preload.stiffness, measured.preload.play
         # The greatest turn that may be needed suffices.
         bracing = measured.least.high
@@ -182,7 +180,6 @@ def _answer(options: argparse.Namespace) -> _Answer:
         preload(wanted_turn),
         rows,
         measured,
-        options.load or 0.0,
     )
 
 
@@ -274,15 +271,17 @@ def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield 'phase', f'{arc(answer.phase)} of it'
     if measured := answer.measured:
         least = measured.least
-        under = f'under {torque(answer.load)} N·m' if answer.load else 'without a load'
+        what = 'hysteresis falls no further'
+        if measured.load:
+            what = f'both branches stay in mesh under {measured.load:g} N·m'
         yield (
             'measured',
             (
-                f'no play {under} from {arc(least.value)} on ({PERCENT}: {arc(least.low)} to '
+                f'{what} from {arc(least.value)} on ({PERCENT}: {arc(least.low)} to '
                 f'{arc(least.high)}, which is wanted)'
             ),
         )
-        if measured.price and answer.load:
+        if measured.price:
             yield 'price', f'{plus_minus(measured.price)} N·m more friction'
     if preload is not None and answer.preload is not None:
         error = f'{preload - answer.preload:+.2g}'

@@ -21,7 +21,6 @@ from gear_kinematics.report.document import (
 from gear_kinematics.report.text import render
 from gear_kinematics.wire.nearest import listed
 
-HELP = 'what is in recordings: duration, topics, rates, joints and gaps'
 _DIGITS = 4
 _JOINTS = 4  # in the line
 

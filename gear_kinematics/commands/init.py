@@ -16,8 +16,6 @@ from gear_kinematics.wire.nearest import nearest
 if TYPE_CHECKING:
     from gear_kinematics.ros.watch.drivers import Driver
 
-HELP = 'list the drivers that are running, and write a parameter file for one'
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""

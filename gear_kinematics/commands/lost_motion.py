@@ -9,21 +9,21 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.kinematics import gear_from_mapping
-from gear_kinematics.lost_motion import LostMotionReport
-from gear_kinematics.lost_motion.document import document
-from gear_kinematics.lost_motion.preload.over_preload import over_preload
-from gear_kinematics.lost_motion.preload.settings import settings_of
-from gear_kinematics.lost_motion.recorded.encoder_step import UNITS
-from gear_kinematics.lost_motion.recorded.times import common_times
-from gear_kinematics.lost_motion.several.common import at_common_torque
-from gear_kinematics.lost_motion.several.compared import Compared, compared
-from gear_kinematics.lost_motion.several.comparison import at_positions, grouped
-from gear_kinematics.lost_motion.several.over_time import over_time
-from gear_kinematics.lost_motion.several.positions import DEFAULT_PATTERN, over_positions
-from gear_kinematics.lost_motion.static.hysteresis import STIFFNESS_SHARES
-from gear_kinematics.lost_motion.task import WORK, Outcome, Task, measure_recording
-
-HELP = 'lost motion, stiffness, play and transmission error from recordings'
+from gear_kinematics.measurement.clock import common_times
+from gear_kinematics.measurement.compare import groups as grouping
+from gear_kinematics.measurement.compare.quantities import at_common_torque
+from gear_kinematics.measurement.compare.section import compared, over_positions, over_time
+from gear_kinematics.measurement.comparison import Comparison
+from gear_kinematics.measurement.document import document
+from gear_kinematics.measurement.encoder_step import UNITS
+from gear_kinematics.measurement.figures import STIFFNESS_SHARES
+from gear_kinematics.measurement.limits import Limits
+from gear_kinematics.measurement.lost_motion import LostMotion, Request
+from gear_kinematics.measurement.preload.section import over_preload
+from gear_kinematics.measurement.preload.settings import check_pattern, settings_of
+from gear_kinematics.measurement.task import WORK, Outcome, Task, measure_recording
+from gear_kinematics.measurement.wording import ARC_MINUTES
+from gear_kinematics.report.document import Verdict
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,32 +48,38 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     arguments.add_columns(parser, 'angle', 'torque', 'rotor', 'output', 'time')
     bags.add_encoders(parser)
-    encoders = parser.add_argument_group('encoders')
-    encoders.add_argument(
-        '--counts',
-        type=arguments.count,
-        metavar='N',
-        help='steps per turn of the rotor, or of the angle column (default: from the readings)',
-    )
-    encoders.add_argument(
-        '--output-counts',
-        type=arguments.count,
-        metavar='N',
-        help='the same of the output encoder',
-    )
-    encoders.add_argument(
+    motion = parser.add_argument_group('motion of both encoders')
+    motion.add_argument(
         '--travel',
         type=arguments.positive,
         metavar='DEG',
         help='of the output that confirms a reversal (default: transmission_error_travel)',
     )
-    encoders.add_argument(
+    motion.add_argument(
         '--delay',
         type=arguments.finite,
         metavar='S',
-        help='by which the stamps of the output encoder are late, s, or rows of a CSV (default: '
-        'estimated; 0: none)',
+        help='by which the stamps of the output encoder are late, s, or rows of a CSV without '
+        'times (default: estimated; 0: none)',
     )
+    _add_limits(parser)
+    _add_several(parser)
+    parser.add_argument(
+        '-v', '--verbose', action='store_true', help='print tables and remarks in a pipe, too'
+    )
+    arguments.add_report_forms(parser, junit=True)
+
+
+def _add_limits(parser: argparse.ArgumentParser) -> None:
+    limits = parser.add_argument_group(
+        'limits', 'exit code 1 where one is exceeded, or cannot be shown to hold'
+    )
+    for name in ('hysteresis', 'lost-motion', 'backlash'):
+        limits.add_argument(f'--max-{name}', type=arguments.positive, metavar='ARCMIN')
+    limits.add_argument('--min-stiffness', type=arguments.positive, metavar='N·m/rad')
+
+
+def _add_several(parser: argparse.ArgumentParser) -> None:
     several = parser.add_argument_group('several recordings')
     ways = several.add_mutually_exclusive_group()
     ways.add_argument(
@@ -86,10 +92,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     several.add_argument(
         '--positions',
         nargs='?',
-        const=DEFAULT_PATTERN,
+        const=grouping.DEFAULT_PATTERN,
         metavar='PATTERN',
-        help='combine recordings at several positions of the output, by the text in parentheses '
-        'of a regular expression in their names (default: position_1 ...)',
+        help='combine, or pair in groups, recordings at several positions of the output, by the '
+        'text in parentheses of a regular expression in their names (default: position_1 ...)',
     )
     several.add_argument(
         '--preloads',
@@ -113,35 +119,66 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
     arguments.add_fleet(several.add_mutually_exclusive_group())
-    arguments.add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Measure every recording, even if others are unusable, and compare them."""
-    if options.preloads is None and (options.load or options.preload_unit):
-        raise ValueError(f'--{"load" if options.load else "preload-unit"} needs --preloads')
-    reporter = Reporter(options, len(options.recordings), compared=True)
+    _check(options)
+    reporter = Reporter(options, len(options.recordings), compared=True, brief=not options.verbose)
     outcomes = list(_outcomes(options))
-    usable = [outcome for outcome in outcomes if outcome.report]
-    damage = [outcome.report.recording.error for outcome in usable if outcome.report]
+    reports = [outcome.report for outcome in outcomes if outcome.report]
+    damage = [report.recording.damage for report in reports]
     for text in (*(outcome.error for outcome in outcomes), *damage):
         if text:
             complain(text)
-    if usable:
+    verdict = None
+    if reports:
         configs = (arguments.config_path(options, path) for path in options.recordings)
-        reporter.write(document(*_compared(usable, options)), configs)
-    complete = len(usable) == len(outcomes) and not any(damage)
-    return ExitCode.DONE if complete else ExitCode.UNUSABLE
+        found = document(*_compared(reports, options), _limits(options))
+        verdict = found.verdict
+        reporter.write(found, configs)
+    if len(reports) < len(outcomes) or any(damage):
+        return ExitCode.UNUSABLE
+    return ExitCode.FAILED if verdict == Verdict.FAIL else ExitCode.DONE
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuse options that exclude each other, and patterns that are none, before any work."""
+    if options.preloads is None and (options.load or options.preload_unit):
+        raise ValueError(f'--{"load" if options.load else "preload-unit"} needs --preloads')
+    if options.trend and (options.positions is not None or options.preloads is not None):
+        wrong = 'positions' if options.positions is not None else 'preloads'
+        raise ValueError(f'--{wrong} cannot be combined with --trend')
+    names = _names(options.recordings)
+    if options.group:
+        _, others = grouping.grouped(names, options.group)
+        names = [name for number, name in enumerate(names) if number not in others]
+    if options.positions is not None:
+        grouping.positions_of(names, options.positions)
+    if options.preloads:
+        check_pattern(options.preloads)
+
+
+def _limits(options: argparse.Namespace) -> Limits:
+    hysteresis, lost_motion, backlash = (
+        most and most / ARC_MINUTES
+        for most in (options.max_hysteresis, options.max_lost_motion, options.max_backlash)
+    )
+    return Limits(hysteresis, lost_motion, backlash, options.min_stiffness)
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Name recordings by their files, or by their paths where those are the same."""
+    known = Counter(path.name for path in paths)
+    return [path.name if known[path.name] == 1 else str(path) for path in paths]
 
 
 def _outcomes(options: argparse.Namespace) -> Iterator[Outcome]:
     """Measure the recordings, in processes or on a cluster if so told, in their order."""
     paths = options.recordings
-    known = Counter(path.name for path in paths)
     found: dict[int, Outcome] = {}
     tasks: list[Task] = []
-    for number, path in enumerate(paths):
-        name = path.name if known[path.name] == 1 else str(path)
+    for number, (path, name) in enumerate(zip(paths, _names(paths), strict=True)):
         try:
             tasks.append(_task(number, path, name, options))
         except (ValueError, OSError) as error:
@@ -162,66 +199,57 @@ def _measured(
 
 
 def _compared(
-    usable: Sequence[Outcome], options: argparse.Namespace
-) -> tuple[list[LostMotionReport], list[Compared]]:
+    reports: Sequence[LostMotion], options: argparse.Namespace
+) -> tuple[list[LostMotion], list[Comparison]]:
     """Return the reports, those that are compared at a common torque, and what they tell."""
-    reports = [outcome.report for outcome in usable if outcome.report]
     torques = options.rated_torque, options.stiffness_torques
     if options.trend:
-        if options.positions or options.preloads is not None:
-            wrong = 'positions' if options.positions else 'preloads'
-            raise ValueError(f'--{wrong} cannot be combined with --trend')
-        times, source = common_times([outcome.times for outcome in usable if outcome.times])
+        times, source = common_times([report.recording.dates for report in reports])
         order = sorted(range(len(reports)), key=times.__getitem__)
-        reports = at_common_torque([reports[number] for number in order], *torques)
-        return reports, [over_time(reports, [times[number] for number in order], source)]
+        ordered = at_common_torque([reports[number] for number in order], *torques)
+        return ordered, [over_time(ordered, [times[number] for number in order], source)]
     groups, apart = None, []
     if options.group:
-        groups, others = grouped([report.recording.name for report in reports], options.group)
-        for report in others:
-            complain(f'{reports[report].recording.name}: is of no group, and not compared')
+        groups, others = grouping.grouped([report.name for report in reports], options.group)
+        for number in others:
+            complain(f'{reports[number].name}: is of no group, and not compared')
         apart = [reports[number] for number in others]
         reports = [report for number, report in enumerate(reports) if number not in others]
-    found: list[Compared] = []
     reports = at_common_torque(reports, *torques)
-    if options.positions:
-        names = [report.recording.name for report in reports]
-        gears, positions = at_positions(names, options.positions)
-        groups = groups or gears
-        found.append(over_positions(reports, groups, positions))
+    found: list[Comparison] = []
+    positions = None
+    if options.positions is not None:
+        names = [report.name for report in reports]
+        gears, positions = grouping.positions_of(names, options.positions)
+        if not groups:
+            found.append(over_positions(reports, gears, positions))
+            groups = gears if len(gears) > 1 else None
     if options.preloads is not None:
-        found.append(_over_preload(reports, options))
-    elif comparison := compared(reports, groups):
-        found.append(comparison)
-    if options.plot and not found and len(usable) > 1:
+        gear = gear_from_mapping(arguments.load_config(options, options.recordings[0]))
+        settings, scale = settings_of(
+            [report.name for report in reports], options.preloads, options.preload_unit, gear
+        )
+        found.append(over_preload(reports, settings, scale, options.load))
+    elif (groups or positions is None) and (one := compared(reports, groups, positions)):
+        found.append(one)
+    if options.plot and not found and len(reports) > 1:
         raise ValueError('--plot: the recordings have no figure in common')
     return [*reports, *apart], found
-
-
-def _over_preload(reports: Sequence[LostMotionReport], options: argparse.Namespace) -> Compared:
-    gear = gear_from_mapping(arguments.load_config(options, options.recordings[0]))
-    names = [report.recording.name for report in reports]
-    settings, scale = settings_of(names, options.preloads, options.preload_unit, gear)
-    return over_preload(reports, settings, scale, options.load or 0.0)
 
 
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, path)
     if options.travel is not None:
         config['transmission_error_travel'] = math.radians(options.travel)
+    corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
     return Task(
         number,
         path,
         name,
         config,
+        Request(options.rated_torque, corners, options.fit_ratio, options.delay),
         arguments.columns(options),
         options.rotor_topic,
         options.encoder_topic,
-        options.counts,
-        options.output_counts,
-        options.rated_torque,
-        options.stiffness_torques and tuple(sorted(options.stiffness_torques)),
-        options.fit_ratio,
-        options.delay,
         options.debug,
     )

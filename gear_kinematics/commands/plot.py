@@ -23,7 +23,6 @@ from gear_kinematics.state.trajectory import MOST_TURNS, Trajectory
 
 Config = Mapping[str, Any]
 
-HELP = 'draw figures: kinematic scheme, roses, slides, output over time'
 _DEGREES = 40.0  # rotor angle at which all parts of the scheme can be seen
 _SPEED = 100.0 * math.pi  # rad/s: 3000 rpm
 

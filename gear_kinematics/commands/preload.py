@@ -16,7 +16,6 @@ from gear_kinematics.kinematics.vernier import PinSetting
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc, arc_seconds
 
-HELP = 'preload, torque limits and torque split, and the ring turn for them'
 _LOADS = 4
 """Rows of the table on either side of zero load, in addition to the thresholds."""
 _NEAT = (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)

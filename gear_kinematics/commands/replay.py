@@ -13,8 +13,6 @@ from gear_kinematics.commands.output import message_progress, warn_of_shared_mem
 from gear_kinematics.wire.nearest import among
 from gear_kinematics.wire.topics import ROTOR_STATE
 
-HELP = "publish a bag's rotor topic with the timing of the recording"
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""

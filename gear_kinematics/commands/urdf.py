@@ -11,8 +11,6 @@ from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.state import meshes
 
-HELP = 'print the URDF, and write its meshes'
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""

@@ -20,7 +20,6 @@ from gear_kinematics.validation.fleet import WORK, Task, unusable, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 
-HELP = 'compare recorded outputs with recomputed ones'
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
     Verdict.FAIL: ExitCode.FAILED,

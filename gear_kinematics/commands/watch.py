@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
 _MAX_PORT = 65535
 
-HELP = 'show a running node and its driver live: on a page, or in the terminal'
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""

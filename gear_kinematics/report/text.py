@@ -36,7 +36,8 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
     Args:
         document: the report.
         console: to print it on.
-        brief: whether a section that passed is a single line elsewhere.
+        brief: whether elsewhere a section that passed is a single line, and one without a verdict
+            its findings.
     """
     if not (console.is_terminal and console.width >= _NARROWEST):
         _print_lines(lines(document, brief=brief), console)
@@ -53,14 +54,18 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
 
 def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
     """Yield one fact per line, each with the section it belongs to; see `render`."""
+    summary = [f'summary: {document.totals}'] if document.totals and document.sections[1:] else []
+    compared = any(section.leads for section in document.sections)
+    yield from summary if compared else ()
     for section in document.sections:
-        if brief and section.verdict == Verdict.PASS:
+        if brief and section.verdict is None:
+            yield from (f'{section.name}: {finding.text}' for finding in section.findings)
+        elif brief and section.verdict == Verdict.PASS:
             findings = ''.join(f'; {finding.text}' for finding in section.findings)
             yield f'{section.name}: verdict: {OUTCOME[section.verdict]}{findings}'
         else:
             yield from section_lines(section)
-    if document.totals and len(document.sections) > 1:
-        yield f'summary: {document.totals}'
+    yield from () if compared else summary
 
 
 def section_lines(section: Section) -> Iterator[str]:
@@ -90,16 +95,16 @@ def _render_section(section: Section, console: Console) -> None:
     if section.name:
         verdict = (f'{OUTCOME[section.verdict].upper()} ', style) if section.verdict else ''
         console.print(Text.assemble(verdict, (section.name, 'bold'), overflow='fold'))
+    for finding in section.findings:
+        console.print(_bullet(finding.text, '' if section.verdict == Verdict.PASS else style))
     for table in section.tables:
         if not table.rows:
             continue
         if table.layout == Layout.ROWS:
             console.print()
         console.print(_LAYOUTS[table.layout](table))
-    if section.findings or section.remarks:
+    if section.remarks:
         console.print()
-    for finding in section.findings:
-        console.print(_bullet(finding.text, '' if section.verdict == Verdict.PASS else style))
     for remark in section.remarks:
         console.print(_bullet(remark))
     console.print()

@@ -19,7 +19,10 @@ Array = NDArray[Any]
 
 _DEPTH = 8192  # predictions that are kept
 _SHARE = 0.05  # of samples that may be outside of a 95 % interval
-_UNLIKELY = 1e-3  # probability of what a calibration that fits does not do
+_TOLERATED = 0.07  # since the width of an interval is known to a few percent (docs/calibration.md)
+# Standard deviations that chance exceeds with 1 % in a single judgement, and with 0.1 % where one
+# follows the other, as in the node.
+_UNLIKELY_ONCE, _UNLIKELY = 2.326, 3.090
 
 
 class CalibrationFit(NamedTuple):
@@ -31,10 +34,19 @@ class CalibrationFit(NamedTuple):
     outside: float
     """Share of samples outside of the 95 % interval, apart from the encoder's zero."""
     fits: bool
-    """Whether that many would be outside of a true interval by chance."""
+    """Whether that many would be outside of a true interval by chance, or hardly more are."""
+    independent: float
+    """Number of independent samples, of whether they are outside."""
+
+    @property
+    def outside_uncertainty(self) -> float:
+        """Expanded uncertainty (95 %) of the share that would be outside in the long run."""
+        # Agresti and Coull's estimate, which is not 0 where no sample is outside.
+        share = (self.outside * self.independent + 2.0) / (self.independent + 4.0)
+        return 2.0 * math.sqrt(share * (1.0 - share) / (self.independent + 4.0))
 
     @classmethod
-    def of(cls, error: Array, residual: Array, half_width: Array) -> Self:
+    def of(cls, error: Array, residual: Array, half_width: Array, *, once: bool = False) -> Self:
         """Judge samples, (n,) each, rad.
 
         The zero of the encoder is not known, so the means are taken out.
@@ -43,16 +55,22 @@ class CalibrationFit(NamedTuple):
             error: measured minus ideal output angle.
             residual: measured minus corrected output angle.
             half_width: of the interval.
+            once: whether this is the only judgement, not one of many.
         """
         error, residual = (column - column[0] for column in (error, residual))  # rounds less
         error, residual = error - error.mean(), residual - residual.mean()
         variance = float(error @ error)
-        outside = float(np.mean(np.abs(residual) > half_width))
+        is_outside = np.abs(residual) > half_width
+        outside = float(np.mean(is_outside))
+        independent = independent_samples(is_outside - outside)
         return cls(
             len(error),
             1.0 - float(residual @ residual) / variance if variance else None,
             outside,
-            _is_likely(outside, independent_samples(residual)),
+            outside <= _TOLERATED
+            or 2.0 * math.sqrt(independent) * _excess(outside)
+            <= (_UNLIKELY_ONCE if once else _UNLIKELY),
+            independent,
         )
 
 
@@ -119,17 +137,13 @@ class CalibratedOutput:
             del column[:count]
 
 
-def _is_likely(outside: float, samples: float) -> bool:
-    """Whether a share of independent samples is outside of a true 95 % interval by chance.
+def _excess(outside: float) -> float:
+    """How much more than 5 % are outside, in units of 1/(2 √n) that scatter of n samples has.
 
-    Chernoff's bound of the binomial distribution: P ≤ exp(-n KL(outside ‖ 5 %)).
+    The arc sine of the root of a binomial share is about normal, with the variance 1/(4 n)
+    (M. S. Bartlett, Journal of the Royal Statistical Society, Supplement 3 (1936) 68).
     """
-    if outside <= _SHARE:
-        return True
-    divergence = outside * math.log(outside / _SHARE)
-    if outside < 1.0:
-        divergence += (1.0 - outside) * math.log((1.0 - outside) / (1.0 - _SHARE))
-    return samples * divergence <= -math.log(_UNLIKELY)
+    return math.asin(math.sqrt(outside)) - math.asin(math.sqrt(_SHARE))
 
 
 def independent_samples(residual: Array) -> float:

@@ -174,36 +174,21 @@ def hidden_resolution(step: float, repeats: Sequence[float], readings: int) -> f
     return math.sqrt(readings) * resolution(step) * math.exp(-2.0 * turns * turns)
 
 
-def slope_resolution(step: float, run: float, slope: float, *, of_means: bool = False) -> float:
+def slope_resolution(step: float, run: float, slope: float) -> float:
     """Standard uncertainty of a slope by the steps of an encoder.
 
     The line goes through many readings, of which those within a step count as one; over less than
-    six steps, the line counts as one through its ends. In means, the errors of whole steps cancel,
-    so that only those at the ends of the line remain.
+    six steps, the line counts as one through its ends.
 
     Args:
         step: of a reading.
         run: length of the line on the other axis.
         slope: of the line, in the unit of the step over that of the run.
-        of_means: whether the line goes through means that contain all readings.
     """
     if not step:
         return 0.0
     steps = max(6.0, abs(slope) * run / step)
-    standard = resolution(step) / run * math.sqrt(12.0 / steps)
-    return standard * math.sqrt(6.0 / steps) if of_means else standard
-
-
-def end_resolution(step: float, run: float) -> float:
-    """Standard uncertainty of the end of a line by the steps of an encoder, in their unit.
-
-    The line goes through many readings, of which those within a step count as one.
-
-    Args:
-        step: of a reading.
-        run: difference of the readings at the ends of the line.
-    """
-    return resolution(step) * math.sqrt(4.0 / max(4.0, run / step)) if step else 0.0
+    return resolution(step) / run * math.sqrt(12.0 / steps)
 
 
 def by_steps(standard: float, repeats: int) -> Component:
@@ -229,35 +214,6 @@ def common_part(errors: NDArray[np.float64]) -> float:
         return 0.0
     scatter = float(np.mean(np.var(errors, axis=0, ddof=1))) / count
     return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
-
-
-def expected_effect(
-    values: NDArray[np.float64], standards: NDArray[np.float64], usual: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return what is expected of an effect that may not be there, by each of its explanations.
-
-    Before the measurement, an effect is as likely as none, all explanations are equally likely,
-    and effects have the standard deviation `usual`. The odds of an effect are then the Bayes
-    factor (H. Jeffreys, Theory of Probability, 3rd ed. (1961), ch. V), averaged over the
-    explanations.
-
-    Args:
-        values: (..., explanations), as measured.
-        standards: of the same shape, their standard uncertainties.
-        usual: of the same unit.
-
-    Returns:
-        The means, and their standard uncertainties, of the same shape.
-    """
-    # Equal readings have no scatter, but are not exact.
-    known = np.maximum(standards, _EXACT * usual)
-    share = usual**2 / (usual**2 + known**2)
-    factors = 0.5 * (np.log1p(-share) + share * (values / known) ** 2)  # logarithms
-    most = np.max(factors, axis=-1, keepdims=True)
-    odds = np.mean(np.exp(factors - most), axis=-1, keepdims=True)  # times exp(most)
-    effect = odds / (odds + np.exp(-most))
-    means, variances = share * values, share * known**2
-    return effect * means, np.sqrt(effect * (variances + (1.0 - effect) * means**2))
 
 
 @cache

@@ -2,6 +2,7 @@
 
 import json
 import re
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -54,7 +55,8 @@ def test_a_field_of_the_report_is_in_every_form(monkeypatch, capsys, tmp_path):
 
 def test_a_subcommand_reports_in_every_form(monkeypatch, capsys):
     pytest.importorskip('plotly')
-    monkeypatch.setitem(cli.COMMANDS, 'ratio', module(COMMAND))
+    monkeypatch.setitem(cli.COMMANDS, 'ratio', 'the gear ratio')
+    monkeypatch.setitem(sys.modules, 'gear_kinematics.commands.ratio', module(COMMAND))
     outputs = {}
     for form in ('', '--json', '--html'):
         assert cli.main(['ratio', *([form, '-'] if form else [])]) == 0

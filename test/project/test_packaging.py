@@ -34,6 +34,7 @@ ROSDEP_KEYS = {
     'numpy': 'python3-numpy',
     'rich': 'python3-rich',
     'rosbags': 'python3-rosbags-pip',
+    'scipy': 'python3-scipy',
     'tornado': 'python3-tornado',
     'yaml': 'python3-yaml',
 }

@@ -134,15 +134,13 @@ ROOMS = {
     'state': ('bag', 'kinematics', 'shape', 'wire'),
     'report': (),
     'validation': ('bag', 'kinematics', 'report', 'shape', 'state', 'wire'),
-    'lost_motion': ('bag', 'kinematics', 'report', 'state', 'wire'),
-    'calibration': ('bag', 'kinematics', 'lost_motion', 'report', 'state', 'wire'),
+    'measurement': ('bag', 'kinematics', 'report', 'state', 'wire'),
     'plotting': ('kinematics', 'report', 'shape', 'state'),
     'ros': ('bag', 'kinematics', 'report', 'shape', 'state', 'validation', 'wire'),
     'commands': (
         'bag',
-        'calibration',
         'kinematics',
-        'lost_motion',
+        'measurement',
         'plotting',
         'report',
         'ros',
@@ -153,14 +151,12 @@ ROOMS = {
     ),
 }
 """Each room of the package and the rooms it imports, all of which stand before it."""
-LOST_MOTION = {
-    'recorded': (),
-    'static': ('recorded',),
-    'dynamic': ('recorded',),
-    'several': ('recorded', 'static', 'dynamic'),
-    'preload': ('recorded', 'static', 'dynamic', 'several'),
+MEASUREMENT = {
+    'preload': ('comparison', 'encoder_step', 'lost_motion', 'wording'),
+    'compare': ('comparison', 'figures', 'loops', 'lost_motion', 'wording'),
+    'calibration': ('clock', 'curves', 'ratio', 'recording', 'wording'),
 }
-"""Rooms within `lost_motion`, and those of them that each may import."""
+"""Rooms within `measurement`, and what of its modules they import."""
 TENANTS = {
     'rclpy': ['ros'],
     'rosbags': ['bag'],
@@ -168,6 +164,7 @@ TENANTS = {
     'plotly': ['report'],
     'mapbox_earcut': ['shape'],
     'tornado': ['ros'],
+    'scipy': ['measurement'],
 }
 """Libraries, and the only rooms that import them."""
 
@@ -178,7 +175,7 @@ def test_a_listing_of_the_package_shows_the_rooms():
     assert len(names) <= 15
 
 
-@pytest.mark.parametrize('room', [*ROOMS, *(f'lost_motion/{room}' for room in LOST_MOTION)])
+@pytest.mark.parametrize('room', [*ROOMS, *(f'measurement/{room}' for room in MEASUREMENT)])
 def test_room_says_in_a_sentence_what_it_is(room):
     document = ast.parse((PACKAGE / room / '__init__.py').read_text('utf-8'))
     first = (ast.get_docstring(document) or '').partition('\n')[0]
@@ -233,16 +230,17 @@ def test_rooms_import_only_rooms_before_them():
         before.append(room)
 
 
-def test_imports_within_lost_motion_point_one_way(imports):
-    inside = {path: path.split('/') for path in imports if path.startswith('lost_motion/')}
-    rooms = {path: parts[1] for path, parts in inside.items() if len(parts) > 2}
-    assert set(rooms.values()) == LOST_MOTION.keys()
-    for path, room in rooms.items():
-        names = (name for name in imports[path] if within(name, 'gear_kinematics.lost_motion'))
-        taken = {name.split('.')[2] for name in names}
-        assert taken & LOST_MOTION.keys() <= {room, *LOST_MOTION[room]}, path
-        if room in {'recorded', 'static', 'dynamic'}:  # reports stand above them
-            assert taken <= LOST_MOTION.keys(), path
+def test_imports_within_measurement_point_one_way(imports):
+    own = 'gear_kinematics.measurement'
+    for path, names in imports.items():
+        top, _, inside = path.removeprefix('measurement/').partition('/')
+        if not path.startswith('measurement/'):
+            continue
+        taken = {name.split('.')[2] for name in names if within(name, own) and name != own}
+        if inside:
+            assert taken <= {top, *MEASUREMENT[top]}, path
+        else:
+            assert not taken & MEASUREMENT.keys(), path
 
 
 @pytest.mark.parametrize('library', TENANTS)

@@ -9,8 +9,6 @@ import pytest
 from gear_kinematics.state.uncertainty import (
     Component,
     Estimate,
-    end_resolution,
-    expected_effect,
     hidden_resolution,
     resolution,
     slope_resolution,
@@ -149,38 +147,6 @@ def test_slope_over_few_steps_is_that_between_two_readings():
     assert slope_resolution(0.0, run=2.0, slope=0.1) == 0.0
 
 
-@pytest.mark.parametrize('steps', [3.0, 20.0, 130.0])
-def test_slope_of_means_is_as_uncertain_as_the_steps_at_its_ends(steps):
-    """Of the steps, each of 100 means contains ten readings, at any place of the steps."""
-    x = np.linspace(0.0, 1.0, 1000)
-    means = [
-        np.mean((np.round(steps * x + zero) - steps * x).reshape(100, 10), axis=1)
-        for zero in np.linspace(0.0, 1.0, 40, endpoint=False)
-    ]
-    slopes = np.polynomial.polynomial.polyfit(
-        x.reshape(100, 10).mean(axis=1), np.transpose(means), 1
-    )[1]
-    stated = slope_resolution(0.5, run=2.0, slope=-0.25 * steps, of_means=True)
-    assert 0.2 * stated <= 0.25 * np.std(slopes) <= stated
-    assert stated <= slope_resolution(0.5, run=2.0, slope=-0.25 * steps)
-    assert slope_resolution(0.0, run=2.0, slope=0.1, of_means=True) == 0.0
-
-
-@pytest.mark.parametrize('steps', [5.0, 20.0, 130.0])
-def test_end_of_a_line_through_steps(steps):
-    """The true line goes on to its end; what is read is rounded, at any place of the steps."""
-    x = np.linspace(0.0, 1.0, 2001)
-    ends = [
-        np.polyval(np.polyfit(x, np.round(steps * x + zero), 1), 1.0) - steps - zero
-        for zero in np.linspace(0.0, 1.0, 40, endpoint=False)
-    ]
-    assert np.std(ends) <= end_resolution(1.0, run=steps)
-    assert end_resolution(0.5, run=0.5 * steps) == pytest.approx(
-        0.5 * end_resolution(1.0, run=steps)
-    )
-    assert end_resolution(0.0, run=1.0) == 0.0
-
-
 def test_intervals_hold_the_mean_as_often_as_they_say():
     generator, hits, trials = np.random.default_rng(5), 0, 2000
     for _ in range(trials):
@@ -218,44 +184,3 @@ def test_difference_has_the_degrees_of_freedom_of_welch():
     assert unknown.value == 2.0
     assert unknown.uncertainty is None
     assert unknown.probability_of_zero() is None
-
-
-@pytest.mark.parametrize('ratio', [0.01, 0.3, 1.0, 5.0])
-def test_effects_that_are_not_clear_have_the_moments_of_simulated_ones(ratio):
-    """Half of the simulated effects are none, and all are measured with the same uncertainty."""
-    rng = np.random.default_rng(3)
-    effects = rng.normal(0.0, 2.0, 400_000) * (rng.random(400_000) < 0.5)
-    standards = np.full(400_000, 2.0 * ratio)
-    values = rng.normal(effects, standards)
-    order = np.argsort(abs(values))
-    found = expected_effect(values[:, None], standards[:, None], 2.0)
-    means, standards = (column[:, 0] for column in found)
-    for group in np.array_split(order, 8):
-        off = means[group] - effects[group]
-        for moment, expected in ((off, 0.0), (off**2, np.mean(standards[group] ** 2))):
-            error = 5.0 * np.std(moment) / math.sqrt(len(group))
-            assert np.mean(moment) == pytest.approx(expected, abs=error + 1e-12)
-
-
-def test_effects_known_without_scatter():
-    found = expected_effect(np.array([[0.0], [0.3]]), np.zeros((2, 1)), 2.0)
-    assert found[0][:, 0] == pytest.approx([0.0, 0.3], abs=1e-5)
-    assert found[1][:, 0] == pytest.approx([0.0, 0.0], abs=1e-5)
-
-
-@pytest.mark.parametrize('size', [0.3, 1.0, 4.0])
-def test_an_effect_with_several_explanations_is_as_likely_as_in_simulated_readings(size):
-    """Half of the readings have an effect, in proportion to one of three curves."""
-    rng = np.random.default_rng(4)
-    curves = np.array([[1.0, 1.0, 0.0, 0.0], [0.0, 1.0, 2.0, 0.0], [0.1, 0.0, 0.1, 0.3]])
-    count = 300_000
-    which, there = rng.integers(3, size=count), rng.random(count) < 0.5
-    effects = rng.normal(0.0, size, count) * there
-    readings = effects[:, None] * curves[which] + rng.standard_normal((count, 4))
-    squares = np.sum(curves**2, axis=1)
-    values, standards = readings @ curves.T / squares, np.tile(squares**-0.5, (count, 1))
-    means, _ = expected_effect(values, standards, size)
-    # The share of effects among readings of which as much is left of one explanation.
-    left = means[:, 1] / (size**2 / (size**2 + 1.0 / squares[1]) * values[:, 1])
-    for group in np.array_split(np.argsort(left), 10):
-        assert np.mean(left[group]) == pytest.approx(np.mean(there[group]), abs=0.015)

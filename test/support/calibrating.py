@@ -2,17 +2,17 @@
 
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from gear_recordings import encoders
 from simulated_gear import GearSet, Simulated, gears, simulate, slow_strokes, strokes
 
-from gear_kinematics.calibration.fit import fit
-from gear_kinematics.calibration.recording import Recording, RotorMotion
-from gear_kinematics.calibration.result import Fit
-from gear_kinematics.calibration.to_file import to_calibration
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.kinematics.rotor_turns import split_turns
+from gear_kinematics.measurement.calibration import Fit, fit, to_calibration
+from gear_kinematics.measurement.clock import Dates
+from gear_kinematics.measurement.recording import Encoders, Recording
 from gear_kinematics.state.correction import Corrector
 
 LIMITED = GearSet(
@@ -20,6 +20,8 @@ LIMITED = GearSet(
     backlash=1.5e-3, load=0.0, white_noise=2e-4, coloured_noise=2e-4,
 )  # fmt: skip
 """A geared joint that turns less than once."""
+COUNTS = 2**24
+"""A turn of encoders whose steps do not matter."""
 MECHANISM = Mechanism(80, 76, 0.0011, (Branch('a'),))
 IN_CLASS = {
     'usual': GearSet(1),
@@ -53,21 +55,18 @@ class Judged(NamedTuple):
     fit: Fit
 
 
-def recorded(simulated: Simulated, gear: int, *, separate: bool = True) -> Recording:
+def recorded(simulated: Simulated, gear: int, *, timed: bool = True) -> tuple[Recording, Encoders]:
     """What the encoders of one gear read."""
-    turns, angle = split_turns(np.ascontiguousarray(simulated.rotor[:, gear]))
-    stamp = np.round(simulated.time * 1e9).astype(np.int64)
-    effort = np.ascontiguousarray(simulated.effort[:, gear])
-    return Recording(
-        f'gear {gear}',
-        '',
-        RotorMotion(stamp, turns, angle, effort),
-        timed=True,
-        separate=separate,
-        before=np.arange(len(turns)),
-        share=np.zeros(len(turns)),
-        measured=np.ascontiguousarray(simulated.measured[:, gear]),
+    stamp = np.round(simulated.time * 1e9).astype(np.int64) if timed else None
+    angles = (
+        np.ascontiguousarray(of[:, gear])
+        for of in (simulated.rotor, simulated.measured, simulated.effort)
     )
+    rotor, measured, effort = angles
+    both = encoders(rotor, measured, stamp, COUNTS, COUNTS)
+    both = replace(both, rotor=both.rotor._replace(effort=effort))
+    path = Path(__file__)  # of no importance but for its hash
+    return Recording(path, f'gear {gear}', (), len(rotor), Dates(None, None, 0.0), both), both
 
 
 def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:
@@ -84,7 +83,7 @@ def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:
 
 def judge(result: Fit, simulated: Simulated, gear: int) -> Judged:
     """Correct another recording as the node does."""
-    rotor = recorded(simulated, gear).rotor
+    rotor = recorded(simulated, gear)[1].rotor
     count = len(rotor.stamp)
     correction = Corrector(to_calibration(result)).correct_batch(
         rotor.stamp, rotor.turns, rotor.angle, np.full(count, np.nan), rotor.effort,

@@ -11,6 +11,9 @@ import numpy as np
 from simulated_gear import GearSet, gears, simulate, strokes
 
 from gear_kinematics.bag import BagWriter
+from gear_kinematics.kinematics.rotor_turns import split_turns
+from gear_kinematics.measurement.encoder_step import step_of
+from gear_kinematics.measurement.recording import Encoders, RotorMotion
 from gear_kinematics.wire.cdr import JointStateTemplate
 
 
@@ -65,6 +68,26 @@ def write_csv(path: Path, **columns: Sequence[float]) -> Path:
         writer.writerow(columns)
         writer.writerows(zip(*(np.asarray(c).tolist() for c in columns.values()), strict=True))
     return path
+
+
+def encoders(
+    rotor: np.ndarray,
+    output: np.ndarray,
+    stamp: np.ndarray | None = None,
+    counts: int | None = None,
+    output_counts: int | None = None,
+) -> Encoders:
+    """Angles of rotor and output at the same times, rad; without stamps, rows."""
+    rows = np.arange(len(rotor))
+    return Encoders(
+        RotorMotion(rows * 10**9 if stamp is None else stamp, *split_turns(rotor)),
+        timed=stamp is not None,
+        before=rows,
+        share=np.zeros(len(rows)),
+        measured=output,
+        rotor_step=step_of(counts, rotor),
+        output_step=step_of(output_counts, output),
+    )
 
 
 class Samples(NamedTuple):

@@ -5,102 +5,61 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from simulated_ramps import STEP, Ramps, Scenario, drawn, hysteresis, simulate
+from simulated_ramps import STEP, Scenario, drawn, hysteresis, simulate
 
-from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.lost_motion.recorded.encoder_step import Source, Step
-from gear_kinematics.lost_motion.recorded.recording import Loading, Recording
-from gear_kinematics.lost_motion.report import HysteresisReport, measure
+from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
+from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.state.uncertainty import Estimate
 
 
 class Judged(NamedTuple):
-    """Shares of recordings in which a figure is held by its interval, and what is told."""
+    """Shares of recordings in which a figure is held by its interval, and how wide that is."""
 
     hysteresis: float
-    play: float
-    """Of those with a value or an upper bound."""
     friction: float
-    """NaN where a gear has no one friction."""
-    spring: float
-    valued: float
-    """Share of recordings whose play has a value."""
-    refused: float
-    """Share of those whose play is not separable from the spring."""
-    play_bias: float
-    """rad, mean error of the values; NaN without any."""
-    play_uncertainty: float
-    """rad, median ± of the values; NaN without any."""
-    limit: float
-    """rad, median upper bound; NaN without any."""
-    below_zero: int
-    """Plays that are told to be zero or negative, as values or bounds."""
+    """NaN where a gear has no one friction, or where time adds to the width of the loop."""
+    backlash: float
+    width: float
+    """rad, median of the interval of the backlash."""
+    widest: float
+    """rad, of 95 of 100 intervals."""
+    above_zero: float
+    """Share of recordings that are told to have backlash."""
 
 
-def judge(scenario: Scenario, count: int, seed: int = 1) -> Judged:
-    """Measure simulated recordings, each of another gear, and compare with the gears."""
+def judge(scenario: Scenario, count: int, seed: int = 1, *, alike: bool = False) -> Judged:
+    """Measure simulated recordings and compare with the gears, which all differ unless alike."""
     random = np.random.default_rng(seed)
-    gears = drawn(scenario, count, random)
+    gears = drawn(scenario, count, random, spread=0.0 if alike else 1.0)
     recorded = simulate(gears, random)
-    found = [_measured(recorded, k) for k in range(count)]
-    models = [one.smallest.play_model for one in found]
-    values = [(play, m.play) for play, m in zip(gears.play, models, strict=True) if m.play]
-    limits = [
-        (play, m.limit) for play, m in zip(gears.play, models, strict=True) if m.limit is not None
+    found = [
+        measured(recorded.torque[:, k], recorded.angle[:, k], recorded.time) for k in range(count)
     ]
-    told = len(values) + len(limits)
-    held = sum(_holds(found, play) for play, found in values)
-    held += sum(play <= limit for play, limit in limits)
+    backlash = [figures.backlash for figures in found]
+    widths = [(math.inf if one.high is None else one.high) - one.low for one in backlash]
+    held = [
+        # Within the step of the encoder, which hides the ends of an interval.
+        one.low - 0.5 * STEP <= play and (one.high is None or play <= one.high + 0.5 * STEP)
+        for one, play in zip(backlash, gears.play * np.ones(count), strict=True)
+    ]
     return Judged(
         hysteresis=_share((one.smallest.hysteresis for one in found), hysteresis(gears)),
-        play=held / told if told else math.nan,
         friction=math.nan
-        if scenario.slip
-        else _share((model.friction for model in models), gears.friction),
-        spring=_share(
-            (one.spring.stiffness for one in found),
-            [_stiffness(scenario, one) for one in found] / gears.softness,
-        ),
-        valued=len(values) / count,
-        refused=1.0 - told / count,
-        play_bias=_mean([found.value - play for play, found in values]),
-        play_uncertainty=_median([found.uncertainty for _, found in values]),
-        limit=_median([limit for _, limit in limits]),
-        below_zero=sum(found.value <= 0.0 for _, found in values)
-        + sum(limit <= 0.0 for _, limit in limits),
+        if scenario.slip or scenario.creeps or np.any(scenario.lag) or scenario.inertia
+        else _share((one.smallest.friction for one in found), gears.friction),
+        backlash=float(np.mean(held)),
+        width=float(np.median(widths)),
+        widest=float(np.quantile(widths, 0.95)),
+        above_zero=float(np.mean([one.low > 0.0 for one in backlash])),
     )
 
 
-def _measured(recorded: Ramps, gear: int) -> HysteresisReport:
-    loading = Loading(
-        recorded.torque[:, gear],
-        recorded.angle[:, gear],
-        Step(STEP, Source.GIVEN),
-        measured=True,
-        time=recorded.time,
-    )
-    recording = Recording('simulated', (), len(recorded.time), loading)
-    return measure(recording, GearRatio(-19)).hysteresis
-
-
-def _stiffness(scenario: Scenario, found: HysteresisReport) -> float:
-    """Stiffness of the true spring over the same loads: the line through its curve."""
-    load = np.linspace(found.spring.low, found.spring.high, 400)
-    return 1.0 / float(np.polyfit(load, scenario.twist(load), 1)[0])
-
-
-def _holds(estimate: Estimate, value: float) -> bool:
-    return abs(estimate.value - value) <= estimate.uncertainty
+def measured(torque: np.ndarray, angle: np.ndarray, time: np.ndarray) -> GearFigures:
+    ramps = find_ramps(torque, angle, time)
+    return gear_figures(ramps, settings_for(ramps, STEP))
 
 
 def _share(found: Iterable[Estimate], true: Sequence[float]) -> float:
     """Share of the estimates that hold."""
-    return float(np.mean(list(map(_holds, found, true))))
-
-
-def _mean(values: Sequence[float]) -> float:
-    return float(np.mean(values)) if values else math.nan
-
-
-def _median(values: Sequence[float]) -> float:
-    return float(np.median(values)) if values else math.nan
+    pairs = zip(found, true, strict=True)
+    return float(np.mean([abs(one.value - value) <= one.uncertainty for one, value in pairs]))

@@ -46,6 +46,11 @@ def hardening(load: np.ndarray) -> np.ndarray:
     return load / 600.0 + 0.025 * np.tanh(load / 5.0)
 
 
+def hertzian(load: np.ndarray) -> np.ndarray:
+    """As of two bodies in contact: no stiffness at no load."""
+    return np.sign(load) * 0.02 * (np.abs(load) / 10.0) ** (2.0 / 3.0)
+
+
 def soft_middle(load: np.ndarray) -> np.ndarray:
     """60 N·m/rad within 1 N·m, as of tooth flanks that are not yet fully in contact."""
     return load / 300.0 + 0.0133 * np.tanh(load)
@@ -57,7 +62,7 @@ class Scenario:
 
     name: str
     contained: bool = True
-    """Whether the family of models contains it."""
+    """Whether a middle line with a straight or a smoothly bent spring describes it."""
     play: Value = 0.0
     spring: Spring = linear
     softness: Value = 1.0
@@ -116,22 +121,20 @@ SCENARIOS = (
     Scenario(
         'play, hardening spring, large loops only', play=0.01, spring=hardening, loops=LARGE_ONLY
     ),
-    Scenario('soft middle', contained=False, spring=soft_middle),
-    Scenario(
-        'creep with two times', contained=False, play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))
-    ),
+    Scenario('no play, Hertzian spring', spring=hertzian),
+    Scenario('play, Hertzian spring', play=0.01, spring=hertzian),
+    Scenario('soft middle', spring=soft_middle),
+    Scenario('creep with two times', play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))),
     Scenario(
         'creep, softening spring',
-        contained=False,
         play=0.01,
         spring=softening,
         creeps=((0.1, 5.0),),
     ),
-    Scenario('friction that builds up', contained=False, play=0.01, bristle=0.5),
+    Scenario('friction that builds up', play=0.01, bristle=0.5),
     Scenario('stick-slip', contained=False, play=0.01, slip=0.3),
     Scenario(
         'creep, drift and growing friction',
-        contained=False,
         play=0.01,
         creeps=((0.05, 5.0),),
         load_friction=0.05,
@@ -142,11 +145,13 @@ SCENARIOS = (
 )
 
 
-def drawn(scenario: Scenario, count: int, random: np.random.Generator) -> Scenario:
+def drawn(
+    scenario: Scenario, count: int, random: np.random.Generator, spread: float = 1.0
+) -> Scenario:
     """Draw gears and their sensors: each figure is that of the scenario or up to twice or half."""
 
     def about(value: float) -> np.ndarray:
-        return value * 2.0 ** random.uniform(-1.0, 1.0, count)
+        return value * 2.0 ** random.uniform(-spread, spread, count)
 
     friction = about(scenario.friction)
     return replace(

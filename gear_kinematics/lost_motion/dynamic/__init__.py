@@ -1,1 +1,0 @@
-"""Rotor and output in motion: transmission error, lost motion on reversals, gear ratio."""

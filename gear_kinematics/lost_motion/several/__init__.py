@@ -1,1 +1,0 @@
-"""Several recordings: at one torque, before and after, over time, over positions."""

@@ -1,1 +1,0 @@
-"""Torque ramps: hysteresis, and the models of spring, play, friction and time behind it."""

@@ -1,0 +1,5 @@
+"""What a recording says of the real gear: lost motion, stiffness, transmission error, calibration.
+
+`reading.read` makes a `recording.Recording` of a file, and `lost_motion.measure` a `LostMotion` of
+that. Definitions and their sources are in docs/lost_motion.md and docs/calibration.md.
+"""

@@ -1,0 +1,11 @@
+"""Calibrates the real output of a gear, from recordings of its rotor's and output's encoders.
+
+The method and its sources are in docs/calibration.md.
+"""
+
+from gear_kinematics.measurement.calibration.check import Judgement, judge
+from gear_kinematics.measurement.calibration.fit import fit
+from gear_kinematics.measurement.calibration.result import Fit
+from gear_kinematics.measurement.calibration.to_file import to_calibration
+
+__all__ = ['Fit', 'Judgement', 'fit', 'judge', 'to_calibration']

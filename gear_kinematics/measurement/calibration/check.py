@@ -1,0 +1,128 @@
+"""Checks a calibration by recordings that it was not made from."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from gear_kinematics.measurement.calibration.fit import check_ratio
+from gear_kinematics.measurement.calibration.normal import jackknife
+from gear_kinematics.measurement.recording import Array, Encoders, Recording
+from gear_kinematics.state.calibrated_output import CalibrationFit
+from gear_kinematics.state.calibration_file import Calibration
+from gear_kinematics.state.correction import Corrector
+from gear_kinematics.state.uncertainty import Estimate
+
+_BLOCKS = 24
+"""Blocks of successive samples from which the uncertainty of a delay is estimated."""
+_ROUNDS = 4
+"""Estimates of the delay, each of what the ones before left."""
+_VARIES = 0.05
+"""Standard deviation of the speed, as a share of the greatest, that tells a delay from a zero."""
+
+
+class Judgement(NamedTuple):
+    """A calibration compared with a recording; arrays are (n,), of the measured angles."""
+
+    recording: Recording
+    timed: bool
+    seconds: Array
+    output: Array
+    """Ideal output angle, rad."""
+    before: Array
+    """Measured minus ideal output angle less its mean, rad, without the delay."""
+    after: Array
+    """Measured minus corrected output angle less its mean, rad, without the delay."""
+    with_delay: tuple[float, float]
+    """rms before and after, rad, with the delay left in."""
+    half_width: Array
+    """rad, of the interval."""
+    uncalibrated: float
+    """Share of samples in conditions that were not calibrated, or with an unknown history."""
+    delay: Estimate | None
+    """s: by how much the output's angles are late; taken out if clear; None if not known."""
+    fit: CalibrationFit
+
+    @property
+    def rms_before(self) -> float:
+        """rad."""
+        return float(np.std(self.before))
+
+    @property
+    def rms_after(self) -> float:
+        """rad."""
+        return float(np.std(self.after))
+
+    @property
+    def holds(self) -> bool:
+        """Whether the error is less with the correction, and within its interval."""
+        return self.rms_after < self.rms_before and self.fit.fits
+
+
+def judge(recording: Recording, encoders: Encoders, calibration: Calibration) -> Judgement:
+    """Correct the output of a recording as the node does, and compare it with the measured one.
+
+    The zero of the recording and the delay of its stamps are taken out: they are not the gear's.
+
+    Raises:
+        RecordingError: if the recording has another gear ratio.
+    """
+    rotor, ratio = encoders.rotor, calibration.gear_ratio
+    check_ratio(recording, encoders, ratio)
+    if not encoders.timed:
+        calibration = replace(calibration, spans=replace(calibration.spans, speed=None))
+    count = len(rotor.turns)
+    unknown, unbroken = np.full(count, np.nan), np.zeros(count, np.int64)
+    effort = unknown if rotor.effort is None else rotor.effort
+    segment = unbroken if rotor.segment is None else rotor.segment
+    correction = Corrector(calibration).correct_batch(
+        rotor.stamp, rotor.turns, rotor.angle, unknown, effort, segment
+    )
+
+    def errors(of: Encoders) -> tuple[Array, Array]:
+        error = of.error(ratio)
+        left = error - of.at_measured(correction.deviation)
+        return error - error.mean(), left - left.mean()
+
+    before, after = errors(encoders)
+    with_delay = float(np.std(before)), float(np.std(after))
+    shifted, delay = encoders, None
+    for _ in range(_ROUNDS if encoders.timed else 0):
+        delay = _delay(shifted.speed(ratio), after, delay.value if delay else 0.0)
+        shifted = encoders.earlier(delay.value) if delay and delay.clear else encoders
+        before, after = errors(shifted)
+        if shifted is encoders:
+            break
+    half_width = shifted.at_measured(correction.half_width)
+    return Judgement(
+        recording=recording,
+        timed=encoders.timed,
+        seconds=shifted.seconds,
+        output=shifted.at_measured(encoders.ideal(ratio)),
+        before=before,
+        after=after,
+        with_delay=with_delay,
+        half_width=half_width,
+        uncalibrated=float(np.mean(half_width > calibration.half_width)),
+        delay=delay,
+        fit=CalibrationFit.of(before, after, half_width, once=True),
+    )
+
+
+def _delay(speed: Array, residual: Array, shift: float) -> Estimate | None:
+    """Estimate a delay, s, by least squares with the zero; None at a constant speed.
+
+    Args:
+        speed: of the output, rad/s.
+        residual: measured minus corrected output angle, rad.
+        shift: part of the delay that has been taken out already, s.
+    """
+    if not np.std(speed) > _VARIES * np.max(np.abs(speed)):
+        return None
+    columns = np.stack([-speed, np.ones(len(speed)), residual], axis=1)
+    sums = np.array([block.T @ block for block in np.array_split(columns, _BLOCKS)])
+    value, *repeats = (
+        shift + float(np.linalg.lstsq(s[:2, :2], s[:2, 2], rcond=None)[0][0])
+        for s in (sums.sum(axis=0), *(sums.sum(axis=0) - sums))
+    )
+    return jackknife(value, repeats)

@@ -1,0 +1,200 @@
+"""The terms of a calibration, each with one or two columns of the linear model.
+
+A column is in the unit of the calibration file, so that a coefficient is what the file contains.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.calibration.samples import Samples
+from gear_kinematics.measurement.recording import Array
+from gear_kinematics.measurement.wording import ARC_MINUTES
+from gear_kinematics.report.document import number
+
+_MULTIPLES: Mapping[str, int] = {'output': 4, 'rotor': 4, 'satellite': 2, 'teeth': 2}
+"""Multiples that are tried of each order."""
+_CAUSES: Mapping[str, tuple[str, str]] = {
+    'output': (
+        'eccentricity or runout of the output shaft or of its encoder',
+        'tilt or out-of-roundness of the output shaft, or of its encoder',
+    ),
+    'rotor': (
+        'eccentricity or runout of the cams, of the rotor or of its encoder',
+        'out-of-roundness or tilt of the rotor or its encoder, or errors within its pole pairs',
+    ),
+    'satellite': (
+        'eccentricity or runout of a satellite, or an Oldham coupling out of square',
+        'out-of-roundness of a satellite, or an Oldham coupling out of square',
+    ),
+    'teeth': ('tooth spacing and tooth form', 'tooth form'),
+}
+"""Likely causes of the first and of the higher multiples."""
+_TREND = 'not told by so short a travel; known over the calibrated output angles only'
+CYCLES = 2.0
+"""Cycles of an order that a recording must contain."""
+_RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
+"""Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""
+_KNOWN = 0.8
+"""Share of the samples at which the state of a stop operator must be known."""
+_LARGEST_DENOMINATOR = 2**16
+"""Of an order; a ratio that was fitted may have a longer one."""
+
+
+@dataclass(frozen=True, slots=True)
+class OrderTerm:
+    """A cosine and a sine of the rotor's angle."""
+
+    name: str
+    cycles: Fraction
+    """Per turn of the rotor."""
+    cause: str
+    """The likely one, in words."""
+    is_trend: bool = False
+    """Whether it is known over the recorded output angles only."""
+    columns = 2
+    unit = 1.0
+
+    def values(self, samples: Samples, at: Array) -> Array:
+        """Cosine and sine at some samples, (at, 2); exact after many turns."""
+        p, q = self.cycles.numerator, self.cycles.denominator
+        turns = np.fmod(p % q * np.fmod(samples.turns[at], q), q) / q
+        phase = TURN * turns + float(self.cycles) * samples.angle[at]
+        return np.stack([np.cos(phase), np.sin(phase)], axis=1)
+
+
+@dataclass(frozen=True, slots=True)
+class StopTerm:
+    """The state of a stop operator, rad."""
+
+    radius: float
+    """rad."""
+    columns = 1
+    cause = 'play, or friction that winds up the gear'
+
+    @property
+    def name(self) -> str:
+        """The name in reports."""
+        return f'hysteresis ±{number(self.radius * ARC_MINUTES)} arcmin'
+
+    @property
+    def unit(self) -> float:
+        """The greatest value of the column."""
+        return self.radius
+
+    def values(self, samples: Samples, at: Array) -> Array:
+        """The states at some samples, (at, 1)."""
+        return samples.stop_states(self.radius)[0][at, None]
+
+
+@dataclass(frozen=True, slots=True)
+class TorqueTerm:
+    """The torque at the output less its mean, N·m."""
+
+    mean: float
+    unit: float
+    """N·m: the standard deviation of the torque."""
+    name = 'wind-up'
+    columns = 1
+    cause = 'torsional compliance under the torque'
+
+    def values(self, samples: Samples, at: Array) -> Array:
+        """The torques at some samples, (at, 1)."""
+        return np.asarray(samples.torque)[at, None] - self.mean
+
+
+Term = OrderTerm | StopTerm | TorqueTerm
+
+
+def output_cycles(ratio: Fraction) -> Fraction:
+    """Turns of the output in a turn of the rotor, without its sign."""
+    return (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
+
+
+def _bodies(ratio: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
+    """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
+
+    In a turn of the rotor, the output turns 1/|i| times; the cam turns 1 + 1/|i| times against
+    the satellite. Teeth mesh zk times.
+    """
+    output = output_cycles(ratio)
+    bodies = {'rotor': Fraction(1), 'output': output}
+    if mechanism:
+        bodies = {'teeth': Fraction(mechanism.ring_teeth), **bodies, 'satellite': 1 + output}
+    return bodies
+
+
+def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> OrderTerm:
+    """Name an order."""
+    for body, unit in _bodies(ratio, mechanism).items():
+        if (multiple := cycles / unit).denominator == 1:
+            return OrderTerm(f'{body} × {multiple}', cycles, _CAUSES[body][multiple > 1])
+    return OrderTerm(f'rotor × {cycles}', cycles, 'another shaft, or a bearing')
+
+
+def known_orders(
+    samples: Sequence[Samples],
+    ratio: Fraction,
+    mechanism: Mechanism | None,
+    refused: dict[str, str],
+) -> list[OrderTerm]:
+    """The orders of which a recording contains two cycles, after trends instead of others.
+
+    Trends are of the output. Other orders repeat within the calibrated span of the output, so that
+    they would be used where they are not known.
+    """
+    travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
+    output = output_cycles(ratio)
+    found: dict[Fraction, OrderTerm] = {}
+    for body, unit in _bodies(ratio, mechanism).items():
+        for multiple in range(1, _MULTIPLES[body] + 1):
+            name, cycles = f'{body} × {multiple}', multiple * unit
+            if travel * float(cycles) >= CYCLES:
+                found.setdefault(cycles, OrderTerm(name, cycles, _CAUSES[body][multiple > 1]))
+                continue
+            refused[name] = (
+                f'the longest travel holds {travel * float(cycles):.2g} cycles, less than 2'
+            )
+            # Higher multiples do not differ from the first over a part of its cycle, and a whole
+            # number of cycles in a turn of the rotor is not tied to the output's angle.
+            few = body == 'output' and multiple <= 1.0 + travel * float(output)
+            if few and cycles.denominator > 1:
+                found[cycles] = OrderTerm(f'trend × {multiple}', cycles, _TREND, is_trend=True)
+    return sorted(found.values(), key=lambda term: not term.is_trend)
+
+
+def wind_up(samples: Sequence[Samples], refused: dict[str, str]) -> list[TorqueTerm]:
+    """The wind-up, if torque was recorded and varies."""
+    torques = [s.torque for s in samples if s.torque is not None]
+    if len(torques) < len(samples):
+        if torques:
+            refused['wind-up'] = 'not every recording has an effort throughout'
+        return []
+    mean = float(np.mean(np.concatenate(torques)))
+    deviation = float(np.sqrt(np.mean([np.var(torque) for torque in torques])))
+    if deviation <= 1e-9 * abs(mean) or deviation == 0.0:
+        refused['wind-up'] = 'the torque does not vary'
+        return []
+    return [TorqueTerm(mean, deviation)]
+
+
+def stops(samples: Sequence[Samples], refused: dict[str, str]) -> list[StopTerm]:
+    """Stop operators over the width of the error, which is at least that of its hysteresis.
+
+    Those are left out whose travel was made too seldom to know the state.
+    """
+    width = max(float(np.ptp(np.quantile(s.error, (0.005, 0.995)))) for s in samples)
+    kept = []
+    for term in map(StopTerm, (width * _RADII).tolist() if width > 0.0 else []):
+        known = np.concatenate([s.stop_states(term.radius)[1] for s in samples])
+        if known.mean() >= _KNOWN:
+            kept.append(term)
+        else:
+            refused[term.name] = f'its state is known at {100 * known.mean():.0f} % of the samples'
+    for s in samples:
+        s.use_known([term.radius for term in kept])
+    return kept

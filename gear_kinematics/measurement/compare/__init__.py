@@ -1,0 +1,1 @@
+"""Several recordings: before and after, over positions of the output, over time."""

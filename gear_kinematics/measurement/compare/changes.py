@@ -1,0 +1,110 @@
+"""Changes of figures between groups of recordings, with their significance.
+
+Figures are positive and scatter in proportion to their values, so that logarithms are compared:
+log(value) = group + position + scatter, by least squares, with one scatter for all groups.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gear_kinematics.measurement.compare.groups import Group
+from gear_kinematics.measurement.compare.quantities import HYSTERESIS, Quantity
+from gear_kinematics.measurement.loops import Array
+from gear_kinematics.state.uncertainty import COVERAGE, Component, Estimate, combined
+
+SIGNIFICANCE = 1.0 - COVERAGE
+"""Probability of a false alarm in each of the two families of `judged`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """How a figure of one group, or recording, differs from that of another."""
+
+    quantity: Quantity
+    first: str
+    second: str
+    before: float
+    """Geometric mean, SI."""
+    after: float
+    """The same at the positions of the first group."""
+    interval: tuple[float, ...]
+    """Limits of after / before, with a probability of `COVERAGE`; none if they are unknown."""
+    probability: float | None
+    """Of as much by chance; None if unknown."""
+    repeated: bool
+    """Whether these are by the scatter between recordings, else by that within them."""
+    significant: bool = False
+    """Among all changes of its family."""
+
+
+def changes_of(
+    quantity: Quantity, groups: Sequence[Group], positions: Sequence[str] | None = None
+) -> list[Change]:
+    """Compare a figure of groups with that of the first, not yet judging changes together.
+
+    Args:
+        quantity: of all recordings.
+        groups: of the recordings.
+        positions: of the output, one per recording; None: they are not paired.
+    """
+    known = [
+        (k, positions[member] if positions else '', value)
+        for k, group in enumerate(groups)
+        for member in group.members
+        if (value := quantity.values[member]) and value.value > 0.0
+    ]
+    if not any(k == 0 for k, *_ in known):
+        return []
+    effects = [*range(len(groups)), *sorted({place for _, place, _ in known})]
+    rows = [[effect in {k, place} for effect in effects] for k, place, _ in known]
+    design = np.array(rows, dtype=np.float64)
+    logs = np.log([value.value for *_, value in known])
+    solution = np.linalg.pinv(design)
+    free = len(known) - int(np.linalg.matrix_rank(design))
+    variance = float(np.sum((logs - design @ solution @ logs) ** 2)) / max(free, 1)
+
+    def estimate(contrast: Array) -> Estimate | None:
+        weights = np.round(contrast @ solution, 9)  # exactly 0 for what does not count
+        if not np.allclose(weights @ design, contrast):
+            return None  # no position is common to these groups
+        value = float(weights @ logs)
+        if free:
+            return Estimate(value, math.sqrt(variance * float(weights @ weights)), free, 1 + free)
+        parts = [
+            Component(abs(weight) * v.standard / v.value, v.degrees_of_freedom)
+            for weight, (*_, v) in zip(weights, known, strict=True)
+            if v.standard is not None and weight
+        ]
+        if len(parts) < np.count_nonzero(weights):
+            return Estimate(value, None, 0.0, 1)
+        return Estimate(value, *combined(parts), 1)
+
+    before = math.exp(np.mean([log for log, (k, *_) in zip(logs, known, strict=True) if k == 0]))
+    first, *others = np.eye(len(groups), len(effects))
+    changes = []
+    for group, other in zip(groups[1:], others, strict=True):
+        if log := estimate(other - first):
+            names, values = (groups[0].name, group.name), (before, before * math.exp(log.value))
+            half, chance = log.uncertainty, log.probability_of_zero()
+            ends = () if half is None else (log.value - half, log.value + half)
+            interval = tuple(map(math.exp, ends))
+            changes.append(Change(quantity, *names, *values, interval, chance, free > 0))
+    return changes
+
+
+def judged(changes: Sequence[Change]) -> list[Change]:
+    """Judge changes together, by Bonferroni: those of the hysteresis, and apart all others."""
+
+    def family(change: Change) -> bool:
+        return change.quantity.name == HYSTERESIS
+
+    count = Counter(family(change) for change in changes if change.probability is not None)
+    return [
+        replace(change, significant=chance * count[family(change)] <= SIGNIFICANCE)
+        for change in changes
+        for chance in [math.inf if change.probability is None else change.probability]
+    ]

@@ -1,0 +1,240 @@
+"""The sections of a report on several recordings, in words, tables and panels."""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import groupby, product
+from typing import Any
+
+from gear_kinematics.measurement.compare import panels
+from gear_kinematics.measurement.compare.changes import SIGNIFICANCE, Change, changes_of, judged
+from gear_kinematics.measurement.compare.groups import Group, by_label, single
+from gear_kinematics.measurement.compare.quantities import HYSTERESIS, Common, in_common
+from gear_kinematics.measurement.compare.trend import FEWEST, trend
+from gear_kinematics.measurement.comparison import Comparison
+from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT
+from gear_kinematics.report.document import Cell, Section, Table, Tone, number, printable
+from gear_kinematics.state.uncertainty import Estimate
+
+_DAY = 86400.0  # s
+_LEAST = 1e-4
+"""Probability below which no number is given."""
+_JUDGED = (
+    f'A change of the hysteresis is called significant by chance in at most '
+    f'{100.0 * SIGNIFICANCE:g} % of comparisons, and likewise one of the others; intervals '
+    f'contain the ratio with a probability of {PERCENT}'
+)
+_BETWEEN = f'{_JUDGED}, by the scatter between recordings: the same share in all groups'
+_WITHIN = (
+    f'{_JUDGED}, by the scatter within recordings, which is less than that between them: record '
+    'each state several times, and name the groups with --group'
+)
+_ORDERS = f'{_JUDGED}, if the place of a step is right; by chance: share of random orders'
+_SAMPLE = f'Each ± ({PERCENT}) takes the measured positions as a random sample of all'
+_POSITION_KEYS = 'gear', 'figure', 'unit', 'mean', 'least', 'greatest'
+
+
+def compared(
+    reports: Sequence[LostMotion],
+    groups: Sequence[Group] | None = None,
+    positions: Sequence[str] | None = None,
+) -> Comparison | None:
+    """Compare groups of recordings at a common torque, or single ones, with the first.
+
+    With positions of the output, one per recording, they are paired. Without a figure in common,
+    there is nothing to compare: None.
+    """
+    common = in_common(reports)
+    first, *others = named = groups or single([report.name for report in reports])
+    each = (changes_of(quantity, named, positions) for quantity in common.quantities)
+    found = judged([change for own in each for change in own])
+    if not found:
+        return None
+    repeated = any(change.repeated for change in found)
+    if len(others) == 1:
+        told = f'{others[0].name} against {first.name}: {_told(found)}{_play(reports, *named)}'
+    else:
+        told = f'against {first.name}: {_total(found)}'
+    told += '' if repeated else '; judged by the scatter within single recordings'
+    members = [
+        {'name': group.name, 'recordings': [reports[k].name for k in group.members]}
+        for group in named
+    ]
+    data = {'groups': members, 'changes': [_data(change) for change in found]}
+    texts = told, _BETWEEN if repeated else _WITHIN
+    return _comparison('comparison', common, named, _table(found), texts, data)
+
+
+def over_positions(
+    reports: Sequence[LostMotion], gears: Sequence[Group], positions: Sequence[str]
+) -> Comparison:
+    """Combine the recordings of each gear at positions of its output, at a common torque.
+
+    Recordings at the same position count as one, by their mean.
+
+    Raises:
+        ValueError: if no figure of a gear is known at two positions.
+    """
+    common, places, several = in_common(reports), by_label(positions), len(gears) > 1
+    rows, told, data = [], [], []
+    for gear, quantity in product(gears, common.quantities):
+        known = {m: value.value for m in gear.members if (value := quantity.values[m])}
+        at = [
+            (sum(own) / len(own), name)
+            for name, members in places
+            if (own := [known[member] for member in members if member in known])
+        ]
+        if len(at) < 2:  # noqa: PLR2004, nothing to combine
+            continue
+        mean, low, high = Estimate.of_mean([value for value, _ in at]), min(at), max(at)
+        subject = f'{gear.name}: {quantity.name}' if several else quantity.name
+        shown = (f'{quantity.cell(value).with_unit()} at {place}' for value, place in (low, high))
+        cells = (Cell(printable(text)) for text in (subject, *shown))
+        rows.append((next(cells), quantity.cell(mean), *cells))
+        if quantity.name == HYSTERESIS or (quantity.main and not several):
+            between = quantity.cell(low[0], high[0]).text
+            told.append(f'{subject} {quantity.cell(mean).with_unit()} ({between})')
+        ends = ({'value': value, 'position': place} for value, place in (low, high))
+        row = gear.name, quantity.name, quantity.unit, mean, *ends
+        data.append(dict(zip(_POSITION_KEYS, row, strict=True)))
+    if not rows:
+        raise ValueError('--positions: no figure is known at two positions')
+    columns = 'over positions', 'mean', 'least', 'greatest'
+    table = Table(columns, tuple(rows), ('', 'least', 'greatest'))
+    texts = f'over {len(places)} positions: {", ".join(told)}', _SAMPLE
+    drawn = gears if several else places
+    return _comparison('positions', common, drawn, table, texts, {'positions': data})
+
+
+def over_time(reports: Sequence[LostMotion], times: Sequence[float], source: str) -> Comparison:
+    """Find since when a gear has changed, by recordings at a common torque in order of time.
+
+    Args:
+        reports: one for each of the times.
+        times: s, ascending.
+        source: of the times.
+
+    Raises:
+        ValueError: if too few recordings have a figure in common.
+    """
+    common, named = in_common(reports), single([report.name for report in reports])
+    names = [group.name for group in named]
+    found = judged([best for q in common.quantities if (best := trend(q, times, names))])
+    if not found:
+        raise ValueError(f'--trend needs {FEWEST} recordings with the same figures')
+
+    def since(change: Change) -> str:
+        slope = (change.first, change.second) == (names[0], names[-1])
+        return 'over the whole time' if slope else f'since {change.second}'
+
+    clear = [change for change in found if change.significant]
+    clear.sort(key=lambda change: (names.index(change.second), since(change)))
+    told = '; '.join(
+        f'{start}: {", ".join(f"{_arrow(change)} (p = {_chance(change)})" for change in same)}'
+        for start, same in groupby(clear, since)
+    )
+    days = [(time - times[0]) / _DAY for time in times]
+    data = {
+        'recordings': [{'name': r.name, 'days': d} for r, d in zip(reports, days, strict=True)],
+        'times_from': source,
+        'figures': [_data(change) for change in found],
+    }
+    span = f'The recordings span {number(days[-1])} days, by {source}'
+    texts = told or f'no change is shown by {len(reports)} recordings', _ORDERS, span
+    return _comparison('trend', common, named, _table(found), texts, {'trend': data})
+
+
+def _comparison(
+    name: str,
+    common: Common,
+    groups: Sequence[Group],
+    table: Table,
+    texts: Sequence[str],
+    data: Mapping[str, Any],
+) -> Comparison:
+    remarks = tuple(f'{printable(text)}.' for text in (*texts, *common.remarks))
+    section = Section(name, (table,), remarks=remarks, figure=panels.figure(common, groups))
+    return Comparison(section, printable(texts[0]), data)
+
+
+def _table(found: Sequence[Change]) -> Table:
+    columns = {
+        'change': lambda c: printable(f'{c.quantity.name}, {c.first} to {c.second}'),
+        'before': lambda c: c.quantity.cell(c.before),
+        'after': lambda c: c.quantity.cell(c.after),
+        'ratio': lambda c: number(c.after / c.before),
+        'interval': lambda c: ' to '.join(map(number, c.interval)),
+        'by chance': _chance,
+        'judgement': _judgement,
+    }
+    return Table.of_items(columns, found, ('', 'judgement'))
+
+
+def _judgement(change: Change) -> Cell:
+    if change.significant:
+        return Cell('significant', Tone.NOTABLE)
+    return Cell('not judged' if change.probability is None else 'not significant')
+
+
+def _chance(change: Change) -> str:
+    if change.probability is None:
+        return ''
+    return number(change.probability, 2) if change.probability >= _LEAST else f'< {_LEAST:g}'
+
+
+def _arrow(change: Change, *others: Change) -> str:
+    cell = change.quantity.cell
+    after = cell(*(own.after for own in (change, *others)), between=', ').with_unit()
+    return f'{change.quantity.name} {cell(change.before).text} → {after}'
+
+
+def _told(found: Sequence[Change]) -> str:
+    """Say what has changed: the hysteresis, and what else is significant."""
+    parts = [
+        f'{_arrow(change)} ({_judgement(change).text})'
+        for change in found
+        if change.significant or change.quantity.name == HYSTERESIS
+    ]
+    return ', '.join(parts) or 'no significant change'
+
+
+def _total(found: Sequence[Change]) -> str:
+    """Say in how many groups the first figure has changed."""
+    same = [change for change in found if change.quantity == found[0].quantity]
+    clear = sum(change.significant for change in same)
+    return f'{_arrow(*same)} ({clear} of {len(same)} significant)'
+
+
+def _play(reports: Sequence[LostMotion], *groups: Group) -> str:
+    """Say by intervals what became of the backlash from one group to the other."""
+    bounds = []
+    for group in groups:
+        found = [own.backlash for member in group.members if (own := reports[member].figures)]
+        if not found:
+            return ''
+        highs = [math.inf if own.high is None else ARC_MINUTES * own.high for own in found]
+        bounds.append((ARC_MINUTES * min(own.low for own in found), max(highs)))
+    (old_low, old_high), (low, high) = bounds
+    if high < old_low:
+        return f'; play fell from at least {number(old_low)}′ to at most {number(high)}′'
+    if low > old_high:
+        return f'; play rose from at most {number(old_high)}′ to at least {number(low)}′'
+    if low > 0.0:
+        return f'; there is play of at least {number(low)}′'
+    bound = f' (at most {number(high)}′)' if high < math.inf else ''
+    return f'; whether play is left cannot be told{bound}'
+
+
+def _data(change: Change) -> Mapping[str, Any]:
+    low, high = change.interval or (None, None)
+    return {
+        'figure': change.quantity.name,
+        'unit': change.quantity.unit,
+        'from': {'name': change.first, 'value': change.before},
+        'to': {'name': change.second, 'value': change.after},
+        'ratio': change.after / change.before,
+        'low': low,
+        'high': high,
+        'probability': change.probability,
+        'significant': change.significant,
+    }

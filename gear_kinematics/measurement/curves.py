@@ -1,0 +1,135 @@
+"""The panels of a report on lost motion, in arc minutes."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+
+from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, Figures
+from gear_kinematics.measurement.loops import HalfLoop, Ramps
+from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.middle_line import middle_lines
+from gear_kinematics.measurement.wording import ARC_MINUTES, arc_minutes
+from gear_kinematics.report.document import Array, Line, Panel, Pen, number
+
+_MOST = 2000  # points of a line
+_TOGETHER = 1.1
+"""Greatest ratio of orders that share a mark."""
+_DECADES = 4
+"""Decades of a spectrum below its greatest amplitude."""
+_WAYS: tuple[tuple[int, str, Pen], ...] = (
+    (0, 'turning back', Pen.FAINT),
+    (1, 'forward', Pen.FIRST),
+    (-1, 'backward', Pen.SECOND),
+)
+
+
+def panels(report: LostMotion) -> Iterator[Panel]:
+    """Yield the plots of a report."""
+    if found := report.figures:
+        for ramps, figures in zip(report.ramps, found.by_amplitude, strict=True):
+            yield _ramp_panel(ramps, figures, found.settings.rated_torque)
+    if report.transmission:
+        yield from _transmission(report)
+
+
+def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
+    centre = float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
+    lines = []
+    for loop in ramps.loops:
+        lines.append(_half_loop('torque rising', Pen.FIRST, loop.rise, centre, ramps))
+        lines.append(_half_loop('torque falling', Pen.SECOND, loop.fall, centre, ramps))
+    for line in middle_lines(ramps):
+        angle = (line.angle - centre) * ARC_MINUTES
+        lines.append(Line('middle line: without friction', Pen.MODEL, line.load, angle))
+    at = LOST_MOTION_SHARE * rated_torque
+    return Panel(
+        f'ramps to {number(ramps.amplitude)} N·m: hysteresis {arc_minutes(figures.hysteresis)}′',
+        f'torque at the output [N·m]; dashed: 0 and ±{100.0 * LOST_MOTION_SHARE:g} % of rated',
+        'wind-up at the output [arcmin]',
+        tuple(lines),
+        marks=((-at, ''), (0.0, ''), (at, '')),
+    )
+
+
+def _half_loop(name: str, pen: Pen, half: HalfLoop, centre: float, ramps: Ramps) -> Line:
+    # A ramp may continue to a larger amplitude, which has its own panel.
+    inside = np.abs(half.torque) <= 1.02 * ramps.amplitude
+    every = math.ceil(np.count_nonzero(inside) / _MOST)
+    load, angle = (values[inside][::every] for values in (half.torque, half.angle))
+    return Line(name, pen, load, (angle - centre) * ARC_MINUTES)
+
+
+def _transmission(report: LostMotion) -> Iterator[Panel]:
+    found = report.transmission
+    if not found:
+        return
+    lines = []
+    for way, name, pen in _WAYS:
+        rows = found.direction == way
+        if rows.any():
+            error = (found.error[rows] - found.offset) * ARC_MINUTES
+            angle, error = envelope(np.degrees(found.angle[rows]), error)
+            lines.append(Line(name, pen, angle, error, points=way == 0))
+    yield Panel(
+        'transmission error less its mean',
+        'output angle [°]',
+        'measured less ideal [arcmin]',
+        tuple(lines),
+    )
+    spectra = [
+        Line(name, pen, *peaks(spectrum.orders[1:], spectrum.amplitude[1:] * ARC_MINUTES))
+        for spectrum, (_, name, pen) in zip(found.spectra, _WAYS[1:], strict=True)
+        if spectrum
+    ]
+    if spectra:
+        highest = max(float(line.x[-1]) for line in spectra)
+        yield Panel(
+            'spectrum',
+            'order: cycles in a turn of the output',
+            'amplitude [arcmin]',
+            tuple(spectra),
+            marks=tuple(marks(((float(o.cycles), o.name) for o in found.orders), highest)),
+            scale='log',
+            low=max(float(np.max(line.y)) for line in spectra) / 10.0**_DECADES,
+        )
+
+
+def marks(
+    orders: Iterable[tuple[float, str]], highest: float = math.inf
+) -> Iterator[tuple[float, str]]:
+    """Yield marks for orders, each with its name; neighbouring ones share a mark.
+
+    Args:
+        orders: on the x axis of a spectrum.
+        highest: the highest order to mark.
+    """
+    near: list[tuple[float, str]] = []
+    for order in sorted(order for order in orders if order[0] <= highest):
+        if near and order[0] > _TOGETHER * near[0][0]:
+            yield _mark(near)
+            near = []
+        near.append(order)
+    if near:
+        yield _mark(near)
+
+
+def _mark(orders: Sequence[tuple[float, str]]) -> tuple[float, str]:
+    return orders[0][0], ', '.join(name for _, name in orders)
+
+
+def envelope(x: Array, y: Array) -> tuple[Array, Array]:
+    """Reduce points that are too dense for a plot to their minima and maxima."""
+    order = np.argsort(x, kind='stable')
+    x, y = x[order], y[order]
+    if len(x) <= _MOST:
+        return x, y
+    starts = np.linspace(0, len(x), _MOST // 2, endpoint=False, dtype=np.intp)
+    bounds = np.stack([np.minimum.reduceat(y, starts), np.maximum.reduceat(y, starts)], axis=1)
+    return np.repeat(x[starts], 2), bounds.ravel()
+
+
+def peaks(x: Array, y: Array) -> tuple[Array, Array]:
+    """Reduce points that are too dense for a logarithmic axis to their maxima."""
+    starts = np.unique(np.geomspace(1, len(x), _MOST).astype(np.intp) - 1)
+    return x[starts], np.maximum.reduceat(y, starts)

@@ -1,0 +1,156 @@
+"""The step of an encoder, found in its readings.
+
+Distances of readings are multiples of it. They are multiples as well of the resolution in which
+they are recorded, as decimals or in single precision; a step is at least twice as coarse.
+"""
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+
+Array = NDArray[np.float64]
+
+UNITS = {'rad': 1.0, 'mrad': 1e-3, 'deg': math.radians(1.0), 'rev': TURN}
+"""Units of angle in which readings may have been recorded, rad."""
+_DIGITS = 12
+"""Most decimals that are recognised."""
+_ROUNDING = 8.0
+"""Rounding errors of a reading, in its spacing: of a few conversions between units."""
+_LEAST = 4
+"""Least number of levels: with fewer, any step fits."""
+_COARSER = 1.9
+"""A step is at least this many times the resolution of the recording: twice, less rounding."""
+_FITS = 0.15
+"""Greatest root mean square distance from multiples of a step, in steps. It is 0.29 without any
+step, and 0.15 where the readings are rounded to half a step."""
+_NEAR = 100.0
+"""Steps between levels that are counted without an error."""
+_CHANCE = 1e-3
+"""Greatest probability with which readings that have no step fit one."""
+_EXACT, _BETTER = 1e-3, 0.3
+"""Distance, in steps, below which no finer step is sought; share of the distance within which a
+finer one has to fit: by chance, half a step fits twice as badly."""
+_EVEN = 0.98
+"""From this share of equal changes on, levels are those of an even motion, not of an encoder."""
+
+
+class Source(StrEnum):
+    """Where the step of an encoder comes from."""
+
+    GIVEN = 'given'
+    FOUND = 'found'
+    """In the readings."""
+    RECORDING = 'recording'
+    """It is not determinable; the resolution of the recorded numbers takes its place."""
+    UNKNOWN = 'unknown'
+    """It is not determinable."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The step between the readings of an encoder."""
+
+    size: float
+    """In the unit of the readings; 0 if unknown."""
+    source: Source
+
+    def scaled(self, factor: float) -> 'Step':
+        """The step of readings that are multiplied by a factor."""
+        return Step(self.size * abs(factor), self.source)
+
+    def joined(self, other: 'Step') -> 'Step':
+        """The step of a difference of readings, whose variance is the sum of both."""
+        worse = max(self, other, key=lambda step: list(Source).index(step.source))
+        return Step(math.hypot(self.size, other.size), worse.source)
+
+
+def step_of(counts: int | None, readings: Array) -> Step:
+    """The step of an encoder, rad, from its counts per turn, or from its readings."""
+    return Step(TURN / counts, Source.GIVEN) if counts else find_step(readings)
+
+
+def find_step(readings: Array) -> Step:
+    """Find the step of an encoder.
+
+    Args:
+        readings: (n,), rad, in the order of time.
+    """
+    levels = np.unique(readings)
+    if len(levels) < _LEAST:
+        return Step(0.0, Source.UNKNOWN)
+    recorded = _recording_resolution(levels)
+    # In an unknown unit, the resolution does not show: try all, from coarse to fine.
+    finest = max(recorded, _ROUNDING * float(np.max(np.spacing(np.abs(levels)))))
+    coarser = math.ceil(math.log2(max(1.0, np.ptp(levels) / finest)))
+    best, nearest = 0.0, _FITS / _BETTER
+    for resolution in finest * 2.0 ** np.arange(coarser, -1, -1):
+        step, distance = _fitted(levels, readings, _common_divisor(levels, resolution))
+        # Any finer step fits; it has to fit better.
+        if nearest > _EXACT and distance < _BETTER * nearest:
+            best, nearest = step, distance
+    source = Source.FOUND if best else Source.RECORDING if recorded else Source.UNKNOWN
+    return Step(best or recorded, source)
+
+
+def _recording_resolution(levels: Array) -> float:
+    """Distance of the recorded numbers, where decimals or single precision show; else 0."""
+    # Distances of floating-point numbers are those of the greatest.
+    large = levels[2.0 * np.abs(levels) > np.max(np.abs(levels))]
+    found = [0.0]
+    for unit in UNITS.values():
+        values = large / unit
+        rounding = _ROUNDING * np.spacing(np.abs(values))
+        single = values.astype(np.float32)
+        if np.all(np.abs(values - single) <= rounding):
+            found.append(unit * float(np.max(np.spacing(np.abs(single)))))
+        for scale in 10.0 ** np.arange(_DIGITS + 1):
+            scaled, error = (values - values[0]) * scale, rounding * scale  # without an offset
+            if np.max(error) > 1.0 / _ROUNDING**2:
+                break
+            if np.all(np.abs(scaled - np.round(scaled)) <= error):
+                found.append(unit / scale)
+                break
+    return max(found)
+
+
+def _common_divisor(levels: Array, resolution: float) -> float:
+    """The greatest common divisor of the gaps between levels, by Euclid's algorithm; or 0."""
+    between = np.diff(levels)
+    gaps, step = between[between > 0.5 * resolution], 0.0
+    while len(gaps):
+        # Rounded to a resolution, equal gaps differ by it.
+        step = float(np.mean(gaps[gaps <= np.min(gaps) + 1.01 * resolution]))
+        if step < _COARSER * resolution:
+            return 0.0
+        wholes = np.round(gaps / step)
+        rest = np.abs(gaps - wholes * step)
+        gaps = rest[rest > resolution * (1.0 + wholes)]
+    near = between[(between > 0.5 * step) & (between < _NEAR * step)]
+    return float(np.sum(near) / np.sum(np.round(near / step))) if len(near) else 0.0
+
+
+def _fitted(levels: Array, readings: Array, step: float) -> tuple[float, float]:
+    """The step by least squares, and the root mean square distance of levels from its multiples.
+
+    In steps; infinite if they are no levels of an encoder.
+    """
+    none = 0.0, math.inf
+    if not step:
+        return none
+    numbers = np.cumsum(np.round(np.diff(levels, prepend=levels[0]) / step))
+    step, zero = np.polyfit(numbers, levels, 1).tolist()
+    distance = float(np.std(levels - zero - step * numbers)) / step
+    free = len(np.unique(numbers)) - 3  # the zero, the step, and the choice of it
+    if distance > _FITS or (math.sqrt(12.0) * distance) ** free > _CHANCE:
+        return none
+    # Floating-point numbers are twice as far apart where they are twice as large.
+    large = levels[2.0 * np.abs(levels) > np.max(np.abs(levels))] / (2.0 * step)
+    changes = np.abs(np.diff(np.round((readings - zero) / step)))
+    usual = np.median(changes)
+    even = usual and np.mean(changes == usual) >= _EVEN
+    return none if even or np.std(large - np.round(large)) < _FITS else (step, distance)

@@ -1,0 +1,316 @@
+"""The figures of a hysteresis curve as catalogues give them; docs/lost_motion.md defines them."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
+from gear_kinematics.measurement.middle_line import (
+    MOST_FRICTION,
+    Backlash,
+    MiddleLine,
+    backlash_of,
+    friction_of,
+    middle_lines,
+    reconciled,
+    stiffness_of,
+)
+from gear_kinematics.state.uncertainty import (
+    Component,
+    Estimate,
+    by_steps,
+    common_part,
+    hidden_resolution,
+    resolution,
+    slope_resolution,
+)
+
+LOST_MOTION_SHARE = 0.03
+"""Lost motion is measured between ± this share of the rated torque."""
+STIFFNESS_SHARES = (0.15, 0.5)
+"""Limits between the ranges of stiffness, as shares of the rated torque."""
+_LEAST_RANGE = 1.5
+"""Least ratio of the torques at the end and at the beginning of a range of stiffness."""
+_ROUNDING = 1e-11
+"""Relative rounding error of sums of many angles."""
+_TORQUES = 200
+"""At which a curve is compared with a straight line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stiffness:
+    """Torsional stiffness over a range of torque, N·m/rad."""
+
+    low: float
+    """N·m, magnitude."""
+    high: float
+    """N·m."""
+    both: Estimate
+    positive: Estimate
+    """Under positive torque alone."""
+    negative: Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Reference values of the figures."""
+
+    rated_torque: float
+    """N·m."""
+    corners: tuple[float, ...]
+    """N·m, ascending: limits between the ranges of stiffness."""
+    small_load: float
+    """N·m, at which lost motion without friction is read: as lost motion, unless friction may keep
+    the smallest ramps from loading the spring so much."""
+    angle_step: float
+    """rad at the output, between readings of the encoder; 0 if unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Of the ramps of one amplitude."""
+
+    amplitude: float
+    """N·m."""
+    loops: int
+    rate: float | None
+    """N·m/s, of the torque; None if times are not known."""
+    hysteresis: Estimate
+    """rad, the width of the curve at zero torque."""
+    friction: Estimate | None
+    """N·m, half the width of the curve in torque; None without a complete loop."""
+    lost_motion: Estimate | None
+    """rad, between the middles of the curve at ± `LOST_MOTION_SHARE` of the rated torque; None if
+    the ramps are too small."""
+    frictionless: Estimate | None
+    """rad, lost motion without friction: between the ends of the middle line at ± the small load;
+    None if a loop does not reach it."""
+    backlash: Backlash | None
+    """What these ramps leave room for; None if they do not bound it."""
+    stiffness: tuple[Stiffness, ...]
+    """In the ranges that the ramps cover, while the torque increases in magnitude."""
+    overall: Stiffness | None
+    """Slope of a straight line through each whole side of the loop."""
+
+
+@dataclass(frozen=True, slots=True)
+class GearFigures:
+    """Of a gear, from the ramps of all amplitudes, from small to large."""
+
+    settings: Settings
+    by_amplitude: tuple[Figures, ...]
+
+    @property
+    def smallest(self) -> Figures:
+        """Figures of the smallest ramps: of hysteresis and friction."""
+        return self.by_amplitude[0]
+
+    @property
+    def largest(self) -> Figures:
+        """Figures of the largest ramps: of lost motion and stiffness."""
+        return self.by_amplitude[-1]
+
+    @property
+    def frictionless(self) -> Estimate | None:
+        """Lost motion without friction, rad, of the smallest ramps that tell it."""
+        return next((f.frictionless for f in self.by_amplitude if f.frictionless), None)
+
+    @property
+    def backlash(self) -> Backlash:
+        """What all ramps together leave room for."""
+        return reconciled([figures.backlash for figures in self.by_amplitude])
+
+
+def settings_for(
+    ramps: Sequence[Ramps],
+    angle_step: float,
+    rated_torque: float | None = None,
+    corners: Sequence[float] | None = None,
+) -> Settings:
+    """Choose the reference values of ramps, in ascending order of amplitude.
+
+    Args:
+        ramps: of one recording.
+        angle_step: rad at the output; 0 if unknown.
+        rated_torque: N·m; None: the amplitude of the largest ramps.
+        corners: N·m, between ranges of stiffness; None: shares of the rated torque.
+    """
+    rated = rated_torque or ramps[-1].amplitude
+    small = min(LOST_MOTION_SHARE * rated, (1.0 - MOST_FRICTION) * ramps[0].amplitude)
+    shares = [share * rated for share in STIFFNESS_SHARES]
+    return Settings(rated, tuple(sorted(corners or shares)), small, angle_step)
+
+
+def gear_figures(ramps: Sequence[Ramps], settings: Settings) -> GearFigures:
+    """Compute the figures of ramps, in ascending order of amplitude.
+
+    Raises:
+        RampError: if the angle does not grow with the torque.
+    """
+    loops = ramps[-1].loops
+    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in loops]
+    if float(np.mean(ways)) <= _still(loops, settings.angle_step):
+        raise RampError(
+            'the angle does not grow with the torque: it stands still, or one of them has the '
+            'wrong sign'
+        )
+    largest = middle_lines(ramps[-1])
+    loaded = stiffness_of(largest, ramps[-1]) if largest else 0.0
+    return GearFigures(settings, tuple(_figures(group, settings, loaded) for group in ramps))
+
+
+def _figures(ramps: Ramps, settings: Settings, loaded: float) -> Figures:
+    """Figures of ramps of one amplitude, beside largest ones with a stiffness `loaded`."""
+    lines = middle_lines(ramps)
+    hysteresis = _hysteresis(ramps.loops, settings.angle_step)
+    frictionless = _frictionless(lines, settings)
+    return Figures(
+        ramps.amplitude,
+        len(ramps.loops),
+        ramps.rate,
+        hysteresis,
+        _friction(lines, ramps.loops, settings.angle_step),
+        _lost_motion(ramps.loops, settings),
+        frictionless,
+        backlash_of(lines, ramps, hysteresis, frictionless, settings.angle_step, loaded),
+        _stiffness(ramps, settings),
+        _overall(ramps),
+    )
+
+
+def _still(loops: Sequence[Loop], angle_step: float) -> float:
+    """Difference up to which two angles may be equal, rad."""
+    greatest = max(
+        float(np.max(np.abs(h.angle))) for loop in loops for h in (loop.fall, loop.rise)
+    )
+    return max(angle_step, _ROUNDING * greatest)
+
+
+def _hysteresis(loops: Sequence[Loop], angle_step: float) -> Estimate:
+    widths = [loop.width(0.0) for loop in loops]
+    return Estimate.of_mean(
+        widths,
+        _drifted(loops),
+        Component(hidden_resolution(angle_step, widths, readings=2)),
+        _rounded([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops]),
+    )
+
+
+def _drifted(loops: Sequence[Loop]) -> Component:
+    """What a zero that drifts evenly adds to the angle between the halves of a loop, rad."""
+    middles = [loop.middle(0.0) for loop in loops]
+    if len(loops) < 3:  # noqa: PLR2004, no line with a scatter
+        return Component(0.0)
+    per_loop = float(np.polynomial.polynomial.polyfit(range(len(loops)), middles, 1)[1])
+    return Component(0.5 * per_loop, len(loops) - 2)
+
+
+def _rounded(roundings: Sequence[float]) -> Component:
+    """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7)."""
+    return Component(common_part(np.array(roundings)) / math.sqrt(3.0))
+
+
+def _friction(
+    lines: Sequence[MiddleLine], loops: Sequence[Loop], angle_step: float
+) -> Estimate | None:
+    if not lines:
+        return None
+    stiffness = float(np.mean([np.ptp(line.load) / np.ptp(line.angle) for line in lines]))
+    # Half the difference of two torques, read at many angles that are off by the step.
+    steps = max(1.0, float(np.ptp(lines[0].angle)) / angle_step) if angle_step else 1.0
+    reading = stiffness * resolution(angle_step) / math.sqrt(2.0 * steps)
+    drifted = 0.5 * stiffness * _drifted(loops).standard
+    return friction_of(lines, by_steps(math.hypot(reading, drifted), len(lines)))
+
+
+def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
+    torque = LOST_MOTION_SHARE * settings.rated_torque
+    ways = [
+        [half for half in halves if half.reaches(torque) and half.reaches(-torque)]
+        for halves in ([loop.fall for loop in loops], [loop.rise for loop in loops])
+    ]
+    if not all(ways):
+        return None
+    angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
+    readings = [Component(0.5 * hidden_resolution(settings.angle_step, a, 2)) for a in angles]
+    rounding = [b.rounding(torque) - b.rounding(-torque) for way in ways for b in way]
+    return Estimate.of_sum([(0.5, way) for way in angles], *readings, _rounded(rounding))
+
+
+def _frictionless(lines: Sequence[MiddleLine], settings: Settings) -> Estimate | None:
+    load = settings.small_load
+    if not lines or any(min(line.load[-1], -line.load[0]) < load for line in lines):
+        return None
+    widths = [line.width(load) for line in lines]
+    return Estimate.of_mean(widths, Component(hidden_resolution(settings.angle_step, widths, 4)))
+
+
+# Stiffness
+
+
+def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
+    corners = (0.0, *(corner for corner in settings.corners if corner < ramps.amplitude))
+    found, still = [], _still(ramps.loops, settings.angle_step)
+    for low, high in pairwise((*corners, ramps.amplitude)):
+        if high < _LEAST_RANGE * low:
+            break
+        pulls = [
+            [_compliance(half, low, min(high, abs(half.end))) for half in pull]
+            for pull in ramps.pulls
+            if all(_loads(half, low, ramps) for half in pull)
+        ]
+        if not pulls:
+            continue
+        positive, negative = map(list, zip(*pulls, strict=True))
+        least = min(float(np.mean(positive)), float(np.mean(negative)))
+        if least * (high - low) > still:  # else friction holds the gear throughout
+            steps = slope_resolution(settings.angle_step, high - low, least)
+            found.append(_of_sides(low, high, positive, negative, by_steps(steps, len(pulls))))
+    return tuple(found)
+
+
+def _of_sides(
+    low: float, high: float, positive: list[float], negative: list[float], *others: Component
+) -> Stiffness:
+    """From compliances under positive and negative torque; `both` is that of their mean."""
+    both = [0.5 * (a + b) for a, b in zip(positive, negative, strict=True)]
+    values = (Estimate.of_mean(c, *others).inverse() for c in (both, positive, negative))
+    return Stiffness(low, high, *values)
+
+
+def _overall(ramps: Ramps) -> Stiffness | None:
+    """Slope of the line through both halves of a side, from zero to the peak and back."""
+    sides: dict[bool, list[float]] = {True: [], False: []}
+    for loading, unloading in ramps.sides:
+        high = min(abs(loading.end), abs(unloading.start))
+        slopes = [_compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)]
+        sides[loading.rising].append(0.5 * sum(slopes))
+    count = min(map(len, sides.values()))
+    if not count or min(min(side) for side in sides.values()) <= 0.0:
+        return None
+    return _of_sides(0.0, ramps.amplitude, sides[True][:count], sides[False][:count])
+
+
+def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:
+    """Whether, from the torque `low` on, a half loop is like a full loading of these ramps.
+
+    One from a smaller peak is so beyond that peak, where hysteresis has lost its memory of it.
+    """
+    return abs(half.start) < low or abs(half.start) > 0.5 * ramps.amplitude
+
+
+def _compliance(half: HalfLoop, low: float, high: float, way: float = 1.0) -> float:
+    """Slope of the line through the angles over the torques of a range, rad/(N·m).
+
+    Args:
+        half: to its end (way 1), or from its start (way -1).
+        low: N·m, magnitude.
+        high: N·m.
+        way: see above.
+    """
+    peak = half.end if way > 0.0 else half.start
+    torque = math.copysign(1.0, peak) * np.linspace(low, high, _TORQUES)
+    return float(np.polynomial.polynomial.polyfit(torque, half.angle_at(torque), 1)[1])

@@ -1,0 +1,288 @@
+"""Hysteresis loops of torque ramps: found by the torque alone, without numbers of tests."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+Array = NDArray[np.float64]
+
+_MIN_ROWS = 25
+"""Of a half cycle."""
+_MIN_SIGNAL_TO_NOISE = 5.0
+"""Of the torque in a half cycle, in standard deviations of the noise."""
+_MIN_SHARE = 0.01
+"""Of the largest torque, that a half cycle exceeds."""
+_NEAR = 3.0
+"""Standard deviations of the noise within which two torques count as equal."""
+_SMOOTHED = 0.01
+"""Share of a ramp's amplitude to which a moving mean reduces the noise."""
+_ALIKE = 1.5
+"""Ratio up to which peaks count as of one amplitude."""
+_ROUNDING = 1e-9
+"""Relative differences of torques that are rounding errors, as where a torque stands still."""
+_COMPLETE = 0.9
+"""Share of the amplitude that both halves of a complete loop reach on both sides."""
+
+
+class RampError(ValueError):
+    """A recording without usable torque ramps."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class HalfLoop:
+    """Half of a hysteresis loop: from a torque peak to the opposite one."""
+
+    torque: Array
+    """(n,), N·m, strictly monotonic."""
+    angle: Array
+    """(n,), rad, at these torques."""
+    noise: float
+    """N·m, standard deviation of a reading of the torque."""
+    blur: float
+    """N·m, standard deviation of the noise after smoothing."""
+    time: Array | None = None
+    """(n,), s, at these torques; None if it is not known."""
+
+    @property
+    def start(self) -> float:
+        """N·m, the peak at which the half loop begins."""
+        return float(self.torque[0])
+
+    @property
+    def end(self) -> float:
+        """N·m, the peak at which it ends."""
+        return float(self.torque[-1])
+
+    @property
+    def rising(self) -> bool:
+        """Whether the torque increases."""
+        return self.end > self.start
+
+    def reaches(self, torque: float) -> bool:
+        """Whether the half loop includes a torque, within the noise."""
+        low, high = sorted((self.start, self.end))
+        near = _NEAR * self.noise
+        return low - near <= torque <= high + near
+
+    def angle_at(self, torque: Array | float) -> Array:
+        """The angle at torques, rad, of the same shape."""
+        return self._at(torque, self.angle)
+
+    def time_at(self, torque: Array | float) -> Array:
+        """The time at torques, s, of the same shape.
+
+        Raises:
+            ValueError: if times are not known.
+        """
+        if self.time is None:
+            raise ValueError('the times of these ramps are not known')
+        return self._at(torque, self.time)
+
+    def _at(self, torque: Array | float, values: Array) -> Array:
+        sign = 1.0 if self.rising else -1.0
+        return np.interp(sign * np.asarray(torque), sign * self.torque, values)
+
+    def rounding(self, torque: float) -> float:
+        """Greatest rise of the angle at a torque by noise, which rounds corners, rad."""
+        before, at, after = self.angle_at(torque + 2.0 * self.blur * np.array([-1.0, 0.0, 1.0]))
+        return float(0.5 * (before + after) - at)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Loop:
+    """A hysteresis loop: two successive half loops."""
+
+    fall: HalfLoop
+    rise: HalfLoop
+
+    @property
+    def amplitude(self) -> float:
+        """N·m, the smaller of the peaks at which the half loops begin."""
+        return min(self.fall.start, -self.rise.start)
+
+    @property
+    def complete(self) -> bool:
+        """Whether both halves go from peak to peak; a recording may end before."""
+        return min(-self.fall.end, self.rise.end) >= _COMPLETE * self.amplitude
+
+    def width(self, torque: float) -> float:
+        """The angle between the half loops, rad."""
+        return float(self.fall.angle_at(torque) - self.rise.angle_at(torque))
+
+    def middle(self, torque: float) -> float:
+        """The angle midway between the half loops, rad."""
+        return float(0.5 * (self.fall.angle_at(torque) + self.rise.angle_at(torque)))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Ramps:
+    """Ramps of one amplitude."""
+
+    amplitude: float
+    """N·m, the mean."""
+    loops: tuple[Loop, ...]
+    pulls: tuple[tuple[HalfLoop, HalfLoop], ...]
+    """Half loops to the positive and to the negative peak, paired in order of time."""
+    sides: tuple[tuple[HalfLoop, HalfLoop], ...]
+    """Half loops to a peak and back from it, in order of time."""
+
+    @property
+    def seconds(self) -> float | None:
+        """Median duration of a half loop; None if times are not known."""
+        halves = [half for loop in self.loops for half in (loop.fall, loop.rise)]
+        times = [float(np.ptp(half.time)) for half in halves if half.time is not None]
+        return float(np.median(times)) if times else None
+
+    @property
+    def rate(self) -> float | None:
+        """Mean rate of the torque, N·m/s; None if times are not known."""
+        return 2.0 * self.amplitude / self.seconds if self.seconds else None
+
+
+def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[Ramps, ...]:
+    """Find the ramps of a recording, in ascending order of amplitude.
+
+    Args:
+        torque: (n,), N·m.
+        angle: (n,), rad.
+        time: (n,), s, increasing.
+
+    Raises:
+        RampError: if the torque never goes to both sides and back.
+    """
+    halves = _half_loops(torque, angle, time)
+    # What preceded the first half loop is not known, so it belongs to no loop.
+    pairs = zip(halves[1::2], halves[2::2], strict=False)
+    loops = [Loop(b, a) if a.rising else Loop(a, b) for a, b in pairs]
+    loops = [loop for loop in loops if loop.fall.reaches(0.0) and loop.rise.reaches(0.0)]
+    if not loops:
+        raise RampError('no torque ramp that goes to one side, to the other and back to zero')
+    groups: list[list[Loop]] = []
+    for loop in sorted(loops, key=lambda loop: loop.amplitude):
+        if groups and loop.amplitude <= _ALIKE * groups[-1][0].amplitude:
+            groups[-1].append(loop)
+        else:
+            groups.append([loop])
+    return tuple(_ramps(group, loops, halves) for group in groups)
+
+
+def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLoop]) -> Ramps:
+    low, high = group[0].amplitude / _ALIKE, group[-1].amplitude * _ALIKE
+    alike = [half for half in halves if low <= abs(half.end) <= high]
+    rises, falls = ([half for half in alike if half.rising == up] for up in (True, False))
+    return Ramps(
+        float(np.mean([loop.amplitude for loop in group])),
+        tuple(loop for loop in loops if loop in group),
+        tuple(zip(rises, falls, strict=False)),
+        tuple((there, back) for there, back in pairwise(halves) if there in alike),
+    )
+
+
+def monotonic(values: Array) -> Array:
+    """A non-decreasing sequence: midway between what was reached before and what stays behind."""
+    reached = np.maximum.accumulate(values)
+    left: Array = np.minimum.accumulate(values[::-1])[::-1]
+    return 0.5 * (reached + left)
+
+
+def _isotonic(values: Array) -> NDArray[np.intp]:
+    """Where the levels of the non-decreasing sequence nearest to values begin, with their end.
+
+    The levels are the slopes of the greatest convex minorant of the cumulative sums (R. E. Barlow
+    et al., Statistical Inference under Order Restrictions, 1972, p. 9).
+    """
+    if np.ptp(values) <= _ROUNDING * np.max(np.abs(values)):
+        return np.array([0, len(values)])
+    sums = np.concatenate([[0.0], np.cumsum(values - values.mean())])
+    hull = ConvexHull(np.column_stack([np.arange(len(sums)), sums])).vertices
+    first, last = np.argmin(hull), np.argmax(hull)
+    # Vertices are in counterclockwise order: the lower ones lead from the first to the last.
+    lower: NDArray[np.intp] = np.roll(hull, -first)[: (last - first) % len(hull) + 1]
+    return lower.astype(np.intp)
+
+
+def _half_loops(torque: Array, angle: Array, time: Array | None) -> list[HalfLoop]:
+    if len(torque) < _MIN_ROWS:
+        return []
+    noise = _noise(torque)
+    least = max(_MIN_SIGNAL_TO_NOISE * noise, _MIN_SHARE * float(np.max(np.abs(torque))))
+    kernel = np.full(_MIN_ROWS, 1.0 / _MIN_ROWS)
+    mean = np.convolve(np.pad(torque, _MIN_ROWS // 2, 'edge'), kernel, 'valid')
+    turns = [
+        rows.start + int(np.argmax(np.abs(_smooth(torque[rows], noise))))
+        for rows in _half_cycles(mean, least)
+    ]
+    parts = [
+        slice(first, last + 1)
+        for first, last in pairwise([0, *turns, len(torque) - 1])
+        if last - first >= _MIN_ROWS
+    ]
+    return [
+        _half_loop(torque[rows], angle[rows], noise, None if time is None else time[rows])
+        for rows in parts
+    ]
+
+
+def _half_cycles(torque: Array, least: float) -> list[slice]:
+    """Find the rows in which the torque is clear of zero, with alternating sign."""
+    away = np.flatnonzero(np.abs(torque) > least)
+    sides = np.split(away, np.flatnonzero(np.diff(np.sign(torque[away]))) + 1)
+    sides = [side for side in sides if len(side) >= _MIN_ROWS]
+    # Rows of the same sign become neighbours where a short part between them was dropped.
+    return [
+        slice(int(same[0][0]), int(same[-1][-1]) + 1)
+        for _, group in groupby(sides, key=lambda side: torque[side[0]] > 0.0)
+        if (same := list(group))
+    ]
+
+
+def _half_loop(torque: Array, angle: Array, noise: float, time: Array | None) -> HalfLoop:
+    smooth = _smooth(torque, noise)
+    sign = 1.0 if smooth[-1] > smooth[0] else -1.0
+    bounds = _isotonic(sign * smooth)
+    blur = noise / math.sqrt(_mean_rows(torque, noise))
+    times = None if time is None else _means(time, bounds)
+    return HalfLoop(_means(smooth, bounds), _means(angle, bounds), noise, blur, times)
+
+
+def _means(values: Array, bounds: NDArray[np.intp]) -> Array:
+    """Means of successive groups of values."""
+    means: Array = np.add.reduceat(values, bounds[:-1]) / np.diff(bounds)
+    return means
+
+
+def _noise(torque: Array) -> float:
+    """Standard deviation of a reading, from second differences, which vanish on a ramp."""
+    differences = np.abs(np.diff(torque, 2))
+    return 1.4826 * float(np.median(differences)) / math.sqrt(6.0)  # that of the median deviation
+
+
+def _smooth(torque: Array, noise: float) -> Array:
+    """Smooth a ramp by a moving mean, and by a straight line at the ends, where it has none."""
+    tenth = len(torque) // 10
+    half = _mean_rows(torque, noise) // 2
+    sums = np.concatenate([[0.0], np.cumsum(torque)])
+    smooth = torque.copy()
+    smooth[half : len(torque) - half] = (sums[2 * half + 1 :] - sums[: -2 * half - 1]) / (
+        2 * half + 1
+    )
+    if noise:
+        smooth[: tenth // 2] = _line(torque[:tenth])[: tenth // 2]
+        smooth[-tenth // 2 :] = _line(torque[-tenth:])[-tenth // 2 :]
+    return smooth
+
+
+def _mean_rows(torque: Array, noise: float) -> int:
+    """Rows of the moving mean: no more than needed, as a ramp may pause."""
+    enough = (noise / (_SMOOTHED * 0.5 * float(np.ptp(torque)))) ** 2 if noise else 0.0
+    return 2 * (int(min(enough, len(torque) // 10)) // 2) + 1
+
+
+def _line(values: Array) -> Array:
+    rows = np.arange(len(values))
+    return np.polynomial.Polynomial.fit(rows, values, 1)(rows)

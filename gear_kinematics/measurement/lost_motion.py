@@ -1,0 +1,111 @@
+"""What a recording tells of a gear: the figures of torque ramps, and the transmission error."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from gear_kinematics.kinematics import Gear, GearRatio
+from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
+from gear_kinematics.measurement.loops import RampError, Ramps, find_ramps
+from gear_kinematics.measurement.ratio import RatioEstimate, check_ratio, fit_ratio
+from gear_kinematics.measurement.recording import Recording, RecordingError
+from gear_kinematics.measurement.time_effects import time_remarks
+from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LostMotion:
+    """The results for one recording."""
+
+    name: str
+    """Of the recording."""
+    recording: Recording
+    gear_ratio: GearRatio
+    """With which it was read."""
+    ramps: tuple[Ramps, ...] = ()
+    """By amplitude, from small to large; none where there are no torque ramps."""
+    figures: GearFigures | None = None
+    """Of the ramps."""
+    measured: bool = False
+    """Whether an encoder measured the output under torque; if not, it is taken to be locked."""
+    transmission: TransmissionFigures | None = None
+    remarks: tuple[str, ...] = ()
+    """Sentences about what was found."""
+    fitted: RatioEstimate | None = None
+    """The estimate of the ratio, if it comes from the recording."""
+    wrong_ratio: str = ''
+    """What is wrong with the ratio, in a sentence; empty if nothing shows."""
+
+    def at(self, rated_torque: float, corners: Sequence[float], small_load: float) -> 'LostMotion':
+        """The figures of the ramps at other reference values; see `figures.Settings`."""
+        if not self.figures:
+            return self
+        settings = replace(
+            self.figures.settings,
+            rated_torque=rated_torque,
+            corners=tuple(corners),
+            small_load=small_load,
+        )
+        return replace(self, figures=gear_figures(self.ramps, settings))
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """How to measure a recording."""
+
+    rated_torque: float | None = None
+    """N·m; None: the amplitude of the largest ramps."""
+    corners: tuple[float, ...] | None = None
+    """N·m, rising, between ranges of stiffness; None: shares of the rated torque."""
+    fit_ratio: bool = False
+    """Whether to estimate the gear ratio."""
+    delay: float | None = None
+    """s or rows, by which the output's encoder is late; None: estimated."""
+
+
+def measure(
+    recording: Recording, gear: Gear, parameters: Mapping[str, Any], request: Request
+) -> LostMotion:
+    """Measure a recording.
+
+    Args:
+        recording: torque ramps, the motion of both encoders, or both.
+        gear: whose ratio and orders to take.
+        parameters: of the node, for `transmission_error_travel`.
+        request: see there.
+
+    Raises:
+        RampError, RecordingError: if nothing can be measured.
+    """
+    encoders, remarks = recording.encoders, recording.sentences
+    fitted, found, wrong = None, None, ''
+    if request.fit_ratio:
+        if not encoders:
+            raise RecordingError('--fit-ratio needs the angles of rotor and output')
+        fitted = fit_ratio(encoders, gear.gear_ratio)
+        gear = fitted.ratio if fitted.ratio != gear.gear_ratio else gear
+    if encoders:
+        wrong = check_ratio(encoders, gear.gear_ratio)
+        travel = parameters['transmission_error_travel']
+        found = transmission_figures(encoders, gear, travel, request.delay)
+    report = LostMotion(
+        recording.name,
+        recording,
+        gear.gear_ratio,
+        transmission=found,
+        fitted=fitted,
+        wrong_ratio=wrong,
+    )
+    if loading := recording.loading(gear.gear_ratio):
+        try:
+            ramps = find_ramps(loading.torque, loading.angle, loading.time)
+            step = loading.angle_step.size
+            settings = settings_for(ramps, step, request.rated_torque, request.corners)
+            figures = gear_figures(ramps, settings)
+            remarks += time_remarks(ramps, figures.smallest.friction, step)
+            report = replace(report, ramps=ramps, figures=figures, measured=loading.measured)
+        except RampError as error:
+            if not found:
+                raise
+            remarks.append(f'{error}.')
+    return replace(report, remarks=tuple(remarks))

@@ -1,0 +1,224 @@
+"""The one reader of recordings: a bag or a CSV file becomes a `Recording`."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.bag import (
+    Bag,
+    BagError,
+    DamagedBagError,
+    ReportProgress,
+    TopicMessages,
+    in_batches,
+    sort_by_topic,
+)
+from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
+from gear_kinematics.kinematics import gear_from_mapping
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
+from gear_kinematics.measurement.clock import before_set_back, dates_of, in_order
+from gear_kinematics.measurement.columns import Columns
+from gear_kinematics.measurement.csv_files import is_csv, read_csv
+from gear_kinematics.measurement.encoder_step import step_of
+from gear_kinematics.measurement.recording import (
+    Array,
+    Encoders,
+    Loading,
+    Recording,
+    RecordingError,
+    RotorMotion,
+    match,
+)
+from gear_kinematics.state.output_encoder import EncoderSettings
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.batches import JointStates, decode_joint_states
+from gear_kinematics.wire.cdr import SECOND
+
+
+def read(
+    path: Path,
+    parameters: Mapping[str, Any],
+    columns: Columns | None = None,
+    rotor_topic: str | None = None,
+    encoder_topic: str | None = None,
+    progress: ReportProgress | None = None,
+) -> Recording:
+    """Read a recording.
+
+    Args:
+        path: of a CSV file or a bag.
+        parameters: of the node, as `parameters.load` returns them.
+        columns: of a CSV file; the counts per turn of the encoders in a bag.
+        rotor_topic: of the rotor's states in a bag; None finds it by type and name.
+        encoder_topic: of the output's encoder in a bag; None finds it by type and name.
+        progress: called after each batch of a bag, with the messages on all of its topics.
+
+    Raises:
+        BagError, RecordingError: if it cannot be read, or contains nothing to measure.
+    """
+    columns = columns or Columns()
+    if is_csv(path):
+        return read_csv(path, columns, gear_from_mapping(parameters).gear_ratio)
+    return _read_bag(path, parameters, columns, rotor_topic, encoder_topic, progress)
+
+
+def read_encoders(path: Path, *arguments: Any) -> tuple[Recording, Encoders]:
+    """Read a recording of both encoders; see `read`.
+
+    Raises:
+        BagError, RecordingError: see `read`; if it lacks the output's encoder.
+    """
+    recording = read(path, *arguments)
+    if recording.encoders is None:
+        if not is_csv(path):
+            with Bag(path) as bag:
+                raise missing_encoder(bag)
+        raise RecordingError(
+            f'{path}: not both a rotor and an output among the columns; name them with '
+            '--rotor-column and --output-column'
+        )
+    return recording, recording.encoders
+
+
+def _read_bag(
+    path: Path,
+    parameters: Mapping[str, Any],
+    columns: Columns,
+    rotor_topic: str | None,
+    encoder_topic: str | None,
+    progress: ReportProgress | None,
+) -> Recording:
+    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    settings = EncoderSettings.from_mapping(parameters)
+    inputs: list[tuple[Array, ...]] = []
+    outputs: list[tuple[Array, ...]] = []
+    damage, lacking, start = None, '', None
+    with Bag(path) as bag:
+        encoder = find_encoder_topic(bag, encoder_topic)
+        rotor = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
+        topics = [topic for topic in (rotor, encoder) if topic]
+        try:
+            for batch in in_batches(
+                bag.messages(topics), progress=progress, total=bag.message_count
+            ):
+                found = {topic: TopicMessages() for topic in topics}
+                sort_by_topic(batch, found)
+                received = [found[topic].received[0] for topic in topics if found[topic].received]
+                start = min(received) / SECOND if start is None and received else start
+                samples = rotor_input.accept_batch(found[rotor].data, found[rotor].received)
+                inputs.append(
+                    (samples.stamp, samples.turns, samples.angle, samples.effort, samples.stretch)
+                )
+                if encoder:
+                    states = decode_joint_states(
+                        found[encoder].data, settings.output_encoder_joint
+                    )
+                    lacking = lacking or states.lacking
+                    outputs.append(_measured(states, found[encoder].received, settings))
+        except DamagedBagError as error:
+            damage = str(error)
+    remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
+    stamp, turns, angle, effort, segment = _joined(inputs, 5)
+    if not len(stamp):
+        why = f': {rotor_input.why_rejected}' if rotor_input.rejected else ''
+        raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
+    rows = len(stamp)
+    if (kept := before_set_back(stamp)) < rows:
+        remarks.append(f'{rotor}: the clock was set back; the {kept} states before it are used')
+        stamp, turns, angle, effort, segment = (
+            column[:kept] for column in (stamp, turns, angle, effort, segment)
+        )
+    motion = RotorMotion(
+        stamp, turns, angle, effort if np.isfinite(effort).any() else None, segment
+    )
+    described = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
+    encoders = locked = None
+    if encoder:
+        stamps, angles = _joined(outputs, 2)
+        if lacking and not len(stamps):
+            raise BagError(f'{path}: {encoder}: {lacking}')
+        encoders, told = _compared(motion, stamps, angles, settings, columns)
+        remarks += [f'{encoder}: {text}' for text in told]
+        if not len(encoders.measured):
+            raise RecordingError(f'{path}: no output angle was measured between two rotor states')
+        described.append(f'output {encoder}, rad')
+    elif motion.effort is None:
+        raise missing_encoder(bag, f'{rotor} has no effort, and ')
+    else:
+        ratio = gear_from_mapping(parameters).gear_ratio
+        locked = _locked(motion, ratio, columns)
+    if motion.effort is not None:
+        described.append(f'torque: effort of {rotor} times the ratio, N·m')
+    return Recording(
+        path, path.name, tuple(described), rows, dates_of(path, start), encoders, locked,
+        tuple(remarks), damage,
+    )  # fmt: skip
+
+
+def _locked(motion: RotorMotion, ratio: Any, columns: Columns) -> Loading:
+    """Angles of a rotor under torque, with the output taken to be locked."""
+    assert motion.effort is not None  # noqa: S101, for the type
+    known = np.isfinite(motion.effort)
+    position = (motion.turns - motion.turns[0]) * TURN + motion.angle
+    step = step_of(columns.rotor_counts, position).scaled(float(1 / ratio))
+    return Loading(
+        float(ratio) * motion.effort[known],
+        position[known] / float(ratio),
+        step,
+        measured=False,
+        time=(motion.stamp[known] - motion.stamp[known][0]) / SECOND,
+    )
+
+
+def _compared(
+    motion: RotorMotion,
+    stamps: Array,
+    angles: Array,
+    settings: EncoderSettings,
+    columns: Columns,
+) -> tuple[Encoders, list[str]]:
+    """Interpolate the rotor to the angles of the output; say what is left out."""
+    told = []
+    kept, disordered = in_order(stamps)
+    if disordered:
+        told.append(f'{disordered} angles out of order')
+    if (rest := len(stamps) - len(kept) - disordered) > 0:
+        told.append(f'the clock was set back; the last {rest} angles are left out')
+    stamps, angles = stamps[kept], angles[kept]
+    gap = round(settings.transmission_error_max_gap * SECOND)
+    before, share, inside = match(motion.stamp, stamps, gap)
+    outside = np.count_nonzero((stamps < motion.stamp[0]) | (stamps > motion.stamp[-1]))
+    unmatched = {
+        'outside of the rotor states': int(outside),
+        'gap of the rotor states': len(stamps) - len(before) - int(outside),
+    }
+    encoders = Encoders(
+        motion,
+        timed=True,
+        before=before,
+        share=share,
+        measured=angles[inside],
+        rotor_step=step_of(columns.rotor_counts, motion.turns * TURN + motion.angle),
+        output_step=step_of(columns.output_counts, angles),
+        unmatched={cause: count for cause, count in unmatched.items() if count},
+    )
+    return encoders, told
+
+
+def _measured(
+    states: JointStates, times: Sequence[int], settings: EncoderSettings
+) -> tuple[Array, Array]:
+    """Stamps and output angles of messages; a zero stamp is replaced by the time of reception."""
+    angle = settings.output_angle(states.values[:, 0])
+    usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
+    stamp = np.where(states.stamp == 0, np.asarray(times, np.int64), states.stamp)
+    return stamp[usable], angle[usable]
+
+
+def _joined(batches: list[tuple[Array, ...]], count: int) -> tuple[Array, ...]:
+    """Columns of all batches; frees those of the batches one by one."""
+    columns = list(map(list, zip(*batches, strict=True))) or [[np.zeros(0)] for _ in range(count)]
+    batches.clear()
+    return tuple(np.concatenate(columns.pop(0)) for _ in range(count))

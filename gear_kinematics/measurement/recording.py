@@ -1,0 +1,239 @@
+"""A recording of a gear, whatever its file format: angles under torque, and both encoders."""
+
+import hashlib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.clock import Dates
+from gear_kinematics.measurement.encoder_step import Step
+from gear_kinematics.wire.cdr import SECOND
+
+Array = NDArray[Any]
+
+_SPEED_WINDOW = 0.02
+"""s, over which the speed is averaged."""
+
+
+class RecordingError(ValueError):
+    """A recording that cannot be used; the text is one line on the cause."""
+
+
+class RotorMotion(NamedTuple):
+    """The rotor's samples in the order of time, (n,) each."""
+
+    stamp: Array
+    """ns; if time was not recorded, one second a sample."""
+    turns: Array
+    angle: Array
+    """rad: the rotor angle φ2 is 2π turns + angle."""
+    effort: Array | None = None
+    """N·m, on the rotor; NaN where it is missing; None if it was not recorded at all."""
+    segment: Array | None = None
+    """Number that changes where the motion before a sample is unknown; None: nowhere."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Loading:
+    """Angles under torque, (n,) each, in the order of their sampling."""
+
+    torque: Array
+    """N·m, at the output."""
+    angle: Array
+    """rad, at the output: the twist of the gear, from an arbitrary zero."""
+    angle_step: Step
+    """rad at the output, between readings of the angle."""
+    measured: bool
+    """Whether an encoder measured the output; if not, it is taken to be locked."""
+    time: Array | None = None
+    """s since the first sample, increasing; None if it is not known."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Encoders:
+    """Measured output angles, each with the motion of the rotor up to it."""
+
+    rotor: RotorMotion
+    timed: bool
+    """Whether stamps are times."""
+    before: Array
+    """(n,): index of the last rotor sample before each measured angle."""
+    share: Array
+    """(n,): share of the way from there to the next rotor sample."""
+    measured: Array
+    """(n,), rad."""
+    rotor_step: Step
+    """rad of the rotor, between readings of its encoder."""
+    output_step: Step
+    """rad, the same of the output's encoder."""
+    unmatched: Mapping[str, int] = field(default_factory=dict)
+    """Measured angles without a rotor angle, by cause."""
+
+    @property
+    def duration(self) -> float:
+        """Time between the first and the last sample, s; 0 if not recorded."""
+        stamp = self.rotor.stamp
+        return float(stamp[-1] - stamp[0]) / SECOND if self.timed else 0.0
+
+    @property
+    def seconds(self) -> Array:
+        """Times of the measured angles from the first rotor sample, s, or sample numbers."""
+        return self.at_measured((self.rotor.stamp - self.rotor.stamp[0]) / SECOND)
+
+    def at_measured(self, values: Array) -> Array:
+        """Interpolate a quantity of the rotor to the measured angles."""
+        following = np.minimum(self.before + 1, len(values) - 1)
+        step = values[following] - values[self.before]
+        interpolated: Array = values[self.before] + self.share * step
+        return interpolated
+
+    def position(self) -> tuple[Array, Array]:
+        """Rotor angle at the measured angles: whole turns and the rest, rad."""
+        _, turns, angle, *_ = self.rotor
+        following = np.minimum(self.before + 1, len(turns) - 1)
+        step = (turns[following] - turns[self.before]) * TURN
+        step += angle[following] - angle[self.before]
+        rest = angle[self.before] + self.share * step
+        wraps = np.round(rest / TURN)
+        return turns[self.before] + wraps, rest - TURN * wraps
+
+    def ideal(self, ratio: Fraction) -> Array:
+        """Ideal output angle of the rotor samples, rad, from the whole turns of the first one."""
+        turns = self.rotor.turns - self.rotor.turns[0]
+        output: Array = (turns * TURN + self.rotor.angle) * (ratio.denominator / ratio.numerator)
+        return output
+
+    def error(self, ratio: Fraction) -> Array:
+        """Measured minus ideal output angle, rad, without jumps; its zero is arbitrary."""
+        error = self.measured - self.at_measured(self.ideal(ratio))
+        jumps = np.round(np.diff(error, prepend=error[0]) / TURN)
+        return error - TURN * np.cumsum(jumps)
+
+    def speed(self, ratio: Fraction) -> Array:
+        """Speed of the output at the measured angles, rad/s, or rad a sample without times."""
+        ideal = self.ideal(ratio)
+        stamp = (self.rotor.stamp - self.rotor.stamp[0]) / SECOND
+        at = self.seconds
+        # No less than the rotor's own samples on both sides.
+        early = np.maximum(at - 0.5 * _SPEED_WINDOW, stamp[0])
+        late = np.minimum(at + 0.5 * _SPEED_WINDOW, stamp[-1])
+        early = np.minimum(early, stamp[self.before])
+        late = np.maximum(late, stamp[np.minimum(self.before + 1, len(stamp) - 1)])
+        travel = np.interp(late, stamp, ideal) - np.interp(early, stamp, ideal)
+        speed: Array = travel / np.maximum(late - early, 1.0 / SECOND)
+        return speed
+
+    def torque(self, ratio: Fraction) -> Array | None:
+        """Torque at the output, N·m, at the measured angles; None if it has gaps."""
+        effort = self.rotor.effort
+        if effort is None or not np.isfinite(effort).all():
+            return None
+        return float(ratio) * self.at_measured(effort)
+
+    def earlier(self, delay: float) -> Self:
+        """Return the angles as if they had been measured earlier by a delay, s or samples."""
+        stamp = self.rotor.stamp[0] + np.round((self.seconds - delay) * SECOND).astype(np.int64)
+        before, share, kept = match(self.rotor.stamp, stamp)
+        return replace(self, before=before, share=share, measured=self.measured[kept])
+
+    def chosen(self, rows: Array) -> Self:
+        """Leave out measured angles but those of some rows; the rotor's motion stays as it is."""
+        return replace(
+            self, before=self.before[rows], share=self.share[rows], measured=self.measured[rows]
+        )
+
+    def starts(self, max_gap: int | None) -> Array:
+        """Indices of the rotor samples before which the motion is unknown, the first included.
+
+        Args:
+            max_gap: ns between rotor samples beyond which motion was missed.
+        """
+        unknown = np.zeros(len(self.rotor.turns), bool)
+        unknown[0] = True
+        if self.rotor.segment is not None:
+            unknown[1:] |= np.diff(self.rotor.segment) != 0
+        if max_gap is not None and self.timed:
+            unknown[1:] |= np.diff(self.rotor.stamp) > max_gap
+        return np.flatnonzero(unknown)
+
+
+def match(
+    rotor: Array, measured: Array, max_gap: float = np.inf
+) -> tuple[Array, Array, NDArray[np.bool_]]:
+    """Find the rotor samples around each measured angle.
+
+    Args:
+        rotor: stamps, ns, in order.
+        measured: stamps, ns.
+        max_gap: ns between rotor samples beyond which nothing is interpolated.
+
+    Returns:
+        `before` and `share` of the angles between two rotor samples, and which these are.
+    """
+    before = np.searchsorted(rotor, measured, side='right') - 1
+    last = len(rotor) - 1
+    inside = (before >= 0) & (measured <= rotor[-1])
+    before = np.clip(before, 0, max(last - 1, 0))
+    step = rotor[np.minimum(before + 1, last)] - rotor[before]
+    inside &= step <= max_gap
+    before, step = before[inside], np.maximum(step[inside], 1)
+    return before, (measured[inside] - rotor[before]) / step, inside
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """What was read: angles under torque, both encoders, or all of it."""
+
+    path: Path
+    name: str
+    columns: tuple[str, ...]
+    """Descriptions of the data that were read."""
+    rows: int
+    """Number of samples read."""
+    dates: Dates
+    encoders: Encoders | None = None
+    locked: Loading | None = None
+    """Angles under torque without an encoder at the output, which is taken to be locked."""
+    remarks: tuple[str, ...] = ()
+    """Clauses about what was left out or assumed."""
+    damage: str | None = None
+    """At which reading ended."""
+
+    @property
+    def sentences(self) -> list[str]:
+        """What was left out or assumed, and what damage ended the reading."""
+        damage = [f'{self.damage}; what is before it is used'] if self.damage else []
+        return [f'{clause}.' for clause in (*self.remarks, *damage)]
+
+    def loading(self, ratio: Fraction) -> Loading | None:
+        """Torque and twist: of the gear if the output was measured, else of the whole drive."""
+        both = self.encoders
+        if both is None or both.rotor.effort is None:
+            return self.locked
+        torque = float(ratio) * both.at_measured(both.rotor.effort)
+        known = np.isfinite(torque)
+        if not known.any():
+            return None
+        step = both.rotor_step.scaled(float(1 / ratio)).joined(both.output_step)
+        time = both.seconds[known] if both.timed else None
+        return Loading(torque[known], -both.error(ratio)[known], step, measured=True, time=time)
+
+    @cached_property
+    def sha256(self) -> str:
+        """Hash of the file, or of the files in the folder one after the other, by name."""
+        total = hashlib.sha256()
+        files: Iterable[Path] = [self.path]
+        if self.path.is_dir():
+            files = sorted(file for file in self.path.rglob('*') if file.is_file())
+        for file in files:
+            with file.open('rb') as content:
+                while part := content.read(2**20):
+                    total.update(part)
+        return total.hexdigest()

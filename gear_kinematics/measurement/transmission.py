@@ -1,0 +1,293 @@
+"""The transmission error of a recording over the output angle: accuracy, lost motion, orders.
+
+An order is a number of cycles per turn of the output.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.kinematics import Gear, Mechanism
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.recording import Encoders
+from gear_kinematics.state.reversals import Pair, Reversals, separate
+from gear_kinematics.state.transmission_error import Direction
+from gear_kinematics.state.uncertainty import Component, Estimate, resolution
+
+Array = NDArray[np.float64]
+
+_ANGLES = 200
+"""At which two runs over the same range are compared."""
+_LONG = 0.5
+"""Runs of at least this share of the longest one are repeats of it."""
+_MIN_CYCLES = 2.0
+"""Of an order in a run."""
+_MIN_SAMPLES = 4.0
+"""In a cycle."""
+_BINS = 8.0
+"""Interpolated samples in the spectrum's shortest cycle."""
+_MOST_TEETH = 100
+"""In mesh per turn of the rotor of an unknown gear."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A marked order of the spectrum."""
+
+    name: str
+    cycles: Fraction
+    """Cycles per turn of the output."""
+    forward: Estimate | None
+    """Amplitude, rad; None where the motion is too short or the samples too far apart."""
+    backward: Estimate | None
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Spectrum:
+    """Amplitudes over orders, (n,) each, in one direction."""
+
+    orders: Array
+    amplitude: Array
+    """rad."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class TransmissionFigures:
+    """Results from a recording of both encoders."""
+
+    samples: int
+    travel: float
+    """rad, from the least to the greatest output angle."""
+    offset: float
+    """rad, the mean error: the offset of the encoders' zeros."""
+    forward: Estimate | None
+    """Transmission accuracy, rad: peak-to-peak error of forward motion without a reversal."""
+    backward: Estimate | None
+    reversals: Estimate | None
+    """rad: error of the backward minus the forward run at the same angles; None without any."""
+    lost_motion: Estimate | None
+    """rad: the same at no speed; None where it cannot be told from a delay."""
+    delay: Estimate | None
+    """s, or rows of a file without times, by which the stamps of the output are late; None if it
+    cannot be told. The other figures are without it."""
+    orders: tuple[Order, ...]
+    spectra: tuple[Spectrum | None, Spectrum | None]
+    """Forward and backward."""
+    error: Array
+    """(n,), rad, measured minus ideal."""
+    angle: Array
+    """(n,), rad, ideal output angle."""
+    direction: NDArray[np.int8]
+    """(n,): 1, -1, or 0 where unknown."""
+
+
+class _Run:
+    """Samples in one direction, in the order of the angle."""
+
+    def __init__(self, angle: Array, error: Array, speed: Array) -> None:
+        order = np.argsort(angle, kind='stable')
+        self.angle, self.error, self._speed = angle[order], error[order], speed[order]
+        self.low, self.high = float(self.angle[0]), float(self.angle[-1])
+
+    @property
+    def turns(self) -> float:
+        """Length, turns of the output."""
+        return (self.high - self.low) / TURN
+
+    @property
+    def spacing(self) -> float:
+        """Distance between samples, 99th percentile, turns of the output."""
+        return float(np.quantile(np.diff(self.angle), 0.99)) / TURN
+
+    def mean_speed(self, edges: Array) -> Array:
+        """Mean speeds between angles (n,): (n - 1,)."""
+        sums = np.concatenate([[0.0], np.cumsum(self._speed)])
+        rows = np.searchsorted(self.angle, edges)
+        counts = np.diff(rows)
+        single = np.interp(0.5 * (edges[1:] + edges[:-1]), self.angle, self._speed)
+        return np.where(counts, np.diff(sums[rows]) / np.maximum(counts, 1), single)
+
+
+class _Motion:
+    """The transmission error along the runs between reversals."""
+
+    def __init__(self, encoders: Encoders, gear: Gear, travel: float) -> None:
+        ratio = gear.gear_ratio
+        ideal = encoders.ideal(ratio)
+        self.angle = encoders.at_measured(ideal)
+        self.error = encoders.error(ratio)
+        direction = Direction(travel)
+        starts = set(encoders.starts(None).tolist())
+        ways = []
+        for row, step in enumerate(np.diff(ideal, prepend=ideal[0]).tolist()):
+            if row in starts:
+                direction.reset()
+            ways.append(direction.move(step))
+        way = np.array(ways, np.int8)
+        after = way[np.minimum(encoders.before + (encoders.share > 0.0), len(way) - 1)]
+        self.direction = np.where(way[encoders.before] == after, after, 0).astype(np.int8)
+        self._speed = encoders.speed(ratio)
+
+    def runs(self) -> Iterable[tuple[int, _Run]]:
+        """Yield the runs between reversals, each with its direction."""
+        known = np.flatnonzero(self.direction)
+        signs = self.direction[known]
+        for rows in np.split(known, np.flatnonzero(np.diff(signs)) + 1):
+            if len(rows) > 1:
+                run = _Run(self.angle[rows], self.error[rows], self._speed[rows])
+                yield int(self.direction[rows[0]]), run
+
+
+def marked_orders(gear: Gear) -> dict[str, Fraction]:
+    """The orders to look for, by name, in cycles per turn of the output.
+
+    In a turn of the output, the rotor turns abs(i) times. In a mechanism, the cam turns
+    abs(i) + 1 times against the satellite, as do its mesh and the Oldham coupling, and teeth mesh
+    zk times per turn of the rotor.
+    """
+    rotor = abs(gear.gear_ratio)
+    base = {'output': Fraction(1), 'rotor': rotor}
+    if isinstance(gear, Mechanism):
+        base |= {'satellite': rotor + 1, 'teeth': gear.ring_teeth * rotor}
+    return {
+        f'{name} × {multiple}': multiple * cycles
+        for name, cycles in base.items()
+        for multiple in (1, 2)
+    }
+
+
+def transmission_figures(
+    encoders: Encoders, gear: Gear, travel: float, delay: float | None = None
+) -> TransmissionFigures:
+    """Compute the figures of a recording.
+
+    Args:
+        encoders: of rotor and output.
+        gear: whose orders to look for.
+        travel: rad of the output after a reversal until the new direction counts.
+        delay: s or rows by which the output's stamps are late; None estimates it, and takes out
+            what is more than its uncertainty.
+    """
+    step = encoders.rotor_step.scaled(float(1 / gear.gear_ratio)).joined(encoders.output_step)
+    reading = Component(resolution(step.size))
+    both = Component(math.sqrt(2.0) * reading.standard)
+    motion = _Motion(encoders, gear, travel)
+    found = _reversals(motion, both, delay)
+    taken = found.delay if found else None
+    if delay is not None or (taken and abs(taken.value) > (taken.uncertainty or 0.0)):
+        # The error is in proportion to the delay only as long as the speed hardly changes in it.
+        shift = delay if delay is not None else taken.value if taken else 0.0
+        motion = _Motion(encoders.earlier(shift), gear, travel) if shift else motion
+        rest = _reversals(motion, both, None) if delay is None else None
+        if found and rest and rest.delay:
+            late = replace(rest.delay, value=shift + rest.delay.value)
+            found = replace(found, lost_motion=rest.lost_motion, delay=late)
+    runs = list(motion.runs())
+    forward, backward = (_long([run for sign, run in runs if sign == way]) for way in (1, -1))
+    return TransmissionFigures(
+        len(motion.error),
+        float(np.ptp(motion.angle)),
+        float(np.mean(motion.error)),
+        _accuracy(forward, both),
+        _accuracy(backward, both),
+        found.difference if found else None,
+        found.lost_motion if found else None,
+        found.delay if found else None,
+        tuple(_orders(gear, forward, backward, reading)),
+        (_spectrum(gear, forward), _spectrum(gear, backward)),
+        motion.error,
+        motion.angle,
+        motion.direction,
+    )
+
+
+def _long(runs: Sequence[_Run]) -> list[_Run]:
+    longest = max((run.turns for run in runs), default=0.0)
+    return [run for run in runs if run.turns >= _LONG * longest]
+
+
+def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:
+    values = [float(np.ptp(run.error)) for run in runs]
+    return Estimate.of_mean(values, reading) if values else None
+
+
+def _reversals(motion: _Motion, reading: Component, delay: float | None) -> Reversals | None:
+    """Compare successive runs, in pairs of opposite direction, over their common angles."""
+    pairs = [_pair(*two) for two in list(pairwise(motion.runs()))[::2]]
+    return separate(pairs, reading, delay=delay)
+
+
+def _pair(first: tuple[int, _Run], second: tuple[int, _Run]) -> Pair:
+    (sign, there), (_, back) = first, second
+    low, high = max(there.low, back.low), min(there.high, back.high)
+    if low >= high:
+        return Pair(np.zeros(0), np.zeros(0))
+    edges = np.linspace(low, high, _ANGLES + 1)
+    at = 0.5 * (edges[1:] + edges[:-1])
+    there_error, back_error = (np.interp(at, run.angle, run.error) for run in (there, back))
+    speed = there.mean_speed(edges) - back.mean_speed(edges)
+    return Pair(sign * (back_error - there_error), sign * speed)
+
+
+# Orders
+
+
+def _orders(
+    gear: Gear, forward: Sequence[_Run], backward: Sequence[_Run], reading: Component
+) -> Iterable[Order]:
+    marked = marked_orders(gear)
+    there, back = (_amplitudes(runs, marked.values(), reading) for runs in (forward, backward))
+    for name, cycles in marked.items():
+        yield Order(name, cycles, there.get(cycles), back.get(cycles))
+
+
+def _amplitudes(
+    runs: Sequence[_Run], orders: Iterable[Fraction], reading: Component
+) -> dict[Fraction, Estimate]:
+    """Amplitudes of the orders that every run resolves, by order."""
+    if not runs:
+        return {}
+    shortest, coarsest = min(run.turns for run in runs), max(run.spacing for run in runs)
+    found = [Fraction(0)]
+    for order in sorted(orders):
+        apart = (order - found[-1]) * shortest >= 1.0
+        if apart and order * shortest >= _MIN_CYCLES and order * coarsest * _MIN_SAMPLES <= 1.0:
+            found.append(order)
+    fits = np.array([_fit(run, found[1:]) for run in runs])
+    return {
+        order: Estimate.of_mean(values, reading)
+        for order, values in zip(found[1:], fits.T.tolist(), strict=True)
+    }
+
+
+def _fit(run: _Run, orders: Sequence[Fraction]) -> Array:
+    """Amplitudes of a sum of sines, by least squares; the samples need not be evenly spaced."""
+    phase = np.multiply.outer(run.angle, np.array(orders, float))
+    design = np.concatenate([np.ones((len(phase), 1)), np.cos(phase), np.sin(phase)], axis=1)
+    cosines, sines = np.linalg.lstsq(design, run.error, rcond=None)[0][1:].reshape(2, -1)
+    amplitudes: Array = np.hypot(cosines, sines)
+    return amplitudes
+
+
+def _spectrum(gear: Gear, runs: Sequence[_Run]) -> Spectrum | None:
+    """Amplitudes of all orders that the longest run resolves, with a Hann window."""
+    run = max(runs, key=lambda run: run.turns, default=None)
+    if run is None:
+        return None
+    teeth = gear.ring_teeth if isinstance(gear, Mechanism) else _MOST_TEETH
+    highest = min(2.5 * float(teeth * abs(gear.gear_ratio)), 0.5 / run.spacing)
+    if highest * run.turns < _MIN_CYCLES:
+        return None
+    count = math.ceil(_BINS * highest * run.turns)
+    at = run.low + (np.arange(count) + 0.5) * (run.high - run.low) / count
+    error = np.interp(at, run.angle, run.error)
+    window = np.hanning(count)
+    amplitude = 2.0 * np.abs(np.fft.rfft((error - error.mean()) * window)) / window.sum()
+    orders = np.arange(len(amplitude)) / run.turns
+    shown = orders <= highest
+    return Spectrum(orders[shown], amplitude[shown])

@@ -1,0 +1,75 @@
+"""The formatting of measured quantities, for people and for JSON."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from gear_kinematics.report.document import number
+from gear_kinematics.state.uncertainty import COVERAGE, Estimate
+
+ARC_MINUTES = 60.0 * 180.0 / math.pi
+"""Arc minutes per radian; catalogues give lost motion in arc minutes."""
+PERCENT = f'{100.0 * COVERAGE:g} %'
+"""Probability with which an interval contains the value."""
+_EXACT = 1e-5
+"""Relative uncertainty below which values are rounded to six digits."""
+
+
+def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
+    """Format a quantity with its uncertainty, both to the second digit of the uncertainty."""
+    if estimate is None:
+        return ''
+    value, spread = rounded(estimate, scale)
+    return f'{value} ± {spread}' if spread else value
+
+
+def arc_minutes(estimate: Estimate | None) -> str:
+    """Format an angle in arc minutes with its uncertainty."""
+    return plus_minus(estimate, ARC_MINUTES)
+
+
+def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
+    """Format a value and its uncertainty, which is empty if unknown."""
+    value, spread = estimate.value * scale, estimate.uncertainty
+    if not spread:
+        return number(value, 4), '' if spread is None else '0'
+    spread *= scale
+    if spread < abs(value) * _EXACT:
+        return number(value, 6), number(spread, 2)
+    decimals = max(0, 1 - math.floor(math.log10(spread)))
+    # Zero must have no sign.
+    return f'{round(value, decimals) + 0.0:.{decimals}f}', f'{spread:.{decimals}f}'
+
+
+def plain(value: Any) -> Any:
+    """Convert dataclasses to mappings for JSON, without arrays."""
+    match value:
+        case Estimate():
+            return {
+                'value': value.value,
+                'standard_uncertainty': value.standard,
+                'degrees_of_freedom': value.degrees_of_freedom,
+                'expanded_uncertainty': value.uncertainty,
+                'repeats': value.repeats,
+            }
+        case Fraction():
+            return str(value)
+        case Enum():
+            return value.value
+        case Mapping():
+            return {key: plain(item) for key, item in value.items()}
+        case tuple() | list():
+            return [plain(item) for item in value]
+    if is_dataclass(value):
+        members = {field.name: getattr(value, field.name) for field in fields(value)}
+        return {
+            name: plain(member)
+            for name, member in members.items()
+            if not isinstance(member, np.ndarray)
+        }
+    return value

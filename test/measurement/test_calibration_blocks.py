@@ -1,0 +1,131 @@
+"""Uncertainties from blocks, elimination of a recording's own unknowns, prediction of folds."""
+
+import numpy as np
+import pytest
+
+from gear_kinematics.measurement.calibration.normal import (
+    NormalEquations,
+    block_products,
+    blocks_of,
+    is_as_good,
+    jackknife,
+    standard_error,
+    widening,
+)
+
+T_975 = {5: 2.5706, 23: 2.0687}
+"""Student's t from tables; for infinitely many degrees of freedom it is 1.9600."""
+
+
+def test_standard_error_is_that_of_the_mean_of_independent_blocks():
+    values = np.array([1.0, 3.0] * 12)
+    # Neighbours together are equal, so that single blocks have the greatest error.
+    error = standard_error(values)
+    assert error == (pytest.approx(np.std(values, ddof=1) / 24**0.5), 23)
+
+
+def test_standard_error_of_neighbours_that_are_alike_is_that_of_their_groups():
+    groups = np.random.default_rng(0).standard_normal(6)
+    error = standard_error(np.repeat(groups, 4))
+    assert error == (pytest.approx(np.std(groups, ddof=1) / 6**0.5), 5)
+
+
+def test_too_few_blocks_have_no_standard_error():
+    assert standard_error(np.array([1.0, 2.0])).value == 0.0
+
+
+def test_jackknife_of_a_mean_is_its_standard_error():
+    values = np.random.default_rng(1).standard_normal(24)
+    without = [float(np.delete(values, k).mean()) for k in range(24)]
+    estimate = jackknife(float(values.mean()), without)
+    assert estimate.standard >= np.std(values, ddof=1) / 24**0.5 * (1 - 1e-9)
+    assert estimate.value == values.mean()
+
+
+def test_a_model_is_as_good_unless_it_is_worse_in_most_blocks():
+    random = np.random.default_rng(2)
+    best = 1.0 + 0.1 * random.standard_normal(24)
+    assert is_as_good(best, best)
+    assert is_as_good(best + 0.1 * random.standard_normal(24), best)
+    assert not is_as_good(best + 0.1, best)
+
+
+def test_steady_errors_widen_nothing_and_unsteady_ones_as_students_t():
+    assert widening(np.ones(24)) == pytest.approx(1.0)
+    # Mean squares whose standard error, relative to the mean, is the root of 2/23: chi square.
+    errors = np.array([1.0, -1.0] * 12)
+    errors = 1.0 + errors * (2.0 / 23.0) ** 0.5 * 23.0**0.5
+    assert widening(errors) == pytest.approx(T_975[23] / 1.96, rel=2e-2)
+
+
+def test_intervals_hold_on_other_errors_of_a_random_scale():
+    random = np.random.default_rng(3)
+    inside, plain = [], []
+    for _ in range(2000):
+        first, second = random.standard_normal((2, 6))
+        errors = np.repeat(first**2, 4)
+        half_width = 1.96 * np.sqrt(errors.mean())
+        inside.append(np.abs(second) <= half_width * widening(errors))
+        plain.append(np.abs(second) <= half_width)
+    assert np.mean(plain) < 0.91
+    assert 0.93 <= np.mean(inside) <= 0.985
+
+
+@pytest.fixture
+def line():
+    """Give columns (x, zero, drift, error) of two recordings: slope 2, and each its own zero."""
+    random = np.random.default_rng(4)
+    x = random.standard_normal((2, 480))
+    drift = np.linspace(-1.0, 1.0, 480)
+    error = 2.0 * x + np.array([[5.0], [-3.0]]) + 0.5 * drift
+    blocks = blocks_of([480, 480])
+
+    def columns(block):
+        rows = block.rows
+        count = rows.stop - rows.start
+        return np.column_stack([
+            x[block.recording, rows], np.ones(count), drift[rows], error[block.recording, rows],
+        ])  # fmt: skip
+
+    return block_products(columns, blocks), blocks
+
+
+def test_blocks_cover_all_samples_once():
+    blocks = blocks_of([1000, 100, 5])
+    for recording, count in enumerate([1000, 100, 5]):
+        rows = [b.rows for b in blocks if b.recording == recording]
+        assert len(rows) >= 2
+        assert [k for part in rows for k in range(part.start, part.stop)] == list(range(count))
+
+
+def test_own_unknowns_of_each_recording_are_found_beside_the_common_one(line):
+    products, blocks = line
+    equations = NormalEquations(products, blocks, np.arange(len(blocks)), 1, (0, 1), (0,))
+    assert equations.solve([0]) == pytest.approx([2.0])
+    for recording, zero in enumerate((5.0, -3.0)):
+        own, without = equations.own(recording, [0])
+        assert own == pytest.approx([zero, 0.5])
+        assert without == pytest.approx(np.tile(own, (len(blocks), 1)))
+
+
+def test_prediction_has_the_zero_of_what_was_left_out_only_if_it_is_to_be_a_check(line):
+    products, blocks = line
+    halves = np.array([k % 12 >= 6 for k in range(len(blocks))], int)
+    errors = {
+        checked: NormalEquations(
+            products, blocks, halves, 1, (0, 1), (0,), own_of_fold=checked
+        ).errors([0])
+        for checked in (False, True)
+    }
+    # The drift of ±0.5 over a recording remains: its variance is 1/12, in a half of it 1/48.
+    assert errors[False].mean() == pytest.approx(1.0 / 12.0, rel=0.01)
+    assert errors[True].mean() == pytest.approx(1.0 / 48.0, rel=0.01)
+
+
+def test_a_column_that_the_zero_explains_gets_no_coefficient(line):
+    products, blocks = line
+    place = [1, 0, 1, 2, 3]  # the zero's column as a common one, too
+    equations = NormalEquations(
+        products[:, place][:, :, place], blocks, np.arange(len(blocks)), 2, (0, 1), (0,)
+    )
+    assert equations.solve([0, 1]) == pytest.approx([0.0, 2.0], abs=1e-5)

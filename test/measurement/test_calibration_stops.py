@@ -1,0 +1,57 @@
+"""Stop operators along a motion, against a loop over its samples."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gear_recordings import encoders
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gear_kinematics.measurement.calibration.samples import TurningPoints
+
+RADIUS = 0.25
+
+
+def states(x, starts, radius=RADIUS):
+    """The least and the greatest possible state after each sample, by definition."""
+    low, high, found = -radius, radius, []
+    for k, angle in enumerate(x):
+        if k in starts:
+            low, high = -radius, radius
+        else:
+            low, high = (min(max(d + angle - x[k - 1], -radius), radius) for d in (low, high))
+        found.append((low, high))
+    return np.array(found).T
+
+
+step = st.sampled_from([0.0, 0.01, -0.02, 0.1, -0.1, 0.3, -0.7])
+steps = st.lists(step, min_size=1, max_size=60)
+
+
+@given(steps, st.sets(st.integers(0, 59)))
+def test_states_are_those_of_the_definition(moves, unknown):
+    x = np.cumsum(moves)
+    starts = sorted({0, *(k for k in unknown if k < len(x))})
+    low, high = states(x, starts)
+    middle, known = TurningPoints(encoders(x, x), x, np.array(starts)).stop_states(RADIUS)
+    assert middle == pytest.approx(0.5 * (low + high), abs=1e-12)
+    assert np.array_equal(known, high - low < 1e-9)
+
+
+def test_long_motions_are_followed_in_parts():
+    x = np.cumsum(np.random.default_rng(1).choice([-0.01, 0.01], 10_000))
+    low, high = states(x, [0, 7000])
+    middle, _ = TurningPoints(encoders(x, x), x, np.array([0, 7000])).stop_states(RADIUS)
+    assert middle == pytest.approx(0.5 * (low + high), abs=1e-9)
+
+
+def test_state_between_two_samples_of_the_rotor():
+    x = np.array([0.0, 1.0, 0.9, 0.5])
+    between = replace(
+        encoders(x, x), before=np.array([1, 2]), share=np.array([0.5, 0.25]), measured=x[:2]
+    )
+    middle, known = TurningPoints(between, x, np.array([0])).stop_states(RADIUS)
+    # From the bound 0.25 at 1.0, back by 0.05, and by 0.1 + 0.1.
+    assert middle == pytest.approx([0.2, 0.05])
+    assert known.all()

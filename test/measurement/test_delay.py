@@ -1,0 +1,152 @@
+"""A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
+
+import math
+
+import numpy as np
+import pytest
+from gear_recordings import Samples, encoders, write_csv, write_recording
+from simulated_encoders import (
+    ARC_MINUTE,
+    TURN,
+    Drive,
+    even_strokes,
+    ramped_strokes,
+    sine_strokes,
+    stamps,
+)
+
+from gear_kinematics.commands.cli import main
+from gear_kinematics.kinematics import GearRatio
+from gear_kinematics.measurement.lost_motion import Request, measure
+from gear_kinematics.measurement.ratio import check_ratio
+from gear_kinematics.measurement.reading import read
+from gear_kinematics.measurement.recording import Encoders, RecordingError
+from gear_kinematics.measurement.transmission import transmission_figures
+
+RATIO = GearRatio(-19)
+PLAY = 3.0 * ARC_MINUTE
+ERRORS = {order: size * ARC_MINUTE for order, size in {1: 4, 19: 1, 20: 0.3, 1520: 0.1}.items()}
+COUNTS, OUTPUT_COUNTS = 2**16, 2**20
+STEPS = {'rotor_step': TURN / COUNTS, 'output_step': TURN / OUTPUT_COUNTS}
+
+
+TRAVEL = math.radians(1.0)
+
+
+def recorded(drive, profile, seconds, rate=1000.0, seed=1) -> Encoders:
+    times, rotor, output = drive.readings(profile, seconds, rate, seed)
+    return encoders(rotor, output, stamps(times), COUNTS, OUTPUT_COUNTS)
+
+
+def figures(both: Encoders, delay: float | None = None):
+    return transmission_figures(both, RATIO, TRAVEL, delay)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('delay', [0.0, 2e-3, -2e-3, 10e-3])
+@pytest.mark.parametrize(
+    'profile',
+    [sine_strokes(3.0, 4.0), ramped_strokes(3.0, 2.0, 0.3), sine_strokes(0.5, 2.0)],
+    ids=['sine', 'ramped', 'short'],
+)
+def test_delay_is_told_from_play_and_taken_out(profile, delay):
+    clean = recorded(Drive(PLAY, ERRORS, **STEPS), profile, 16.0)
+    drive = Drive(PLAY, ERRORS, delay, noise=0.05 * ARC_MINUTE, **STEPS)
+    found = figures(recorded(drive, profile, 16.0))
+    assert found.lost_motion.value == pytest.approx(PLAY, abs=0.06 * ARC_MINUTE)
+    assert 0.0 < found.lost_motion.uncertainty < 0.15 * ARC_MINUTE
+    assert found.delay.value == pytest.approx(delay, abs=2e-5)
+    assert found.delay.uncertainty < 5e-5
+    accuracy = figures(clean, 0.0).forward.value
+    noise = 2 * 4.5 * drive.noise
+    assert accuracy - 0.1 * ARC_MINUTE < found.forward.value < accuracy + noise
+
+
+@pytest.mark.slow
+def test_delay_at_one_speed_is_not_called_play():
+    drive = Drive(PLAY, ERRORS, 2e-3, **STEPS)
+    both = recorded(drive, even_strokes(3.0, 1.0), 16.0)
+    found = figures(both)
+    assert found.lost_motion is found.delay is None
+    assert found.reversals.value == pytest.approx(PLAY + 2e-3 * 6.0, rel=1e-2)
+    found = figures(both, 2e-3)
+    assert found.lost_motion.value == pytest.approx(PLAY, abs=0.1 * ARC_MINUTE)
+    assert found.delay.value == 2e-3
+
+
+@pytest.mark.slow
+def test_intervals_hold_for_any_seed():
+    inside, seeds = 0, 40
+    for seed in range(seeds):
+        random = np.random.default_rng(seed)
+        play, delay = random.uniform(0, 10) * ARC_MINUTE, random.uniform(-5e-3, 5e-3)
+        noise = random.uniform(0, 0.5) * ARC_MINUTE
+        drive = Drive(play, ERRORS, delay, noise, **STEPS)
+        profile = sine_strokes(random.uniform(0.5, 3.0), random.uniform(1.0, 4.0))
+        found = figures(recorded(drive, profile, 12.0, 250.0, seed))
+        for estimate, true in ((found.lost_motion, play), (found.delay, delay)):
+            inside += abs(estimate.value - true) <= estimate.uncertainty
+    # 95 % of 80: fewer than 70 have a probability of less than 1 %.
+    assert inside >= 70
+
+
+@pytest.mark.slow
+def test_delay_is_in_seconds_and_in_rows_only_without_times(tmp_path, config, actuator, capsys):
+    times, rotor, output = Drive(PLAY, delay=4e-3, **STEPS).readings(
+        sine_strokes(1.0, 2.0), 8.0, 500.0
+    )
+    at = stamps(times)
+    bag = write_recording(tmp_path / 'late', Samples(at, rotor), Samples(at, output))
+    found = measure(read(bag, config), actuator, config, Request())
+    assert found.transmission.delay.value == pytest.approx(4e-3, abs=2e-5)
+    for columns, delay, unit in (({}, 2.0, 'rows'), ({'time_s': times}, 4.0, 'ms')):
+        csv = write_csv(tmp_path / 'late.csv', rotor=rotor, output=output, **columns)
+        assert main(['lost-motion', '-v', str(csv)]) == 0
+        printed = capsys.readouterr().out
+        lines = printed.splitlines()
+        value = next(line for line in lines if 'delay of the output encoder: value' in line)
+        number, shown = value.split(': ')[-1].split()
+        assert float(number) == pytest.approx(delay, abs=0.02)
+        assert shown == unit
+    assert 'The stamps of the two encoders differ by a delay' in printed
+
+
+# Another ratio
+
+
+@pytest.mark.parametrize('assumed', ['-18', '-20', '-58/3', '19'])
+@pytest.mark.parametrize(
+    ('profile', 'spread'),
+    [(sine_strokes(0.5, 2.0), 0.2), (sine_strokes(14.0, 8.0), 1e-3)],
+    ids=['short', 'long'],
+)
+def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, spread):
+    drive = Drive(PLAY, ERRORS, noise=0.3 * ARC_MINUTE, **STEPS)
+    both = recorded(drive, profile, 16.0, 100.0)
+    try:
+        said = check_ratio(both, GearRatio.parse(assumed))
+    except RecordingError as error:
+        said = str(error)
+    value, _, uncertainty, *_ = said.split('the recorded ratio is ')[1].split()
+    assert abs(float(value) + 19) <= float(uncertainty.rstrip(',')) <= spread
+    assert f'not {assumed}' in said
+    assert '--ratio=-19 is' in said
+    assert ('an encoder counts backwards' in said) == (assumed == '19')
+    assert ('80/76' in said) == (assumed != '19')
+
+
+@pytest.mark.parametrize(
+    'profile',
+    [
+        even_strokes(3.0, 2.0),
+        sine_strokes(0.1, 2.0),
+        sine_strokes(0.5, 2.0),
+        sine_strokes(6.0, 4.0),
+        sine_strokes(14.0, 8.0),
+    ],
+)
+@pytest.mark.parametrize('eccentricity', [0.0, 20.0 * ARC_MINUTE])
+def test_right_ratio_is_not_doubted(profile, eccentricity):
+    for seed in range(5):
+        drive = Drive(PLAY, ERRORS | {1: eccentricity}, 2e-3, 0.2 * ARC_MINUTE, **STEPS)
+        assert not check_ratio(recorded(drive, profile, 16.0, 100.0, seed), RATIO)

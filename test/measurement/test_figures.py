@@ -1,0 +1,315 @@
+"""Figures of hysteresis curves: of simulated gears that are known, and of a measured actuator."""
+
+import csv
+import math
+from itertools import count, islice
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from gear_recordings import Gear, creep, quantised, ramps
+
+from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
+from gear_kinematics.measurement.loops import RampError, find_ramps
+from gear_kinematics.measurement.middle_line import Cause
+from gear_kinematics.state.uncertainty import student_t
+
+RATED = 40.0
+STEP = 2.0 * math.pi / 65536.0
+SMALL, LARGE = 4.0, 40.0
+TORQUE = ramps(*[(SMALL, 200)] * 5, *[(LARGE, 400)] * 3)
+GEARS = {
+    'backlash': Gear(play=0.02, stiffness=300.0, friction=1.0),
+    'soft': Gear(play=0.005, stiffness=150.0, friction=0.5),
+    'preloaded': Gear(play=0.0, stiffness=600.0, friction=1.6),
+    # Small ramps begin to move it back just at zero torque, where noise rounds the corner.
+    'corner': Gear(play=0.0, stiffness=300.0, friction=2.0),
+}
+NOISES = (0.0, 0.02, 0.1, 0.3)
+
+
+class Truth(NamedTuple):
+    """Expected figures, by the definitions."""
+
+    hysteresis: float
+    play: float
+    friction: float
+    lost_motion: float
+    stiffness: float
+
+
+def truth(gear: Gear) -> Truth:
+    def angle(load: float) -> float:
+        return load / gear.stiffness + math.copysign(0.5 * gear.play, load)
+
+    def middle(torque: float) -> float:
+        return 0.5 * (angle(torque - gear.friction) + angle(torque + gear.friction))
+
+    at = 0.03 * RATED
+    return Truth(
+        hysteresis=angle(gear.friction) - angle(-gear.friction),
+        play=gear.play,
+        friction=gear.friction,
+        lost_motion=middle(at) - middle(-at),
+        stiffness=gear.stiffness,
+    )
+
+
+def measured(torque, angle, step=STEP, rated=RATED) -> GearFigures:
+    ramps_found = find_ramps(torque, angle)
+    return gear_figures(ramps_found, settings_for(ramps_found, step, rated))
+
+
+def estimates(found: GearFigures) -> dict:
+    figures = {
+        'hysteresis': found.smallest.hysteresis,
+        'friction': found.smallest.friction,
+        'lost_motion': found.largest.lost_motion,
+        'stiffness': found.largest.stiffness[-1].both,
+    }
+    return {name: estimate for name, estimate in figures.items() if estimate}
+
+
+@pytest.fixture(scope='module')
+def angles() -> dict[str, np.ndarray]:
+    return {name: creep(gear, TORQUE) for name, gear in GEARS.items()}
+
+
+def recorded(angle, noise: float, seed: int):
+    """Add noise to the torque and quantise the angle, from a zero of the encoder that differs."""
+    generator = np.random.default_rng(seed)
+    torque = TORQUE + noise * generator.standard_normal(len(TORQUE))
+    return torque, quantised(angle + generator.uniform(0.0, STEP), STEP)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('name', GEARS)
+def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
+    expected = truth(GEARS[name])._asdict()
+    found = measured(TORQUE, angles[name], step=0.0)
+    backlash = found.backlash
+    assert backlash.low - 1e-5 <= expected['play'] <= backlash.high + 1e-5
+    assert backlash.high - backlash.low < 1e-3
+    for figure, estimate in estimates(found).items():
+        # The simulation moves in steps of 2 µrad, and the torque in steps of 20 and 100 mN·m.
+        tolerance = {'friction': 0.02, 'stiffness': 0.1}.get(figure, 2e-5)
+        assert estimate.value == pytest.approx(expected[figure], abs=tolerance), figure
+
+
+@pytest.mark.slow
+def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
+    """Intervals contain the true value as often as stated, and are no wider than that needs."""
+    hits: dict[str, list[bool]] = {}
+    errors: dict[str, list[float]] = {}
+    widths: dict[str, list[float]] = {}
+    seeds = count()  # with the same noise, what holds for one gear would hold for all
+    for name, gear in GEARS.items():
+        expected = truth(gear)._asdict()
+        for noise in NOISES:
+            for seed in islice(seeds, 4):
+                found = estimates(measured(*recorded(angles[name], noise, seed)))
+                for figure, estimate in found.items():
+                    error = estimate.value - expected[figure]
+                    hits.setdefault(figure, []).append(abs(error) <= estimate.uncertainty)
+                    if noise == NOISES[-1]:
+                        # Relative to the values of each gear, so that gears can be combined.
+                        errors.setdefault(figure, []).append(error / estimate.uncertainty)
+                    widths.setdefault(f'{name} {figure}', []).append(estimate.uncertainty)
+    for figure, held in hits.items():
+        assert len(held) == 64
+        # Of 64 intervals of 95 %, fewer than 55 hold the truth once in 1000 times.
+        assert sum(held) >= 55, figure
+    for figure, relative in errors.items():
+        # Where noise dominates, an interval is a few times the error, not many times.
+        assert np.sqrt(np.mean(np.square(relative))) > 0.1, figure
+    for figure, limit in (('hysteresis', 4e-4), ('friction', 0.05)):
+        for name in GEARS:
+            if found := widths.get(f'{name} {figure}'):
+                assert np.median(found) < limit, (name, figure)
+
+
+@pytest.mark.slow
+def test_many_repeats_do_not_hide_that_noise_rounds_the_curve():
+    """The gear goes through its play at a torque of 1 N·m; lost motion is read at 1.2 N·m."""
+    torque = ramps(*[(LARGE, 400)] * 10)
+    angle = creep(GEARS['backlash'], torque)
+    expected = truth(GEARS['backlash']).lost_motion
+    for seed in range(8):
+        noisy = torque + 0.1 * np.random.default_rng(seed).standard_normal(len(torque))
+        found = measured(noisy, angle, step=0.0).largest
+        assert abs(found.lost_motion.value - expected) <= found.lost_motion.uncertainty
+
+
+def test_repeats_that_differ_widen_the_interval():
+    gear, count = Gear(0.02, 300.0, 1.0), 200
+    torque = ramps(*[(SMALL, count)] * 5)
+    angle = creep(gear, torque)
+    more = [0.0, 2e-3, -1e-3, 0.5e-3, 1e-3]
+    for k, offset in enumerate(more):
+        zero = 4 * count * k + 2 * count  # where the torque of this test falls through it
+        angle[zero - 50 : zero + 50] += offset
+    found = measured(torque, angle, step=0.0, rated=SMALL).largest
+    assert found.hysteresis.value == pytest.approx(0.02 + 2 / 300.0 + np.mean(more), abs=1e-5)
+    spread = np.std(more, ddof=1) / math.sqrt(5) * student_t(4)
+    assert found.hysteresis.uncertainty == pytest.approx(spread, rel=0.01)
+
+
+def test_ranges_of_stiffness_and_both_signs():
+    # Softer for negative torque, and harder from 20 N·m on.
+    torque = ramps((40.0, 800), (40.0, 800), (40.0, 800))
+    load = np.abs(torque)
+    angle = np.where(load < 20.0, load / 200.0, 20.0 / 200.0 + (load - 20.0) / 500.0)
+    angle = np.where(torque < 0.0, -2.0 * angle, angle)
+    found = measured(torque, angle, step=0.0).largest
+    ranges = [(round(s.low, 3), round(s.high, 3)) for s in found.stiffness]
+    assert ranges == [(0.0, 6.0), (6.0, 20.0), (20.0, 40.0)]
+    for stiffness, expected in zip(found.stiffness, (200.0, 200.0, 500.0), strict=True):
+        assert stiffness.positive.value == pytest.approx(expected, rel=1e-3)
+        assert stiffness.negative.value == pytest.approx(0.5 * expected, rel=1e-3)
+        # The mean of both compliances.
+        assert stiffness.both.value == pytest.approx(expected / 1.5, rel=1e-3)
+
+
+def test_ranges_that_the_ramps_do_not_reach_are_left_out():
+    torque = ramps(*[(6.5, 200)] * 3)
+    found = measured(torque, creep(GEARS['soft'], torque), step=0.0).largest
+    assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, 6.0)]
+
+
+def test_whole_loops_have_the_mean_slope_of_both_ways():
+    gear = Gear(play=0.0, stiffness=300.0, friction=1.0)
+    torque = ramps(*[(LARGE, 800)] * 3)
+    angle = creep(gear, torque)
+    found = measured(torque, angle, step=0.0).largest
+    sides = [np.polyfit(torque[way], angle[way], 1)[0] for way in (torque > 0, torque < 0)]
+    # A line through all samples of a side, as many publications draw it; the first ramp is virgin.
+    assert found.overall.both.value == pytest.approx(2.0 / sum(sides), rel=2e-3)
+
+
+def test_small_ramps_of_a_gear_that_is_rated_far_higher():
+    """No stiffness is clear of the play."""
+    torque = ramps(*[(SMALL, 200)] * 3)
+    figures = measured(torque, creep(GEARS['backlash'], torque), step=0.0, rated=RATED)
+    found = figures.largest
+    assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, SMALL)]
+    assert figures.backlash.value.value == pytest.approx(0.02, abs=2e-5)
+    assert found.hysteresis.value == pytest.approx(truth(GEARS['backlash']).hysteresis, abs=2e-5)
+
+
+def test_a_range_that_friction_holds_has_no_stiffness():
+    """From the peak at -4 N·m on, a friction of ±2.5 N·m holds it up to +1 N·m."""
+    torque = ramps(*[(4.0, 200)] * 3)
+    found = measured(torque, creep(Gear(0.02, 300.0, 2.5), torque), step=0.0, rated=4.0).largest
+    assert [round(s.low, 3) for s in found.stiffness] == [0.6, 2.0]
+
+
+@pytest.mark.parametrize('offset', [0.0, 0.1, -1e3])
+def test_angle_that_does_not_follow_the_torque_is_refused(offset):
+    torque = ramps(*[(SMALL, 200)] * 3)
+    for angle in (0.0 * torque, -torque / 300.0):
+        with pytest.raises(RampError, match='does not grow with the torque'):
+            measured(torque, angle + offset, step=0.0, rated=SMALL)
+
+
+def test_no_lost_motion_beyond_the_ramps():
+    torque = ramps((1.0, 200), (1.0, 200))
+    found = measured(torque, creep(Gear(0.01, 300.0, 0.2), torque), step=0.0).largest
+    assert found.lost_motion is None
+    assert found.hysteresis.value == pytest.approx(0.01 + 0.4 / 300.0, abs=1e-5)
+
+
+def test_single_ramp_has_figures_but_no_uncertainty():
+    torque = ramps((SMALL, 300))
+    figures = measured(torque, creep(GEARS['backlash'], torque), rated=SMALL)
+    found = figures.largest
+    assert found.loops == 1
+    assert found.hysteresis.value == pytest.approx(truth(GEARS['backlash']).hysteresis, abs=1e-4)
+    assert found.hysteresis.uncertainty is None
+    assert found.friction is None  # the loop is not closed
+    assert figures.backlash == (0.0, found.hysteresis.value, Cause.REPEATS)
+
+
+# The measured actuator
+
+FILES = (
+    'base_onyx_no_preload',
+    'conic_onyx_preload_1',
+    'conic_onyx_preload_2',
+    'conic_onyx_preload_3',
+    'conic_onyx_preload_4',
+    'conic_onyx_preload_5',
+)
+
+
+def columns(path) -> dict[str, np.ndarray]:
+    with path.open(encoding='utf-8') as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+
+
+@pytest.fixture(scope='module', params=FILES)
+def actuator_test(request, shared_path):
+    data = columns(shared_path(f'data/torque_ramps/{request.param}_position_1.csv'))
+    return request.param, data
+
+
+@pytest.mark.slow
+def test_preload_shows_in_the_hysteresis_of_the_actuator(actuator_test):
+    name, data = actuator_test
+    figures = measured(data['TORQUE'], 2.0 * math.pi * data['POSITION'])
+    small, large = figures.by_amplitude
+    assert (small.loops, large.loops) == (5, 3)
+    assert small.amplitude == pytest.approx(4.0, abs=0.1)
+    width = np.degrees(small.hysteresis.value)
+    spread = np.degrees(small.hysteresis.uncertainty)
+    if name in FILES[:2]:
+        assert 1.5 < width - spread < width + spread < 2.0
+    else:
+        assert width + spread < 1.0
+    assert 0.0 <= figures.backlash.low < np.degrees(figures.backlash.high) <= width + spread
+
+
+@pytest.mark.slow
+def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(actuator_test):
+    """The commanded torque is free of noise: angles where it is zero, ramp by ramp."""
+    _, data = actuator_test
+    widths = []
+    for test in range(5):
+        rows = data['test_nr'] == test
+        command, position = data['CONTROL_TORQUE'][rows], data['POSITION'][rows]
+        highest, lowest = np.argmax(command), np.argmin(command)
+        falling = np.abs(command[highest:lowest]) < 0.03
+        at_the_end = np.abs(command[lowest:]) < 0.03
+        widths.append(
+            np.median(position[highest:lowest][falling]) - np.median(position[lowest:][at_the_end])
+        )
+    small = measured(data['TORQUE'], 2.0 * math.pi * data['POSITION']).smallest
+    expected = 2.0 * math.pi * np.mean(widths)
+    assert abs(small.hysteresis.value - expected) <= small.hysteresis.uncertainty
+
+
+@pytest.mark.slow
+def test_ramps_of_the_actuator_repeat_within_their_uncertainty(shared_path):
+    """Each ramp lies in the 95 % prediction interval of the others."""
+    inside = total = 0
+    for name in FILES:
+        data = columns(shared_path(f'data/torque_ramps/{name}_position_1.csv'))
+        ramps_found = find_ramps(data['TORQUE'], 2.0 * math.pi * data['POSITION'])
+        widths = np.array([loop.width(0.0) for loop in ramps_found[0].loops])
+        for k, width in enumerate(widths):
+            others = np.delete(widths, k)
+            count = len(others)
+            reach = student_t(count - 1) * np.std(others, ddof=1) * math.sqrt(1 + 1 / count)
+            inside += abs(width - others.mean()) <= reach
+            total += 1
+    assert total == 30
+    # Of 30, fewer than 25 would be inside once in 300 times.
+    assert inside >= 25
+
+
+def test_a_published_stiffness_is_found(shared_path):
+    """arXiv 2510.07197: 242.7 N·m/rad of the whole loop, by lines through either side."""
+    data = columns(shared_path('data/dual_encoders/transmission_stiffness_sspg.csv'))
+    angle = data['encoder_pos_rad'] / 7.2
+    found = measured(data['output_torque_Nm'], angle, step=0.0, rated=20.0).largest
+    assert found.overall.both.value == pytest.approx(242.7, rel=0.01)

@@ -1,0 +1,201 @@
+"""The transmission error of recordings whose errors are known."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from gear_recordings import Samples, encoders, quantised, write_csv, write_recording
+
+from gear_kinematics.kinematics import Branch, Mechanism
+from gear_kinematics.measurement.columns import Columns
+from gear_kinematics.measurement.lost_motion import Request, measure
+from gear_kinematics.measurement.reading import read
+from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.measurement.transmission import marked_orders, transmission_figures
+
+TURN = 2.0 * math.pi
+MS = 10**6
+START = 1_700_000_000 * 10**9
+PLAY = 3e-3
+AMPLITUDES = {19: 1.0e-3, 20: 4e-4, 2: 5e-4, 1520: 2e-4}  # by order
+RATE = 1000.0
+SPEED = 0.5  # rad/s of the output
+
+
+def there_and_back(turns: float, times: int) -> np.ndarray:
+    """Output angles at an even speed, to `turns` and back."""
+    count = round(turns * TURN / SPEED * RATE)
+    way = np.linspace(0.0, turns * TURN, count, endpoint=False)
+    return np.concatenate([np.concatenate([way, turns * TURN - way])] * times + [[0.0]])
+
+
+def follow(angle: np.ndarray, play: float) -> np.ndarray:
+    """Positions of a body that is pushed along with play, from the middle of the play."""
+    place, places = float(angle[0]), []
+    for pushed in angle:
+        place = min(max(place, pushed - 0.5 * play), pushed + 0.5 * play)
+        places.append(place)
+    return np.array(places)
+
+
+def output_of(ideal: np.ndarray, amplitudes=AMPLITUDES) -> np.ndarray:
+    errors = sum(a * np.sin(order * ideal + order) for order, a in amplitudes.items())
+    return follow(ideal, PLAY) + errors
+
+
+def bag_of(path, ideal, *, rotor_counts=2**16, output_counts=2**20, efforts=None, offset=1.0):
+    """Record the rotor at 1 kHz, and a single-turn output encoder a third of a sample later."""
+    stamps = START + np.arange(len(ideal)) * MS
+    rotor = Samples(stamps, quantised(-19.0 * ideal, TURN / rotor_counts), efforts)
+    later = ideal[:-1] + np.diff(ideal) / 3.0
+    measured = quantised((output_of(later) + offset) % TURN, TURN / output_counts)
+    return write_recording(path, rotor, Samples(stamps[:-1] + MS // 3, measured))
+
+
+@pytest.fixture(scope='module')
+def recording(tmp_path_factory, config):
+    path = bag_of(tmp_path_factory.mktemp('bags') / 'motion', there_and_back(2.2, 2))
+    return read(path, config)
+
+
+@pytest.fixture(scope='module')
+def found(recording, actuator, config):
+    # At one speed, play cannot be told from a delay.
+    return measure(recording, actuator, config, Request(delay=0.0)).transmission
+
+
+@pytest.mark.slow
+def test_lost_motion_on_reversals_is_the_play(found):
+    assert found.lost_motion.repeats == 2
+    assert abs(found.lost_motion.value - PLAY) <= found.lost_motion.uncertainty < 2e-5
+
+
+@pytest.mark.slow
+def test_accuracy_is_peak_to_peak_in_one_direction(found):
+    ideal = np.linspace(0.0, 2.2 * TURN, 200_000)
+    errors = sum(a * np.sin(order * ideal + order) for order, a in AMPLITUDES.items())
+    for way in (found.forward, found.backward):
+        assert way.repeats == 2
+        assert way.value == pytest.approx(np.ptp(errors), abs=2e-5)
+
+
+@pytest.mark.slow
+def test_amplitudes_of_the_marked_orders(found):
+    orders = {order.name: order for order in found.orders}
+    assert orders['rotor × 1'].cycles == 19
+    assert orders['satellite × 1'].cycles == 20
+    assert orders['teeth × 1'].cycles == 1520
+    for order in found.orders:
+        expected = AMPLITUDES.get(order.cycles, 0.0)
+        for way in (order.forward, order.backward):
+            assert way.value == pytest.approx(expected, abs=3e-6), order.name
+
+
+@pytest.mark.slow
+def test_spectrum_has_its_peaks_at_these_orders(found):
+    for spectrum in found.spectra:
+        for order, amplitude in AMPLITUDES.items():
+            near = np.abs(spectrum.orders - order) < 0.4
+            # A Hann window leaves at least 85 % of what lies between two lines.
+            assert 0.8 * amplitude < spectrum.amplitude[near].max() < 1.05 * amplitude
+        quiet = (spectrum.orders > 100) & (spectrum.orders < 1400)
+        assert spectrum.amplitude[quiet].max() < 1e-5
+
+
+@pytest.mark.slow
+def test_steps_of_both_encoders_are_known(recording):
+    assert recording.encoders.rotor_step.size == pytest.approx(TURN / 2**16, rel=1e-6)
+    assert recording.encoders.output_step.size == pytest.approx(TURN / 2**20, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_offset_of_the_encoder_is_reported(found):
+    assert found.offset == pytest.approx(1.0, abs=2e-4)
+    assert found.travel == pytest.approx(2.2 * TURN, rel=1e-3)
+
+
+@pytest.mark.slow
+def test_values_of_a_csv_row_are_simultaneous(tmp_path, config, actuator):
+    ideal = there_and_back(2.2, 2)
+    path = write_csv(
+        tmp_path / 'both.csv',
+        time=np.zeros(len(ideal)),  # of no use
+        rotor_position=np.degrees(-19.0 * ideal),
+        output_position=np.degrees(output_of(ideal)),
+    )
+    recording = read(path, config, Columns(unit='deg'))
+    assert recording.remarks == ('the times in time are not used: they stand still',)
+    found = measure(recording, actuator, config, Request(delay=0.0)).transmission
+    assert found.samples == len(ideal)
+    assert found.lost_motion.value == pytest.approx(PLAY, abs=1e-5)
+    assert found.orders[2].forward.value == pytest.approx(AMPLITUDES[19], abs=3e-6)
+
+
+def test_short_motion_has_no_orders_that_it_cannot_resolve(actuator):
+    angle = np.linspace(0.0, 0.3 * TURN, 3000)
+    both = encoders(-19.0 * angle, angle + 1e-3 * np.sin(19.0 * angle))
+    found = transmission_figures(both, actuator, 0.01)
+    # 0.3 turns hold 5.7 cycles of the rotor, which cannot be told from 6 of the satellite.
+    told = [order.name for order in found.orders if order.forward]
+    assert told == ['rotor × 1', 'rotor × 2', 'teeth × 1']
+    assert found.orders[2].forward.uncertainty is None
+    assert found.backward is None
+    assert found.lost_motion is None
+
+
+def test_coarse_samples_resolve_no_high_orders(actuator):
+    angle = np.linspace(0.0, 3.0 * TURN, 3000)
+    both = encoders(-19.0 * angle, angle + np.sin(angle))
+    found = transmission_figures(both, actuator, 0.01)
+    told = {order.name for order in found.orders if order.forward}
+    assert 'satellite × 2' in told
+    assert 'teeth × 1' not in told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('wrong', ['ratio', 'direction'])
+def test_output_that_does_not_follow_is_refused(tmp_path, config, actuator, wrong):
+    ideal = there_and_back(0.8, 1)
+    path = write_csv(
+        tmp_path / 'wrong.csv',
+        rotor=-19.0 * ideal,
+        output=-ideal if wrong == 'direction' else 2.0 * ideal,
+    )
+    with pytest.raises(RecordingError, match='does not follow the rotor'):
+        measure(read(path, config), actuator, config, Request())
+
+
+def test_recording_without_matching_stamps_is_refused(tmp_path, config):
+    rotor = Samples([START, START + MS], [0.0, 0.1])
+    encoder = Samples([START - 5 * MS, START - 4 * MS], [0.0, 0.0])
+    path = write_recording(tmp_path / 'apart', rotor, encoder)
+    with pytest.raises(RecordingError, match='no output angle was measured between two rotor'):
+        read(path, config)
+
+
+def test_orders_of_any_tooth_pair():
+    orders = marked_orders(Mechanism(61, 58, 1e-3, (Branch('a'),)))
+    assert orders['rotor × 1'] == Fraction(58, 3)
+    assert orders['satellite × 1'] == Fraction(61, 3)
+    # Seen from the satellite as many teeth mesh as seen from the ring gear.
+    assert orders['teeth × 1'] == 61 * Fraction(58, 3) == 58 * Fraction(61, 3)
+    assert orders['teeth × 2'] == 2 * orders['teeth × 1']
+
+
+@pytest.mark.slow
+def test_twist_is_measured_with_both_encoders(tmp_path, config, actuator):
+    """The output turns under load; only the twist of the gear counts."""
+    gear_stiffness, bench_stiffness, friction = 400.0, 50.0, 0.5
+    torque = 8.0 * np.sin(np.arange(8000) * TURN / 2000)
+    load = np.array(follow(torque, 2.0 * friction))  # minus friction
+    bench, gear = load / bench_stiffness, load / gear_stiffness
+    stamps = START + np.arange(len(torque)) * MS
+    rotor = Samples(stamps, -19.0 * (bench + gear), torque / -19.0)
+    path = write_recording(tmp_path / 'loaded', rotor, Samples(stamps, bench))
+    report = measure(read(path, config), actuator, config, Request())
+    (ramps,) = report.figures.by_amplitude
+    assert report.measured
+    assert ramps.stiffness[-1].both.value == pytest.approx(gear_stiffness, rel=0.01)
+    assert ramps.hysteresis.value == pytest.approx(2.0 * friction / gear_stiffness, rel=0.02)
+    assert report.transmission is not None
