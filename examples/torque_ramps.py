@@ -1,0 +1,25 @@
+"""Print the figures of a catalogue from torque ramps: hysteresis, backlash and stiffness."""
+
+import math
+from pathlib import Path
+
+from gear_kinematics.kinematics import gear_from_mapping
+from gear_kinematics.measurement.lost_motion import Request, measure
+from gear_kinematics.measurement.reading import read
+from gear_kinematics.state import parameters
+
+config = parameters.load(parameters.default_config())
+ramps = Path(__file__).parents[1] / 'docs/examples/ramps.csv'
+report = measure(read(ramps, config), gear_from_mapping(config), config, Request(rated_torque=5.0))
+figures = report.figures
+
+
+def arc_minutes(angle: float) -> str:
+    return f'{60.0 * math.degrees(angle):.2f}′'
+
+
+hysteresis = figures.smallest.hysteresis
+print(f'hysteresis {arc_minutes(hysteresis.value)} ± {arc_minutes(hysteresis.uncertainty)}')
+print(f'backlash {arc_minutes(figures.backlash.low)} to {arc_minutes(figures.backlash.high)}')
+for part in figures.largest.stiffness:
+    print(f'stiffness from {part.low:g} to {part.high:g} N·m: {part.both.value:.0f} N·m/rad')

@@ -1,0 +1,55 @@
+"""The examples do what they say."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from gear_recordings import record_both_encoders
+
+EXAMPLES = Path(__file__).parents[2] / 'examples'
+TOLD = {
+    # 2.5 rad divided by -19; satellites on circles of the eccentricity, 1.1 mm.
+    'output_and_poses': ['output: -7.5389°, by the ratio -19', 'satellite a: at ['],
+    # A slide moves by the diameter of the circle of its satellite.
+    'batch': ['slide of satellite a: 2.20 mm, up to '],
+    'validate_recording': ['servo_point_to_point: what was published is right'],
+    # Lines between the readings cross zero torque 1.557′ apart; one through them has 3778 N·m/rad.
+    'torque_ramps': ['hysteresis 1.56′ ± ', 'backlash 1.', 'stiffness from 0.75 to 2.5 N·m: 37'],
+    'calibration': ['mrad after; interval ± ', 'it holds'],
+}
+
+
+def run(name, *arguments, cwd):
+    return subprocess.run(
+        [sys.executable, EXAMPLES / f'{name}.py', *arguments],
+        cwd=cwd, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+
+
+def test_every_example_is_short_and_tested():
+    files = {path.stem: path.read_text('utf-8') for path in EXAMPLES.glob('*.py')}
+    assert files.keys() == TOLD.keys()
+    assert all(len(text.splitlines()) <= 40 for text in files.values())
+
+
+@pytest.mark.parametrize('name', TOLD)
+def test_example_says_what_it_should(name, tmp_path):
+    arguments = []
+    if name == 'calibration':
+        record_both_encoders(tmp_path, 'monday', 'tuesday')
+        arguments = ['monday', 'tuesday', '-19']
+    done = run(name, *arguments, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, '')
+    for part in TOLD[name]:
+        assert part in done.stdout
+
+
+def test_a_wrong_recording_fails_the_example(tmp_path):
+    other = tmp_path / 'other.yaml'
+    other.write_text('/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}', 'utf-8')
+    bag = EXAMPLES.parent / 'bags' / 'servo_point_to_point'
+    done = run('validate_recording', bag, other, cwd=tmp_path)
+    assert done.returncode == 1
+    assert 'AssertionError: ' in done.stderr
+    assert 'ratio' in done.stderr
