@@ -208,6 +208,8 @@ def _compared(
         order = sorted(range(len(reports)), key=times.__getitem__)
         ordered = at_common_torque([reports[number] for number in order], *torques)
         return ordered, [over_time(ordered, [times[number] for number in order], source)]
+    if len(reports) == 1 and options.preloads is None:
+        return [*reports], []
     groups, apart = None, []
     if options.group:
         groups, others = grouping.grouped([report.name for report in reports], options.group)
@@ -230,9 +232,9 @@ def _compared(
             [report.name for report in reports], options.preloads, options.preload_unit, gear
         )
         found.append(over_preload(reports, settings, scale, options.load))
-    elif (groups or positions is None) and (one := compared(reports, groups, positions)):
-        found.append(one)
-    if options.plot and not found and len(reports) > 1:
+    elif groups or positions is None:
+        found += filter(None, [compared(reports, groups, positions)])
+    if options.plot and not found:
         raise ValueError('--plot: the recordings have no figure in common')
     return [*reports, *apart], found
 

@@ -1,6 +1,5 @@
 """Stamps of recordings: their unit, their order, and when a recording was made."""
 
-import math
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -34,13 +33,9 @@ class ClockError(ValueError):
 
 
 def unit_since_1970(time: float) -> float | None:
-    """Return the unit of a time that counts from 1970: s, ms, µs or ns; in s.
-
-    Returns:
-        None if the time does not count from 1970.
-    """
-    scaled = ((unit, time * unit) for unit in (1.0, 1e-3, 1e-6, 1e-9))
-    return next((u for u, t in scaled if math.isfinite(t) and _EARLIEST <= t < _LATEST), None)
+    """The unit, s, of a time that counts from 1970 in s, ms, µs or ns; None if it does not."""
+    units = (1.0, 1e-3, 1e-6, 1e-9)
+    return next((unit for unit in units if _EARLIEST <= time * unit < _LATEST), None)
 
 
 def times_of_rows(time: Array) -> Array:
@@ -50,14 +45,18 @@ def times_of_rows(time: Array) -> Array:
     next step.
 
     Args:
-        time: (n,), s, as it was read, not going back.
+        time: (n,), s, as it was read.
 
     Returns:
-        (n,), increasing.
+        (k,), increasing, of the rows before the clock was set back.
 
     Raises:
-        ClockError: if the times are not finite, or stand still.
+        ClockError: if most are later than that, or the others are not finite, or stand still.
     """
+    kept = before_set_back(time)
+    if 2 * kept < len(time):
+        raise ClockError('they go back')
+    time = time[:kept]
     if not np.isfinite(time).all():
         raise ClockError('they are not numbers')
     since = time - time[0]
@@ -67,9 +66,8 @@ def times_of_rows(time: Array) -> Array:
     # The last step has no next one: its rows are as far apart as the others on average.
     interval = since[-1] / first[-1]
     end = since[-1] + interval * (len(since) - first[-1])
-    spread: Array = np.interp(
-        np.arange(len(since)), [*first, len(since)], [*since[first].tolist(), end]
-    )
+    steps, times = np.append(first, len(since)), np.append(since[first], end)
+    spread: Array = np.interp(np.arange(len(since)), steps, times)
     return spread
 
 
@@ -80,21 +78,16 @@ def before_set_back(stamps: Array) -> int:
 
 
 def in_order(stamps: Array) -> tuple[Array, int]:
-    """Choose stamps as the node does: those in disorder by up to a second are left out.
-
-    Args:
-        stamps: (n,), ns.
+    """Choose stamps, ns, as the node does: those in disorder by up to a second are left out.
 
     Returns:
         The indices that are kept, and how many are left out in disorder. A clock that was set back
         further ends them.
     """
-    latest = np.maximum.accumulate(stamps)
-    late = latest - stamps
-    reset = np.flatnonzero(late > CLOCK_RESET)
-    end = int(reset[0]) if len(reset) else len(stamps)
-    kept = np.flatnonzero(late[:end] <= 0)
-    return kept, end - len(kept)
+    late = np.maximum.accumulate(stamps) - stamps
+    late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]
+    kept = np.flatnonzero(late == 0)
+    return kept, len(late) - len(kept)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,20 +112,15 @@ def common_times(dates: Sequence[Dates]) -> tuple[list[float], str]:
         ('recorded', 'the times in the recordings'),
         ('named', 'the times in their names'),
     ):
-        found = [getattr(date, attribute) for date in dates]
-        if None not in found:
-            return found, source
-    return [date.modified for date in dates], (
-        'the times of their files, which copying may have changed'
-    )
+        times = [getattr(date, attribute) for date in dates]
+        if None not in times:
+            return times, source
+    files = 'the times of their files, which copying may have changed'
+    return [date.modified for date in dates], files
 
 
 def dates_of(path: Path, recorded: float | None) -> Dates:
-    """Find the dates of a recording.
-
-    Args:
-        path: of the recording.
-        recorded: s since 1970, the start by its contents, if known.
+    """Find the dates of a recording, which starts at a time by its contents, if they say so.
 
     Raises:
         OSError: if there is none.

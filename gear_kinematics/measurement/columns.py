@@ -8,12 +8,13 @@ from typing import NamedTuple
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.encoder_step import UNITS
-from gear_kinematics.wire.nearest import among, listed
+from gear_kinematics.wire.nearest import among
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 _ROTOR, _OUTPUT = ('rotor', 'motor', 'odrive'), ('output', 'load', 'shaft', 'link')
 """Words for either side of the gear."""
 _ANGLES = ('position', 'pos', 'angle', 'encoder', 'enc')
+_ENCODERS = ('', *_ANGLES, 'encoder_position', 'encoder_pos')
 _TORQUES = ('torque', 'effort')
 
 
@@ -23,33 +24,26 @@ def _joined(*words: Sequence[str]) -> tuple[str, ...]:
 
 _NAMES: Mapping[str, tuple[str, ...]] = {
     'angle': (*_joined(('', 'encoder', 'enc'), _ANGLES), 'deflection', 'twist'),
-    'torque': (*_joined(('', 'measured', 'output', 'load', 'motor', 'motor_current'), _TORQUES),),
-    'rotor': _joined(_ROTOR, ('', *_ANGLES, 'encoder_position', 'encoder_pos')),
-    'output': (
-        *_joined(_OUTPUT, ('', *_ANGLES, 'encoder_position', 'encoder_pos')),
-        OUTPUT_ENCODER,
-    ),
+    'torque': _joined(('', 'measured', 'output', 'load', 'motor', 'motor_current'), _TORQUES),
+    'rotor': _joined(_ROTOR, _ENCODERS),
+    'output': (*_joined(_OUTPUT, _ENCODERS), OUTPUT_ENCODER),
     'time': ('time', 't', 'stamp', 'timestamp'),
 }
 """Names of columns without their units, the likeliest first."""
 _COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks')
 ANGLE_UNITS = (*UNITS, 'counts')
 """Units of angle that can be given."""
+_ANGULAR = ('angle', 'rotor', 'output')
+_OF_ANGLE = {**UNITS, '°': UNITS['deg'], 'turns': TURN, **dict.fromkeys(_COUNTS)}
 _UNITS: Mapping[str, Mapping[str, float | None]] = {
-    'angle': {**UNITS, '°': UNITS['deg'], 'turns': TURN, **dict.fromkeys(_COUNTS)},
+    **dict.fromkeys(_ANGULAR, _OF_ANGLE),
     'torque': {'nm': 1.0, 'n·m': 1.0, 'n*m': 1.0, 'n.m': 1.0, 'mnm': 1e-3},
     'time': {'s': 1.0, 'sec': 1.0, 'ms': 1e-3, 'us': 1e-6, 'µs': 1e-6, 'ns': 1e-9},
 }
 """In SI units; None: counts of an encoder."""
-_KINDS = {
-    'angle': 'angle',
-    'rotor': 'angle',
-    'output': 'angle',
-    'torque': 'torque',
-    'time': 'time',
-}
-_BRACKETS = re.compile(r'\s*[\[(]\s*([^\])]*?)\s*[\])]$')
-_SEPARATORS = re.compile(r'[\s_/-]+')
+_KNOWN_UNITS = {unit for units in _UNITS.values() for unit in units}
+_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]$')
+_WORD = re.compile(r'[^\s_/-]+')
 _MOTEUS = {'position', 'torque', 'q_current'}
 """Registers of moteus motor controllers, which give positions in revolutions."""
 
@@ -98,7 +92,7 @@ def find_columns(header: Sequence[str], given: Columns) -> dict[str, Column]:
     for name in named.values():
         if name not in header:
             raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
-    known = {plain: name for name in reversed(header) if (plain := _split(name)[0])}
+    known = {_split(name)[0]: name for name in reversed(header)}
     found = {
         role: name
         for role, names in _NAMES.items()
@@ -106,66 +100,55 @@ def find_columns(header: Sequence[str], given: Columns) -> dict[str, Column]:
     }
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
-    elif 'torque' in found and (angle := _single(found)):
-        found = {'angle': angle, **{r: found[r] for r in ('torque', 'time') if r in found}}
+    elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
+        others = {role: name for role, name in found.items() if role not in _ANGULAR}
+        found = {'angle': angles[0], **others}
     else:
-        unknown = [text for name in header if (text := _unknown_unit(name))]
-        hint = f'; unknown units: {", ".join(unknown)}; known: {_listed()}' if unknown else ''
+        unknown = ', '.join(filter(None, (_split(name)[2] for name in header)))
+        hint = f'; unknown units: {unknown}; known: {_listed("angle")}' if unknown else ''
         raise ValueError(
             'neither an angle and a torque nor a rotor and an output among the columns '
             f'{", ".join(header)}; name them with --angle-column, --torque-column, '
             f'--rotor-column, --output-column{hint}'
         )
     moteus = {name.lower() for name in header} >= _MOTEUS
-    angles = [_split(found[role])[1] for role in found if _KINDS[role] == 'angle']
-    common = given.unit or next(filter(None, angles), 'rev' if moteus else '')
+    units = [_split(found[role])[1] for role in _ANGULAR if role in found]
+    common = next(filter(None, units), 'rev' if moteus else '')
     return {role: _column(role, name, given, common) for role, name in found.items()}
 
 
-def _single(found: Mapping[str, str]) -> str | None:
-    """The only angle of torque ramps, on whichever side."""
-    return next((found[role] for role in ('angle', 'rotor', 'output') if role in found), None)
-
-
 def _column(role: str, name: str, given: Columns, common: str) -> Column:
-    kind = _KINDS[role]
-    plain, unit = _split(name)
-    if text := _unknown_unit(name):
-        raise ValueError(f'{name}: the unit {text} is not known; known: {_listed(kind)}')
-    if kind == 'angle':
+    plain, unit, unknown = _split(name)
+    if unknown:
+        raise ValueError(f'{name}: the unit {unknown} is not known; known: {_listed(role)}')
+    if role in _ANGULAR:
         unit = given.unit or unit or common
-    scale = _UNITS[kind].get(unit, 1.0) if unit else 1.0
+    scale = _UNITS[role].get(unit, 1.0)
     if scale is None:
-        per_turn = given.output_counts if role == 'output' else given.rotor_counts
-        if per_turn is None:
-            option = '--output-counts' if role == 'output' else '--rotor-counts'
-            raise ValueError(f'{name} has counts: give those per turn with {option}')
-        scale, unit = TURN / per_turn, f'{per_turn} counts a turn'
-    side = plain.partition('_')[0]
-    return Column(name, scale, unit, given.on_rotor and side not in _OUTPUT)
+        encoder = 'output' if role == 'output' else 'rotor'
+        counts = getattr(given, f'{encoder}_counts')
+        if counts is None:
+            raise ValueError(f'{name} has counts: give those per turn with --{encoder}-counts')
+        scale, unit = TURN / counts, f'{counts} counts a turn'
+    on_rotor = given.on_rotor and plain.partition('_')[0] not in _OUTPUT
+    return Column(name, scale, unit, on_rotor)
 
 
-def _split(name: str) -> tuple[str, str]:
-    """A name without its unit, in the form of `_NAMES`, and the unit, which may be empty."""
+def _split(name: str) -> tuple[str, str, str]:
+    """A name without its unit, in the form of `_NAMES`, the unit, and the unit if it is not known.
+
+    Either may be empty. An unknown unit is in brackets, or ends as a known one.
+    """
     text, unit = name.strip().lower(), ''
     if brackets := _BRACKETS.search(text):
         text, unit = text[: brackets.start()], brackets[1]
-    words = [word for word in _SEPARATORS.split(text) if word]
-    if not unit and len(words) > 1 and any(words[-1] in units for units in _UNITS.values()):
+    words = _WORD.findall(text)
+    last = words[-1] if len(words) > 1 else ''
+    if not unit and last in _KNOWN_UNITS:
         unit = words.pop()
-    return '_'.join(words), unit
+    told = unit or (last if last.endswith(('rad', 'deg', 'rev', 'nm')) else '')
+    return '_'.join(words), unit, '' if told in _KNOWN_UNITS else told
 
 
-def _unknown_unit(name: str) -> str:
-    """What stands in a name as an unknown unit: in brackets, or as if it were a known one."""
-    plain, unit = _split(name)
-    known = {text for units in _UNITS.values() for text in units}
-    if unit:
-        return '' if unit in known else unit
-    _, _, last = plain.rpartition('_')
-    like = last not in known and last.endswith(('rad', 'deg', 'rev', 'grad', 'nm'))
-    return last if like and last != plain else ''
-
-
-def _listed(kind: str = 'angle') -> str:
-    return listed(list(_UNITS[kind]), most=len(_UNITS[kind]))
+def _listed(role: str) -> str:
+    return ', '.join(sorted(_UNITS[role]))

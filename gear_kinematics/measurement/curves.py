@@ -1,7 +1,7 @@
 """The panels of a report on lost motion, in arc minutes."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -9,6 +9,7 @@ from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, Figures
 from gear_kinematics.measurement.loops import HalfLoop, Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import middle_lines
+from gear_kinematics.measurement.transmission import TransmissionFigures
 from gear_kinematics.measurement.wording import ARC_MINUTES, arc_minutes
 from gear_kinematics.report.document import Array, Line, Panel, Pen, number
 
@@ -30,15 +31,12 @@ def panels(report: LostMotion) -> Iterator[Panel]:
         for ramps, figures in zip(report.ramps, found.by_amplitude, strict=True):
             yield _ramp_panel(ramps, figures, found.settings.rated_torque)
     if report.transmission:
-        yield from _transmission(report)
+        yield from _transmission(report.transmission)
 
 
 def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
     centre = float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
-    lines = []
-    for loop in ramps.loops:
-        lines.append(_half_loop('torque rising', Pen.FIRST, loop.rise, centre, ramps))
-        lines.append(_half_loop('torque falling', Pen.SECOND, loop.fall, centre, ramps))
+    lines = [_half_loop(half, centre, ramps) for loop in ramps.loops for half in reversed(loop)]
     for line in middle_lines(ramps):
         angle = (line.angle - centre) * ARC_MINUTES
         lines.append(Line('middle line: without friction', Pen.MODEL, line.load, angle))
@@ -52,18 +50,18 @@ def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
     )
 
 
-def _half_loop(name: str, pen: Pen, half: HalfLoop, centre: float, ramps: Ramps) -> Line:
+def _half_loop(half: HalfLoop, centre: float, ramps: Ramps) -> Line:
     # A ramp may continue to a larger amplitude, which has its own panel.
     inside = np.abs(half.torque) <= 1.02 * ramps.amplitude
     every = math.ceil(np.count_nonzero(inside) / _MOST)
     load, angle = (values[inside][::every] for values in (half.torque, half.angle))
-    return Line(name, pen, load, (angle - centre) * ARC_MINUTES)
+    angle = (angle - centre) * ARC_MINUTES
+    if half.rising:
+        return Line('torque rising', Pen.FIRST, load, angle)
+    return Line('torque falling', Pen.SECOND, load, angle)
 
 
-def _transmission(report: LostMotion) -> Iterator[Panel]:
-    found = report.transmission
-    if not found:
-        return
+def _transmission(found: TransmissionFigures) -> Iterator[Panel]:
     lines = []
     for way, name, pen in _WAYS:
         rows = found.direction == way
@@ -97,25 +95,20 @@ def _transmission(report: LostMotion) -> Iterator[Panel]:
 
 def marks(
     orders: Iterable[tuple[float, str]], highest: float = math.inf
-) -> Iterator[tuple[float, str]]:
-    """Yield marks for orders, each with its name; neighbouring ones share a mark.
+) -> list[tuple[float, str]]:
+    """Return marks for orders, each with its name; neighbouring ones share a mark.
 
     Args:
         orders: on the x axis of a spectrum.
         highest: the highest order to mark.
     """
-    near: list[tuple[float, str]] = []
+    groups: list[list[tuple[float, str]]] = []
     for order in sorted(order for order in orders if order[0] <= highest):
-        if near and order[0] > _TOGETHER * near[0][0]:
-            yield _mark(near)
-            near = []
-        near.append(order)
-    if near:
-        yield _mark(near)
-
-
-def _mark(orders: Sequence[tuple[float, str]]) -> tuple[float, str]:
-    return orders[0][0], ', '.join(name for _, name in orders)
+        if groups and order[0] <= _TOGETHER * groups[-1][0][0]:
+            groups[-1].append(order)
+        else:
+            groups.append([order])
+    return [(group[0][0], ', '.join(name for _, name in group)) for group in groups]
 
 
 def envelope(x: Array, y: Array) -> tuple[Array, Array]:

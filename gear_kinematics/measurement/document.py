@@ -36,7 +36,6 @@ def document(
     """Return the document on recordings, with a section for each, and then their comparisons."""
     sections = tuple(_section(report, limits) for report in reports)
     verdicts = [section.verdict for section in sections if section.verdict]
-    failed = any(verdict == Verdict.FAIL for verdict in verdicts)
     return Document(
         'gearkin lost-motion',
         (*sections, *(replace(found.section, leads=True) for found in comparisons)),
@@ -47,7 +46,7 @@ def document(
             'recordings': [_recording(report, limits) for report in reports],
             **{key: plain(value) for found in comparisons for key, value in found.data.items()},
         },
-        (Verdict.FAIL if failed else Verdict.PASS) if verdicts else None,
+        max(verdicts, key=list(Verdict).index, default=None),
         summary(reports),
         '; '.join(found.sentence for found in comparisons),
     )
@@ -55,12 +54,11 @@ def document(
 
 def _section(report: LostMotion, limits: Limits) -> Section:
     judged = list(limits.judge(report))
-    failed = [judgement for judgement in judged if not judgement.holds]
-    name = printable(report.name)
+    passed = all(judgement.holds for judgement in judged)
     return Section(
-        name,
+        printable(report.name),
         (head(report), *tables(report)),
-        (Verdict.FAIL if failed else Verdict.PASS) if judged else None,
+        (Verdict.PASS if passed else Verdict.FAIL) if judged else None,
         (
             *(Finding('finding', f'{one.text[0].upper()}{one.text[1:]}.') for one in judged),
             Finding('finding', answer(report)),
@@ -75,9 +73,10 @@ def _section(report: LostMotion, limits: Limits) -> Section:
 
 
 def _recording(report: LostMotion, limits: Limits) -> Mapping[str, Any]:
-    recording = report.recording
-    both = recording.encoders
-    judged = list(limits.judge(report))
+    recording, both = report.recording, report.recording.encoders
+    judged = limits.judge(report)
+    transmission = plain(report.transmission) or {}
+    transmission.pop('spectra', None)
     return {
         'recording': report.name,
         'answer': answer(report),
@@ -89,7 +88,7 @@ def _recording(report: LostMotion, limits: Limits) -> Mapping[str, Any]:
         'fitted_ratio': plain(report.fitted),
         **(_figures(report.figures) if report.figures else {}),
         'measured': report.measured,
-        'transmission': _transmission(report),
+        'transmission': transmission or None,
         'encoders': both
         and {
             'delay_unit': 's' if both.timed else 'rows',
@@ -135,8 +134,8 @@ def _figures(found: GearFigures) -> dict[str, Any]:
 
 
 def _with_unit(estimate: Estimate | None, unit: str) -> dict[str, Any]:
-    value = plain(estimate) or {'value': None, 'expanded_uncertainty': None}
-    return {'unit': unit, **value}
+    unknown = {'value': None, 'expanded_uncertainty': None}
+    return {'unit': unit, **(plain(estimate) or unknown)}
 
 
 def _stiffness(stiffness: Stiffness) -> dict[str, Any]:
@@ -150,16 +149,9 @@ def _stiffness(stiffness: Stiffness) -> dict[str, Any]:
 
 
 def _backlash(backlash: Backlash | None) -> dict[str, Any] | None:
-    if backlash is None:
-        return None
-    return {
+    return backlash and {
         **_with_unit(backlash.value, 'rad'),
         'low': backlash.low,
         'high': backlash.high,
         'cause': backlash.cause.value or None,
     }
-
-
-def _transmission(report: LostMotion) -> Any:
-    members = plain(report.transmission)
-    return members and {name: value for name, value in members.items() if name != 'spectra'}

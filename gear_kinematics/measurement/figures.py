@@ -13,7 +13,6 @@ from gear_kinematics.measurement.middle_line import (
     Backlash,
     MiddleLine,
     backlash_of,
-    friction_of,
     middle_lines,
     reconciled,
     stiffness_of,
@@ -42,52 +41,48 @@ _TORQUES = 200
 
 @dataclass(frozen=True, slots=True)
 class Stiffness:
-    """Torsional stiffness over a range of torque, N·m/rad."""
+    """Torsional stiffness, N·m/rad, between two magnitudes of torque, N·m."""
 
     low: float
-    """N·m, magnitude."""
     high: float
-    """N·m."""
     both: Estimate
+    """The mean of both signs of torque; the others are of one alone."""
     positive: Estimate
-    """Under positive torque alone."""
     negative: Estimate
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Reference values of the figures."""
+    """Reference values of the figures: torques in N·m."""
 
     rated_torque: float
-    """N·m."""
     corners: tuple[float, ...]
-    """N·m, ascending: limits between the ranges of stiffness."""
+    """Ascending: limits between the ranges of stiffness."""
     small_load: float
-    """N·m, at which lost motion without friction is read: as lost motion, unless friction may keep
-    the smallest ramps from loading the spring so much."""
+    """At which lost motion without friction is read: as lost motion, unless friction may keep the
+    smallest ramps from loading the spring so much."""
     angle_step: float
     """rad at the output, between readings of the encoder; 0 if unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Figures:
-    """Of the ramps of one amplitude."""
+    """Of the ramps of one amplitude: angles in rad, torques in N·m."""
 
     amplitude: float
-    """N·m."""
     loops: int
     rate: float | None
     """N·m/s, of the torque; None if times are not known."""
     hysteresis: Estimate
-    """rad, the width of the curve at zero torque."""
+    """The width of the curve at zero torque."""
     friction: Estimate | None
-    """N·m, half the width of the curve in torque; None without a complete loop."""
+    """Half the width of the curve in torque; None without a complete loop."""
     lost_motion: Estimate | None
-    """rad, between the middles of the curve at ± `LOST_MOTION_SHARE` of the rated torque; None if
-    the ramps are too small."""
+    """Between the middles of the curve at ± `LOST_MOTION_SHARE` of the rated torque; None if the
+    ramps are too small."""
     frictionless: Estimate | None
-    """rad, lost motion without friction: between the ends of the middle line at ± the small load;
-    None if a loop does not reach it."""
+    """Lost motion without friction: between the ends of the middle line at ± the small load; None
+    if a loop does not reach it."""
     backlash: Backlash | None
     """What these ramps leave room for; None if they do not bound it."""
     stiffness: tuple[Stiffness, ...]
@@ -150,42 +145,37 @@ def gear_figures(ramps: Sequence[Ramps], settings: Settings) -> GearFigures:
     Raises:
         RampError: if the angle does not grow with the torque.
     """
-    loops = ramps[-1].loops
-    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in loops]
-    if float(np.mean(ways)) <= _still(loops, settings.angle_step):
+    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps[-1].loops]
+    if float(np.mean(ways)) <= _still(ramps[-1], settings.angle_step):
         raise RampError(
             'the angle does not grow with the torque: it stands still, or one of them has the '
             'wrong sign'
         )
-    largest = middle_lines(ramps[-1])
-    loaded = stiffness_of(largest, ramps[-1]) if largest else 0.0
+    loaded = stiffness_of(middle_lines(ramps[-1]), ramps[-1])
     return GearFigures(settings, tuple(_figures(group, settings, loaded) for group in ramps))
 
 
 def _figures(ramps: Ramps, settings: Settings, loaded: float) -> Figures:
     """Figures of ramps of one amplitude, beside largest ones with a stiffness `loaded`."""
-    lines = middle_lines(ramps)
-    hysteresis = _hysteresis(ramps.loops, settings.angle_step)
-    frictionless = _frictionless(lines, settings)
+    lines, step = middle_lines(ramps), settings.angle_step
+    hysteresis, frictionless = _hysteresis(ramps.loops, step), _frictionless(lines, settings)
     return Figures(
         ramps.amplitude,
         len(ramps.loops),
         ramps.rate,
         hysteresis,
-        _friction(lines, ramps.loops, settings.angle_step),
+        _friction(lines, ramps, step),
         _lost_motion(ramps.loops, settings),
         frictionless,
-        backlash_of(lines, ramps, hysteresis, frictionless, settings.angle_step, loaded),
+        backlash_of(lines, ramps, hysteresis, frictionless, step, loaded),
         _stiffness(ramps, settings),
         _overall(ramps),
     )
 
 
-def _still(loops: Sequence[Loop], angle_step: float) -> float:
+def _still(ramps: Ramps, angle_step: float) -> float:
     """Difference up to which two angles may be equal, rad."""
-    greatest = max(
-        float(np.max(np.abs(h.angle))) for loop in loops for h in (loop.fall, loop.rise)
-    )
+    greatest = max(float(np.max(np.abs(half.angle))) for half in ramps.halves)
     return max(angle_step, _ROUNDING * greatest)
 
 
@@ -213,24 +203,32 @@ def _rounded(roundings: Sequence[float]) -> Component:
     return Component(common_part(np.array(roundings)) / math.sqrt(3.0))
 
 
-def _friction(
-    lines: Sequence[MiddleLine], loops: Sequence[Loop], angle_step: float
-) -> Estimate | None:
+def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> Estimate | None:
+    """Half the width of the loops in torque at up to a quarter of their load, N·m.
+
+    Its ± contains how much that differs from the friction at up to half of the load.
+    """
     if not lines:
         return None
+    near, far = (
+        [line.friction_within(share * float(np.ptp(line.load))) for line in lines]
+        for share in (0.125, 0.25)
+    )
+    uneven = float(np.mean(far) - np.mean(near)) / math.sqrt(3.0)
     stiffness = float(np.mean([np.ptp(line.load) / np.ptp(line.angle) for line in lines]))
     # Half the difference of two torques, read at many angles that are off by the step.
     steps = max(1.0, float(np.ptp(lines[0].angle)) / angle_step) if angle_step else 1.0
     reading = stiffness * resolution(angle_step) / math.sqrt(2.0 * steps)
-    drifted = 0.5 * stiffness * _drifted(loops).standard
-    return friction_of(lines, by_steps(math.hypot(reading, drifted), len(lines)))
+    drifted = 0.5 * stiffness * _drifted(ramps.loops).standard
+    others = (uneven, math.hypot(reading, drifted))
+    return Estimate.of_mean(near, *(by_steps(other, len(lines)) for other in others))
 
 
 def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
     torque = LOST_MOTION_SHARE * settings.rated_torque
     ways = [
         [half for half in halves if half.reaches(torque) and half.reaches(-torque)]
-        for halves in ([loop.fall for loop in loops], [loop.rise for loop in loops])
+        for halves in zip(*loops, strict=True)
     ]
     if not all(ways):
         return None
@@ -253,45 +251,46 @@ def _frictionless(lines: Sequence[MiddleLine], settings: Settings) -> Estimate |
 
 def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
     corners = (0.0, *(corner for corner in settings.corners if corner < ramps.amplitude))
-    found, still = [], _still(ramps.loops, settings.angle_step)
+    found, still = [], _still(ramps, settings.angle_step)
     for low, high in pairwise((*corners, ramps.amplitude)):
         if high < _LEAST_RANGE * low:
             break
         pulls = [
-            [_compliance(half, low, min(high, abs(half.end))) for half in pull]
+            tuple(_compliance(half, low, min(high, abs(half.end))) for half in pull)
             for pull in ramps.pulls
             if all(_loads(half, low, ramps) for half in pull)
         ]
         if not pulls:
             continue
-        positive, negative = map(list, zip(*pulls, strict=True))
-        least = min(float(np.mean(positive)), float(np.mean(negative)))
+        least = float(np.min(np.mean(pulls, axis=0)))
         if least * (high - low) > still:  # else friction holds the gear throughout
             steps = slope_resolution(settings.angle_step, high - low, least)
-            found.append(_of_sides(low, high, positive, negative, by_steps(steps, len(pulls))))
+            found.append(_of_sides(low, high, pulls, by_steps(steps, len(pulls))))
     return tuple(found)
 
 
 def _of_sides(
-    low: float, high: float, positive: list[float], negative: list[float], *others: Component
+    low: float, high: float, pairs: Sequence[tuple[float, ...]], *others: Component
 ) -> Stiffness:
     """From compliances under positive and negative torque; `both` is that of their mean."""
-    both = [0.5 * (a + b) for a, b in zip(positive, negative, strict=True)]
+    positive, negative = zip(*pairs, strict=True)
+    both = [0.5 * sum(pair) for pair in pairs]
     values = (Estimate.of_mean(c, *others).inverse() for c in (both, positive, negative))
     return Stiffness(low, high, *values)
 
 
 def _overall(ramps: Ramps) -> Stiffness | None:
     """Slope of the line through both halves of a side, from zero to the peak and back."""
-    sides: dict[bool, list[float]] = {True: [], False: []}
+    positive: list[float] = []
+    negative: list[float] = []
     for loading, unloading in ramps.sides:
         high = min(abs(loading.end), abs(unloading.start))
-        slopes = [_compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)]
-        sides[loading.rising].append(0.5 * sum(slopes))
-    count = min(map(len, sides.values()))
-    if not count or min(min(side) for side in sides.values()) <= 0.0:
+        there, back = _compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)
+        (positive if loading.rising else negative).append(0.5 * (there + back))
+    pairs = list(zip(positive, negative, strict=False))
+    if not pairs or min(positive + negative) <= 0.0:
         return None
-    return _of_sides(0.0, ramps.amplitude, sides[True][:count], sides[False][:count])
+    return _of_sides(0.0, ramps.amplitude, pairs)
 
 
 def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:
@@ -305,11 +304,7 @@ def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:
 def _compliance(half: HalfLoop, low: float, high: float, way: float = 1.0) -> float:
     """Slope of the line through the angles over the torques of a range, rad/(N·m).
 
-    Args:
-        half: to its end (way 1), or from its start (way -1).
-        low: N·m, magnitude.
-        high: N·m.
-        way: see above.
+    The torques are magnitudes: to the end of the half loop (way 1), or from its start (way -1).
     """
     peak = half.end if way > 0.0 else half.start
     torque = math.copysign(1.0, peak) * np.linspace(low, high, _TORQUES)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import number
 from gear_kinematics.state.uncertainty import Estimate
@@ -19,65 +20,60 @@ class Judgement(NamedTuple):
     text: str
 
 
-class _Range(NamedTuple):
-    """A figure as it is judged."""
-
-    low: float
-    high: float
-    text: str
+_Range = tuple[float, float, str]
+"""Ends of a figure as it is judged, and a text without the unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """Of a gear; None where there is none."""
+    """Of a gear: the most of angles, rad, and the least stiffness; None where there is none."""
 
     hysteresis: float | None = None
-    """rad, the most."""
     lost_motion: float | None = None
-    """rad, the most; at ±3 % of the rated torque, or on reversals where there are no ramps."""
+    """At ±3 % of the rated torque, or on reversals where there are no ramps."""
     backlash: float | None = None
-    """rad, the most."""
     stiffness: float | None = None
-    """N·m/rad, the least; in the highest range of torque."""
+    """N·m/rad, in the highest range of torque."""
 
     def judge(self, report: LostMotion) -> Iterator[Judgement]:
         """Judge a recording by each limit."""
         found, motion = report.figures, report.transmission
+        width = found.smallest.hysteresis if found else None
         moved = motion.lost_motion if motion else None
+        lost_motion = found.largest.lost_motion if found else moved
         ranges = found.largest.stiffness if found else ()
-        play = found.backlash if found else None
-        known = {
-            'hysteresis': _range(found.smallest.hysteresis if found else None, '′', ARC_MINUTES),
-            'lost motion': _range(found.largest.lost_motion if found else moved, '′', ARC_MINUTES),
-            'backlash': play
-            and play.high is not None
-            and _Range(
-                play.low,
-                play.high,
-                f'{number(play.low * ARC_MINUTES)} to {number(play.high * ARC_MINUTES)}′',
-            ),
-            'stiffness': _range(ranges[-1].both if ranges else None, ' N·m/rad'),
-        }
-        limits = (self.hysteresis, self.lost_motion, self.backlash, self.stiffness)
-        for (name, value), limit in zip(known.items(), limits, strict=True):
-            if limit is not None:
-                yield _judged(name, value or None, limit, least=name == 'stiffness')
+        yield from _judged('hysteresis', self.hysteresis, _range(width, ARC_MINUTES))
+        yield from _judged('lost motion', self.lost_motion, _range(lost_motion, ARC_MINUTES))
+        yield from _judged('backlash', self.backlash, _play(found.backlash) if found else None)
+        stiffness = _range(ranges[-1].both if ranges else None)
+        yield from _judged('stiffness', self.stiffness, stiffness, least=True)
 
 
-def _range(value: Estimate | None, unit: str, scale: float = 1.0) -> _Range | None:
+def _range(value: Estimate | None, scale: float = 1.0) -> _Range | None:
     if value is None:
         return None
     spread = value.uncertainty or 0.0
-    return _Range(value.value - spread, value.value + spread, plus_minus(value, scale) + unit)
+    return value.value - spread, value.value + spread, plus_minus(value, scale)
 
 
-def _judged(name: str, value: _Range | None, limit: float, *, least: bool) -> Judgement:
+def _play(backlash: Backlash) -> _Range | None:
+    low, high, _ = backlash
+    if high is None:
+        return None
+    return low, high, f'{number(low * ARC_MINUTES)} to {number(high * ARC_MINUTES)}'
+
+
+def _judged(
+    name: str, limit: float | None, value: _Range | None, *, least: bool = False
+) -> Iterator[Judgement]:
+    if limit is None:
+        return
     if value is None:
-        return Judgement(name, holds=False, text=f'the {name} is not known')
-    shown = f'{number(limit)} N·m/rad' if least else f'{number(limit * ARC_MINUTES)}′'
-    told = f'the {name} of {value.text}'
-    if value.low >= limit if least else value.high <= limit:
-        return Judgement(name, holds=True, text=f'{told} is within the limit of {shown}')
-    if value.high < limit if least else value.low > limit:
-        return Judgement(name, holds=False, text=f'{told} is beyond the limit of {shown}')
-    return Judgement(name, holds=False, text=f'{told} may be beyond the limit of {shown}')
+        yield Judgement(name, holds=False, text=f'the {name} is not known')
+        return
+    low, high, text = value
+    holds, fails = (low >= limit, high < limit) if least else (high <= limit, low > limit)
+    unit, scale = (' N·m/rad', 1.0) if least else ('′', ARC_MINUTES)
+    told = 'is within' if holds else 'is beyond' if fails else 'may be beyond'
+    limited = f'{told} the limit of {number(limit * scale)}{unit}'
+    yield Judgement(name, holds, f'the {name} of {text}{unit} {limited}')

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby, pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +45,7 @@ class HalfLoop:
     noise: float
     """N·m, standard deviation of a reading of the torque."""
     blur: float
-    """N·m, standard deviation of the noise after smoothing."""
+    """N·m, the same after smoothing."""
     time: Array | None = None
     """(n,), s, at these torques; None if it is not known."""
 
@@ -69,23 +70,14 @@ class HalfLoop:
         near = _NEAR * self.noise
         return low - near <= torque <= high + near
 
-    def angle_at(self, torque: Array | float) -> Array:
-        """The angle at torques, rad, of the same shape."""
-        return self._at(torque, self.angle)
-
-    def time_at(self, torque: Array | float) -> Array:
-        """The time at torques, s, of the same shape.
-
-        Raises:
-            ValueError: if times are not known.
-        """
-        if self.time is None:
-            raise ValueError('the times of these ramps are not known')
-        return self._at(torque, self.time)
-
-    def _at(self, torque: Array | float, values: Array) -> Array:
+    def at(self, torque: Array | float, values: Array) -> Array:
+        """Values at torques, of the same shape, from values at the torques of the half loop."""
         sign = 1.0 if self.rising else -1.0
         return np.interp(sign * np.asarray(torque), sign * self.torque, values)
+
+    def angle_at(self, torque: Array | float) -> Array:
+        """The angle at torques, rad, of the same shape."""
+        return self.at(torque, self.angle)
 
     def rounding(self, torque: float) -> float:
         """Greatest rise of the angle at a torque by noise, which rounds corners, rad."""
@@ -93,8 +85,7 @@ class HalfLoop:
         return float(0.5 * (before + after) - at)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Loop:
+class Loop(NamedTuple):
     """A hysteresis loop: two successive half loops."""
 
     fall: HalfLoop
@@ -132,16 +123,16 @@ class Ramps:
     """Half loops to a peak and back from it, in order of time."""
 
     @property
-    def seconds(self) -> float | None:
-        """Median duration of a half loop; None if times are not known."""
-        halves = [half for loop in self.loops for half in (loop.fall, loop.rise)]
-        times = [float(np.ptp(half.time)) for half in halves if half.time is not None]
-        return float(np.median(times)) if times else None
+    def halves(self) -> list[HalfLoop]:
+        """The halves of the loops."""
+        return [half for loop in self.loops for half in loop]
 
     @property
     def rate(self) -> float | None:
-        """Mean rate of the torque, N·m/s; None if times are not known."""
-        return 2.0 * self.amplitude / self.seconds if self.seconds else None
+        """Rate of the torque over a half loop, the median, N·m/s; None if times are not known."""
+        times = [float(np.ptp(half.time)) for half in self.halves if half.time is not None]
+        seconds = float(np.median(times)) if times else 0.0
+        return 2.0 * self.amplitude / seconds if seconds else None
 
 
 def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[Ramps, ...]:
@@ -159,7 +150,7 @@ def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[
     # What preceded the first half loop is not known, so it belongs to no loop.
     pairs = zip(halves[1::2], halves[2::2], strict=False)
     loops = [Loop(b, a) if a.rising else Loop(a, b) for a, b in pairs]
-    loops = [loop for loop in loops if loop.fall.reaches(0.0) and loop.rise.reaches(0.0)]
+    loops = [loop for loop in loops if all(half.reaches(0.0) for half in loop)]
     if not loops:
         raise RampError('no torque ramp that goes to one side, to the other and back to zero')
     groups: list[list[Loop]] = []
@@ -181,13 +172,6 @@ def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLo
         tuple(zip(rises, falls, strict=False)),
         tuple((there, back) for there, back in pairwise(halves) if there in alike),
     )
-
-
-def monotonic(values: Array) -> Array:
-    """A non-decreasing sequence: midway between what was reached before and what stays behind."""
-    reached = np.maximum.accumulate(values)
-    left: Array = np.minimum.accumulate(values[::-1])[::-1]
-    return 0.5 * (reached + left)
 
 
 def _isotonic(values: Array) -> NDArray[np.intp]:
@@ -217,14 +201,11 @@ def _half_loops(torque: Array, angle: Array, time: Array | None) -> list[HalfLoo
         rows.start + int(np.argmax(np.abs(_smooth(torque[rows], noise))))
         for rows in _half_cycles(mean, least)
     ]
-    parts = [
-        slice(first, last + 1)
+    columns = (torque, angle) if time is None else (torque, angle, time)
+    return [
+        _half_loop(noise, *(values[first : last + 1] for values in columns))
         for first, last in pairwise([0, *turns, len(torque) - 1])
         if last - first >= _MIN_ROWS
-    ]
-    return [
-        _half_loop(torque[rows], angle[rows], noise, None if time is None else time[rows])
-        for rows in parts
     ]
 
 
@@ -241,19 +222,16 @@ def _half_cycles(torque: Array, least: float) -> list[slice]:
     ]
 
 
-def _half_loop(torque: Array, angle: Array, noise: float, time: Array | None) -> HalfLoop:
+def _half_loop(noise: float, torque: Array, *others: Array) -> HalfLoop:
+    """From the torque, the angle and, if it is known, the time."""
     smooth = _smooth(torque, noise)
     sign = 1.0 if smooth[-1] > smooth[0] else -1.0
     bounds = _isotonic(sign * smooth)
     blur = noise / math.sqrt(_mean_rows(torque, noise))
-    times = None if time is None else _means(time, bounds)
-    return HalfLoop(_means(smooth, bounds), _means(angle, bounds), noise, blur, times)
-
-
-def _means(values: Array, bounds: NDArray[np.intp]) -> Array:
-    """Means of successive groups of values."""
-    means: Array = np.add.reduceat(values, bounds[:-1]) / np.diff(bounds)
-    return means
+    levels, angle, *time = (
+        np.add.reduceat(values, bounds[:-1]) / np.diff(bounds) for values in (smooth, *others)
+    )
+    return HalfLoop(levels, angle, noise, blur, *time)
 
 
 def _noise(torque: Array) -> float:
@@ -264,13 +242,11 @@ def _noise(torque: Array) -> float:
 
 def _smooth(torque: Array, noise: float) -> Array:
     """Smooth a ramp by a moving mean, and by a straight line at the ends, where it has none."""
-    tenth = len(torque) // 10
-    half = _mean_rows(torque, noise) // 2
+    rows, tenth = _mean_rows(torque, noise), len(torque) // 10
+    edge = rows // 2
     sums = np.concatenate([[0.0], np.cumsum(torque)])
     smooth = torque.copy()
-    smooth[half : len(torque) - half] = (sums[2 * half + 1 :] - sums[: -2 * half - 1]) / (
-        2 * half + 1
-    )
+    smooth[edge : len(torque) - edge] = (sums[rows:] - sums[:-rows]) / rows
     if noise:
         smooth[: tenth // 2] = _line(torque[:tenth])[: tenth // 2]
         smooth[-tenth // 2 :] = _line(torque[-tenth:])[-tenth // 2 :]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from gear_kinematics.kinematics import Gear, GearRatio
-from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
+from gear_kinematics.measurement.figures import GearFigures, Settings, gear_figures, settings_for
 from gear_kinematics.measurement.loops import RampError, Ramps, find_ramps
 from gear_kinematics.measurement.ratio import RatioEstimate, check_ratio, fit_ratio
 from gear_kinematics.measurement.recording import Recording, RecordingError
@@ -18,14 +18,12 @@ class LostMotion:
     """The results for one recording."""
 
     name: str
-    """Of the recording."""
     recording: Recording
     gear_ratio: GearRatio
     """With which it was read."""
     ramps: tuple[Ramps, ...] = ()
     """By amplitude, from small to large; none where there are no torque ramps."""
     figures: GearFigures | None = None
-    """Of the ramps."""
     measured: bool = False
     """Whether an encoder measured the output under torque; if not, it is taken to be locked."""
     transmission: TransmissionFigures | None = None
@@ -40,12 +38,8 @@ class LostMotion:
         """The figures of the ramps at other reference values; see `figures.Settings`."""
         if not self.figures:
             return self
-        settings = replace(
-            self.figures.settings,
-            rated_torque=rated_torque,
-            corners=tuple(corners),
-            small_load=small_load,
-        )
+        step = self.figures.settings.angle_step
+        settings = Settings(rated_torque, tuple(corners), small_load, step)
         return replace(self, figures=gear_figures(self.ramps, settings))
 
 
@@ -88,14 +82,8 @@ def measure(
         wrong = check_ratio(encoders, gear.gear_ratio)
         travel = parameters['transmission_error_travel']
         found = transmission_figures(encoders, gear, travel, request.delay)
-    report = LostMotion(
-        recording.name,
-        recording,
-        gear.gear_ratio,
-        transmission=found,
-        fitted=fitted,
-        wrong_ratio=wrong,
-    )
+    report = LostMotion(recording.name, recording, gear.gear_ratio)
+    report = replace(report, transmission=found, fitted=fitted, wrong_ratio=wrong)
     if loading := recording.loading(gear.gear_ratio):
         try:
             ramps = find_ramps(loading.torque, loading.angle, loading.time)

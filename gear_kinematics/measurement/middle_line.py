@@ -10,12 +10,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
 
 from gear_kinematics.measurement.loops import Array, Loop, Ramps
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution, student_t
+from gear_kinematics.state.uncertainty import Estimate, resolution, student_t
 
 _ANGLES = 400
 """At which a loop is known."""
@@ -77,28 +78,26 @@ class Backlash(NamedTuple):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class MiddleLine:
-    """Of one loop; (n,) each, in the order of the angle."""
+    """Of one loop: angle, rad, load on the spring and friction, N·m, (n,) each, by the angle."""
 
     angle: Array
-    """rad."""
     load: Array
-    """N·m, of the spring, non-decreasing."""
+    """Non-decreasing."""
     friction: Array
-    """N·m."""
 
     @classmethod
     def of(cls, loop: Loop) -> 'MiddleLine':
         """Read the middle line of a complete loop."""
         fall, rise = loop.fall, loop.rise
         ways = [
-            (half.torque[::way], monotonic(half.angle[::way]))
+            (half.torque[::way], _monotonic(half.angle[::way]))
             for half, way in ((rise, 1), (fall, -1))
         ]
         low = max(angle[0] for _, angle in ways)
         high = min(angle[-1] for _, angle in ways)
         at = np.linspace(low, high, _ANGLES)
         forth, back = (np.interp(at, _distinct(angle), torque) for torque, angle in ways)
-        return cls(at, monotonic(0.5 * (forth + back)), 0.5 * (forth - back))
+        return cls(at, _monotonic(0.5 * (forth + back)), 0.5 * (forth - back))
 
     def angle_at(self, load: Array | float) -> Array:
         """The angle at loads, rad, of the same shape."""
@@ -123,7 +122,9 @@ class MiddleLine:
 
     def stiffness_within(self, width: float) -> float:
         """Mean stiffness over an angle about the middle, N·m/rad."""
-        ends = self._middle() + 0.5 * width * np.array([-1.0, 1.0])
+        load = _SIDE[0] * 0.5 * float(np.ptp(self.load))
+        middle = 0.5 * float(self.angle_at(load) + self.angle_at(-load))
+        ends = middle + 0.5 * width * np.array([-1.0, 1.0])
         return float(np.diff(np.interp(ends, self.angle, self.load))[0]) / width
 
     def friction_within(self, load: float) -> float:
@@ -140,37 +141,15 @@ class MiddleLine:
             return 0.0
         return float(np.mean(self.friction[within]) - np.mean(self.friction[beyond]))
 
-    def _middle(self) -> float:
-        load = _SIDE[0] * 0.5 * float(np.ptp(self.load))
-        return float(np.mean(self.angle_at(np.array([-load, load]))))
-
 
 def middle_lines(ramps: Ramps) -> list[MiddleLine]:
     """The middle lines of the complete loops of ramps."""
     return [MiddleLine.of(loop) for loop in ramps.loops if loop.complete]
 
 
-def friction_of(lines: Sequence[MiddleLine], *others: Component) -> Estimate:
-    """Half the width of the loops in torque at up to a quarter of their load, N·m.
-
-    Its ± contains how much that differs from the friction at up to half of the load.
-
-    Args:
-        lines: of complete loops, at least one.
-        others: components of the uncertainty, N·m.
-    """
-    load = np.array([0.5 * np.ptp(line.load) for line in lines])
-    near, far = (
-        [line.friction_within(share * at) for line, at in zip(lines, load, strict=True)]
-        for share in (0.25, 0.5)
-    )
-    uneven = float(np.mean(far) - np.mean(near)) / math.sqrt(3.0)
-    return Estimate.of_mean(near, Component(uneven, len(lines) - 1), *others)
-
-
 def stiffness_of(lines: Sequence[MiddleLine], ramps: Ramps) -> float:
-    """Mean stiffness of both sides of middle lines, N·m/rad; 0 if friction takes up all torque."""
-    reach = _reach(lines, ramps)
+    """Mean stiffness of both sides of middle lines, N·m/rad; 0 if there are none, or no load."""
+    reach = _reach(lines, ramps) if lines else 0.0
     if reach <= 0.0:
         return 0.0
     low, high = _SIDE
@@ -196,7 +175,7 @@ def backlash_of(
 
     Args:
         lines: of the complete loops.
-        ramps: their loops.
+        ramps: with these loops.
         hysteresis: of the same ramps, rad.
         frictionless: width of the middle lines between small loads, rad, if they reach these.
         step: rad, between readings of the encoder; 0 if unknown.
@@ -246,24 +225,18 @@ def backlash_of(
 
 
 def reconciled(found: Sequence[Backlash | None]) -> Backlash:
-    """The backlash that ramps of all amplitudes leave room for; a gear has only one.
-
-    Args:
-        found: by amplitude.
-    """
-    known = [backlash for backlash in found if backlash]
+    """The backlash that ramps of all amplitudes leave room for; a gear has only one."""
+    known = [(own.high, own.low, own.cause) for own in found if own and own.high is not None]
     if not known:
         return Backlash(0.0, None, Cause.FRICTION)
-    low = max(backlash.low for backlash in known)
-    best = min(known, key=lambda backlash: backlash.high or math.inf)
-    if best.high is not None and low > best.high:
-        highs = [backlash.high for backlash in known if backlash.high is not None]
-        lows = [backlash.low for backlash in known]
+    highs, lows, _ = zip(*known, strict=True)
+    if max(lows) > min(highs):
         return Backlash(min(lows), max(highs), Cause.CONTRADICTION)
-    return Backlash(low, best.high, best.cause)
+    high, _, cause = min(known, key=itemgetter(0))
+    return Backlash(max(lows), high, cause)
 
 
-def monotonic(values: Array) -> Array:
+def _monotonic(values: Array) -> Array:
     """A non-decreasing sequence: midway between what was reached before and what stays behind."""
     reached = np.maximum.accumulate(values)
     left: Array = np.minimum.accumulate(values[::-1])[::-1]
@@ -278,8 +251,7 @@ def _distinct(values: Array) -> Array:
 
 def _spacing(ramps: Ramps) -> float:
     """Between samples of the torque, N·m."""
-    halves = [half for loop in ramps.loops for half in (loop.fall, loop.rise)]
-    return float(np.mean([np.median(np.abs(np.diff(half.torque))) for half in halves]))
+    return float(np.mean([np.median(np.abs(np.diff(half.torque))) for half in ramps.halves]))
 
 
 def _friction(lines: Sequence[MiddleLine]) -> float:

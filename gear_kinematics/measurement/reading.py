@@ -16,7 +16,7 @@ from gear_kinematics.bag import (
     sort_by_topic,
 )
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
-from gear_kinematics.kinematics import gear_from_mapping
+from gear_kinematics.kinematics import GearRatio, gear_from_mapping
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.clock import before_set_back, dates_of, in_order
 from gear_kinematics.measurement.columns import Columns
@@ -92,51 +92,44 @@ def _read_bag(
 ) -> Recording:
     rotor_input = RotorInput(InputSettings.from_mapping(parameters))
     settings = EncoderSettings.from_mapping(parameters)
-    inputs: list[tuple[Array, ...]] = []
-    outputs: list[tuple[Array, ...]] = []
-    damage, lacking, start = None, '', None
+    inputs: list[Sequence[Array]] = []
+    outputs: list[Sequence[Array]] = []
+    start, lacking, damage = None, '', None
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, encoder_topic)
         rotor = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
         topics = [topic for topic in (rotor, encoder) if topic]
+        messages = bag.messages(topics)
         try:
-            for batch in in_batches(
-                bag.messages(topics), progress=progress, total=bag.message_count
-            ):
+            for batch in in_batches(messages, progress=progress, total=bag.message_count):
                 found = {topic: TopicMessages() for topic in topics}
                 sort_by_topic(batch, found)
-                received = [found[topic].received[0] for topic in topics if found[topic].received]
-                start = min(received) / SECOND if start is None and received else start
-                samples = rotor_input.accept_batch(found[rotor].data, found[rotor].received)
-                inputs.append(
-                    (samples.stamp, samples.turns, samples.angle, samples.effort, samples.stretch)
-                )
+                if start is None and batch:
+                    start = min(of.received[0] for of in found.values() if of.received) / SECOND
+                new = rotor_input.accept_batch(found[rotor].data, found[rotor].received)
+                inputs.append((new.stamp, new.turns, new.angle, new.effort, new.stretch))
                 if encoder:
-                    states = decode_joint_states(
-                        found[encoder].data, settings.output_encoder_joint
-                    )
+                    data, received = found[encoder].data, found[encoder].received
+                    states = decode_joint_states(data, settings.output_encoder_joint)
                     lacking = lacking or states.lacking
-                    outputs.append(_measured(states, found[encoder].received, settings))
+                    outputs.append(_measured(states, received, settings))
         except DamagedBagError as error:
             damage = str(error)
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
-    stamp, turns, angle, effort, segment = _joined(inputs, 5)
-    if not len(stamp):
+    rotor_columns = _joined(inputs)
+    rows = len(rotor_columns[0])
+    if not rows:
         why = f': {rotor_input.why_rejected}' if rotor_input.rejected else ''
         raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
-    rows = len(stamp)
-    if (kept := before_set_back(stamp)) < rows:
+    if (kept := before_set_back(rotor_columns[0])) < rows:
         remarks.append(f'{rotor}: the clock was set back; the {kept} states before it are used')
-        stamp, turns, angle, effort, segment = (
-            column[:kept] for column in (stamp, turns, angle, effort, segment)
-        )
-    motion = RotorMotion(
-        stamp, turns, angle, effort if np.isfinite(effort).any() else None, segment
-    )
+    stamp, turns, angle, effort, segment = (column[:kept] for column in rotor_columns)
+    has_effort = np.isfinite(effort).any()
+    motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
     described = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
     encoders = locked = None
     if encoder:
-        stamps, angles = _joined(outputs, 2)
+        stamps, angles = _joined(outputs)
         if lacking and not len(stamps):
             raise BagError(f'{path}: {encoder}: {lacking}')
         encoders, told = _compared(motion, stamps, angles, settings, columns)
@@ -144,12 +137,11 @@ def _read_bag(
         if not len(encoders.measured):
             raise RecordingError(f'{path}: no output angle was measured between two rotor states')
         described.append(f'output {encoder}, rad')
-    elif motion.effort is None:
+    elif not has_effort:
         raise missing_encoder(bag, f'{rotor} has no effort, and ')
     else:
-        ratio = gear_from_mapping(parameters).gear_ratio
-        locked = _locked(motion, ratio, columns)
-    if motion.effort is not None:
+        locked = _locked(motion, effort, columns, gear_from_mapping(parameters).gear_ratio)
+    if has_effort:
         described.append(f'torque: effort of {rotor} times the ratio, N·m')
     return Recording(
         path, path.name, tuple(described), rows, dates_of(path, start), encoders, locked,
@@ -157,16 +149,30 @@ def _read_bag(
     )  # fmt: skip
 
 
-def _locked(motion: RotorMotion, ratio: Any, columns: Columns) -> Loading:
+def _measured(
+    states: JointStates, received: Sequence[int], settings: EncoderSettings
+) -> tuple[Array, Array]:
+    """Stamps and output angles of messages; a zero stamp is replaced by the time of reception."""
+    angle = settings.output_angle(states.values[:, 0])
+    usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
+    stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
+    return stamp[usable], angle[usable]
+
+
+def _joined(batches: list[Sequence[Array]]) -> list[Array]:
+    """Columns of all batches; frees those of the batches one by one."""
+    columns = list(zip(*batches, strict=True))
+    batches.clear()
+    return [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
+
+
+def _locked(motion: RotorMotion, effort: Array, columns: Columns, ratio: GearRatio) -> Loading:
     """Angles of a rotor under torque, with the output taken to be locked."""
-    assert motion.effort is not None  # noqa: S101, for the type
-    known = np.isfinite(motion.effort)
-    position = (motion.turns - motion.turns[0]) * TURN + motion.angle
-    step = step_of(columns.rotor_counts, position).scaled(float(1 / ratio))
+    known = np.isfinite(effort)
     return Loading(
-        float(ratio) * motion.effort[known],
-        position[known] / float(ratio),
-        step,
+        float(ratio) * effort[known],
+        motion.turned[known] / float(ratio),
+        step_of(columns.rotor_counts, motion.turned).scaled(float(1 / ratio)),
         measured=False,
         time=(motion.stamp[known] - motion.stamp[known][0]) / SECOND,
     )
@@ -184,15 +190,15 @@ def _compared(
     kept, disordered = in_order(stamps)
     if disordered:
         told.append(f'{disordered} angles out of order')
-    if (rest := len(stamps) - len(kept) - disordered) > 0:
+    if rest := len(stamps) - len(kept) - disordered:
         told.append(f'the clock was set back; the last {rest} angles are left out')
     stamps, angles = stamps[kept], angles[kept]
     gap = round(settings.transmission_error_max_gap * SECOND)
     before, share, inside = match(motion.stamp, stamps, gap)
-    outside = np.count_nonzero((stamps < motion.stamp[0]) | (stamps > motion.stamp[-1]))
+    outside = int(np.count_nonzero((stamps < motion.stamp[0]) | (stamps > motion.stamp[-1])))
     unmatched = {
-        'outside of the rotor states': int(outside),
-        'gap of the rotor states': len(stamps) - len(before) - int(outside),
+        'outside of the rotor states': outside,
+        'gap of the rotor states': len(stamps) - len(before) - outside,
     }
     encoders = Encoders(
         motion,
@@ -205,20 +211,3 @@ def _compared(
         unmatched={cause: count for cause, count in unmatched.items() if count},
     )
     return encoders, told
-
-
-def _measured(
-    states: JointStates, times: Sequence[int], settings: EncoderSettings
-) -> tuple[Array, Array]:
-    """Stamps and output angles of messages; a zero stamp is replaced by the time of reception."""
-    angle = settings.output_angle(states.values[:, 0])
-    usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
-    stamp = np.where(states.stamp == 0, np.asarray(times, np.int64), states.stamp)
-    return stamp[usable], angle[usable]
-
-
-def _joined(batches: list[tuple[Array, ...]], count: int) -> tuple[Array, ...]:
-    """Columns of all batches; frees those of the batches one by one."""
-    columns = list(map(list, zip(*batches, strict=True))) or [[np.zeros(0)] for _ in range(count)]
-    batches.clear()
-    return tuple(np.concatenate(columns.pop(0)) for _ in range(count))

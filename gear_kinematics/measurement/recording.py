@@ -1,7 +1,7 @@
 """A recording of a gear, whatever its file format: angles under torque, and both encoders."""
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -38,6 +38,18 @@ class RotorMotion(NamedTuple):
     """N·m, on the rotor; NaN where it is missing; None if it was not recorded at all."""
     segment: Array | None = None
     """Number that changes where the motion before a sample is unknown; None: nowhere."""
+
+    @property
+    def seconds(self) -> Array:
+        """Times from the first sample, s, or sample numbers."""
+        seconds: Array = (self.stamp - self.stamp[0]) / SECOND
+        return seconds
+
+    @property
+    def turned(self) -> Array:
+        """Rotor angle from the whole turns of the first sample, rad."""
+        turned: Array = (self.turns - self.turns[0]) * TURN + self.angle
+        return turned
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -79,35 +91,37 @@ class Encoders:
     @property
     def duration(self) -> float:
         """Time between the first and the last sample, s; 0 if not recorded."""
-        stamp = self.rotor.stamp
-        return float(stamp[-1] - stamp[0]) / SECOND if self.timed else 0.0
+        return float(self.rotor.seconds[-1]) if self.timed else 0.0
 
     @property
     def seconds(self) -> Array:
         """Times of the measured angles from the first rotor sample, s, or sample numbers."""
-        return self.at_measured((self.rotor.stamp - self.rotor.stamp[0]) / SECOND)
+        return self.at_measured(self.rotor.seconds)
+
+    @property
+    def _after(self) -> Array:
+        """(n,): index of the next rotor sample, or of the last."""
+        after: Array = np.minimum(self.before + 1, len(self.rotor.stamp) - 1)
+        return after
 
     def at_measured(self, values: Array) -> Array:
         """Interpolate a quantity of the rotor to the measured angles."""
-        following = np.minimum(self.before + 1, len(values) - 1)
-        step = values[following] - values[self.before]
-        interpolated: Array = values[self.before] + self.share * step
+        before = values[self.before]
+        interpolated: Array = before + self.share * (values[self._after] - before)
         return interpolated
 
     def position(self) -> tuple[Array, Array]:
         """Rotor angle at the measured angles: whole turns and the rest, rad."""
-        _, turns, angle, *_ = self.rotor
-        following = np.minimum(self.before + 1, len(turns) - 1)
-        step = (turns[following] - turns[self.before]) * TURN
-        step += angle[following] - angle[self.before]
-        rest = angle[self.before] + self.share * step
+        turns, angle = self.rotor.turns[self.before], self.rotor.angle[self.before]
+        step = (self.rotor.turns[self._after] - turns) * TURN
+        step += self.rotor.angle[self._after] - angle
+        rest = angle + self.share * step
         wraps = np.round(rest / TURN)
-        return turns[self.before] + wraps, rest - TURN * wraps
+        return turns + wraps, rest - TURN * wraps
 
     def ideal(self, ratio: Fraction) -> Array:
         """Ideal output angle of the rotor samples, rad, from the whole turns of the first one."""
-        turns = self.rotor.turns - self.rotor.turns[0]
-        output: Array = (turns * TURN + self.rotor.angle) * (ratio.denominator / ratio.numerator)
+        output: Array = self.rotor.turned * (ratio.denominator / ratio.numerator)
         return output
 
     def error(self, ratio: Fraction) -> Array:
@@ -118,15 +132,12 @@ class Encoders:
 
     def speed(self, ratio: Fraction) -> Array:
         """Speed of the output at the measured angles, rad/s, or rad a sample without times."""
-        ideal = self.ideal(ratio)
-        stamp = (self.rotor.stamp - self.rotor.stamp[0]) / SECOND
-        at = self.seconds
+        time, at = self.rotor.seconds, self.seconds
         # No less than the rotor's own samples on both sides.
-        early = np.maximum(at - 0.5 * _SPEED_WINDOW, stamp[0])
-        late = np.minimum(at + 0.5 * _SPEED_WINDOW, stamp[-1])
-        early = np.minimum(early, stamp[self.before])
-        late = np.maximum(late, stamp[np.minimum(self.before + 1, len(stamp) - 1)])
-        travel = np.interp(late, stamp, ideal) - np.interp(early, stamp, ideal)
+        early = np.clip(at - 0.5 * _SPEED_WINDOW, time[0], time[self.before])
+        late = np.clip(at + 0.5 * _SPEED_WINDOW, time[self._after], time[-1])
+        ideal = self.ideal(ratio)
+        travel = np.interp(late, time, ideal) - np.interp(early, time, ideal)
         speed: Array = travel / np.maximum(late - early, 1.0 / SECOND)
         return speed
 
@@ -152,36 +163,29 @@ class Encoders:
     def starts(self, max_gap: int | None) -> Array:
         """Indices of the rotor samples before which the motion is unknown, the first included.
 
-        Args:
-            max_gap: ns between rotor samples beyond which motion was missed.
+        In a gap between rotor samples of more than `max_gap`, ns, motion was missed.
         """
-        unknown = np.zeros(len(self.rotor.turns), bool)
-        unknown[0] = True
+        unknown = np.zeros(len(self.rotor.stamp) - 1, bool)
         if self.rotor.segment is not None:
-            unknown[1:] |= np.diff(self.rotor.segment) != 0
+            unknown |= np.diff(self.rotor.segment) != 0
         if max_gap is not None and self.timed:
-            unknown[1:] |= np.diff(self.rotor.stamp) > max_gap
-        return np.flatnonzero(unknown)
+            unknown |= np.diff(self.rotor.stamp) > max_gap
+        return np.append(0, 1 + np.flatnonzero(unknown))
 
 
 def match(
     rotor: Array, measured: Array, max_gap: float = np.inf
 ) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """Find the rotor samples around each measured angle.
-
-    Args:
-        rotor: stamps, ns, in order.
-        measured: stamps, ns.
-        max_gap: ns between rotor samples beyond which nothing is interpolated.
+    """Find the rotor samples around each measured angle, by stamps in ns; the rotor's in order.
 
     Returns:
-        `before` and `share` of the angles between two rotor samples, and which these are.
+        `before` and `share` of the angles between two rotor samples that are no more than
+        `max_gap`, ns, apart; and which angles these are.
     """
     before = np.searchsorted(rotor, measured, side='right') - 1
-    last = len(rotor) - 1
     inside = (before >= 0) & (measured <= rotor[-1])
-    before = np.clip(before, 0, max(last - 1, 0))
-    step = rotor[np.minimum(before + 1, last)] - rotor[before]
+    before = np.clip(before, 0, max(len(rotor) - 2, 0))
+    step = rotor[np.minimum(before + 1, len(rotor) - 1)] - rotor[before]
     inside &= step <= max_gap
     before, step = before[inside], np.maximum(step[inside], 1)
     return before, (measured[inside] - rotor[before]) / step, inside
@@ -229,11 +233,8 @@ class Recording:
     def sha256(self) -> str:
         """Hash of the file, or of the files in the folder one after the other, by name."""
         total = hashlib.sha256()
-        files: Iterable[Path] = [self.path]
-        if self.path.is_dir():
-            files = sorted(file for file in self.path.rglob('*') if file.is_file())
-        for file in files:
+        files = sorted(self.path.rglob('*')) if self.path.is_dir() else [self.path]
+        for file in filter(Path.is_file, files):
             with file.open('rb') as content:
-                while part := content.read(2**20):
-                    total.update(part)
+                hashlib.file_digest(content, lambda: total)
         return total.hexdigest()

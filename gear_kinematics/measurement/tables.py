@@ -1,7 +1,7 @@
 """The tables of a report on lost motion, in arc minutes."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, Figures, GearFigures, Stiffness
@@ -15,35 +15,26 @@ from gear_kinematics.measurement.wording import (
     plus_minus,
     rounded,
 )
-from gear_kinematics.report.document import Cell, Layout, Table, Tone, number, printable
+from gear_kinematics.report.document import Cell, Layout, Table, Tone, counted, number, printable
 from gear_kinematics.state.uncertainty import Estimate
 
 _FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from')
 _WORDS = ('', 'from')
-_QUANTITIES = (
-    'hysteresis [arcmin]',
-    'backlash [arcmin]',
-    'lost motion [arcmin]',
-    'stiffness [N·m/rad]',
-    'transmission accuracy [arcmin]',
-)
+_DEGREES = math.degrees(1.0)
 
 
 def head(report: LostMotion) -> Table:
     """Return what a recording contains and how it was read."""
     found = report.figures
     rates = [figures.rate for figures in found.by_amplitude] if found else []
-    kinds = [
-        *(['static (torque ramps)'] if found else []),
-        *(['dynamic (in motion)'] if report.transmission else []),
-    ]
+    kinds = {'static (torque ramps)': found, 'dynamic (in motion)': report.transmission}
     return Table.of_values(
         Layout.INLINE,
         ('samples', str(report.recording.rows)),
         ('columns', printable('; '.join(report.recording.columns))),
         ('gear ratio', str(report.gear_ratio)),
         ('rated torque', f'{number(found.settings.rated_torque)} N·m' if found else ''),
-        ('test', ', '.join(kinds)),
+        ('test', ', '.join(kind for kind, known in kinds.items() if known)),
         ('rate of the torque', '; '.join(f'{number(rate)} N·m/s' for rate in rates if rate)),
     )
 
@@ -56,18 +47,37 @@ def tables(report: LostMotion) -> Iterator[Table]:
             yield _amplitude_table(found)
         yield _stiffness_table(found)
     if report.transmission:
-        yield _transmission_table(report)
+        yield _transmission_table(report.transmission, report)
         yield _order_table(report.transmission)
 
 
 class _Figure(NamedTuple):
-    """A figure of torque ramps."""
+    """A row of a table of figures."""
 
     label: str
     unit: str
     estimate: Estimate | None
-    source: str
+    source: str = ''
     scale: float = 1.0
+
+
+def _angle(label: str, estimate: Estimate | None, source: str = '') -> _Figure:
+    return _Figure(label, 'arcmin', estimate, source, ARC_MINUTES)
+
+
+def _rows(figures: Iterable[_Figure]) -> Iterator[tuple[Cell, ...]]:
+    """Yield rows of the known figures."""
+    for label, unit, estimate, source, scale in figures:
+        if estimate:
+            value, spread = rounded(estimate, scale)
+            yield (
+                Cell(label, unit=unit),
+                Cell(value, unit=unit),
+                Cell(spread, Tone.PLAIN if spread else Tone.NOTABLE, unit=unit),
+                Cell(rounded(estimate, _DEGREES)[0] if unit == 'arcmin' else '', unit='°'),
+                Cell(str(estimate.repeats)),
+                Cell(source),
+            )
 
 
 def _figures(found: GearFigures) -> list[_Figure]:
@@ -76,19 +86,24 @@ def _figures(found: GearFigures) -> list[_Figure]:
     small, large = map(_source, (smallest, largest))
     at = number(LOST_MOTION_SHARE * found.settings.rated_torque)
     load = number(found.settings.small_load)
-    angles = (
-        ('hysteresis at zero torque', smallest.hysteresis, small),
-        (f'lost motion at ±{at} N·m', largest.lost_motion, large),
-        (f'lost motion without friction at ±{load} N·m', found.frictionless, small),
-    )
-    ranges = [(f'stiffness {_range(s)}', s.both) for s in largest.stiffness]
+    stiffness = {_range(s): s.both for s in largest.stiffness}
     if largest.overall:
-        ranges.append(('stiffness of whole loops', largest.overall.both))
+        stiffness['of whole loops'] = largest.overall.both
     return [
-        *(_Figure(name, 'arcmin', value, source, ARC_MINUTES) for name, value, source in angles),
+        _angle('hysteresis at zero torque', smallest.hysteresis, small),
+        _angle(f'lost motion at ±{at} N·m', largest.lost_motion, large),
+        _angle(f'lost motion without friction at ±{load} N·m', found.frictionless, small),
         _Figure('friction', 'N·m', smallest.friction, small),
-        *(_Figure(name, 'N·m/rad', value, large) for name, value in ranges),
+        *(_Figure(f'stiffness {of}', 'N·m/rad', s, large) for of, s in stiffness.items()),
     ]
+
+
+def _source(figures: Figures) -> str:
+    return f'{counted(figures.loops, "loop")} to {number(figures.amplitude)} N·m'
+
+
+def _range(stiffness: Stiffness) -> str:
+    return f'{number(stiffness.low)} to {number(stiffness.high)} N·m'
 
 
 def too_uncertain(found: GearFigures) -> list[str]:
@@ -101,19 +116,20 @@ def too_uncertain(found: GearFigures) -> list[str]:
 
 
 def _figure_table(found: GearFigures) -> Table:
-    clear = [f for f in _figures(found) if f.estimate and f.estimate.clear]
-    rows = [_row(*figure) for figure in clear]
+    rows = list(_rows(f for f in _figures(found) if f.estimate and f.estimate.clear))
     rows.insert(1, _backlash_row(found.backlash))
-    return Table(_FIGURES, tuple(row for row in rows if row), _WORDS)
+    return Table(_FIGURES, tuple(rows), _WORDS)
 
 
 def _backlash_row(backlash: Backlash) -> tuple[Cell, ...]:
     if backlash.value:
-        return _angle('backlash', backlash.value, 'all ramps') or ()
-    minutes, degrees = (interval(backlash, scale) for scale in (ARC_MINUTES, math.degrees(1.0)))
-    units = ('arcmin', '°') if backlash.high is not None else ('', '')
-    values = (Cell(minutes, unit=units[0]), Cell(''), Cell(degrees, unit=units[1]), Cell(''))
-    return (Cell('backlash', unit='arcmin'), *values, Cell('all ramps'))
+        return next(_rows([_angle('backlash', backlash.value, 'all ramps')]))
+    minutes, degrees = (
+        Cell(interval(backlash, scale), unit='' if backlash.high is None else unit)
+        for scale, unit in ((ARC_MINUTES, 'arcmin'), (_DEGREES, '°'))
+    )
+    cells = (minutes, Cell(''), degrees, Cell(''), Cell('all ramps'))
+    return (Cell('backlash', unit='arcmin'), *cells)
 
 
 def interval(backlash: Backlash | None, scale: float = ARC_MINUTES) -> str:
@@ -156,18 +172,18 @@ def _stiffness_table(found: GearFigures) -> Table:
     )
 
 
-def _transmission_table(report: LostMotion) -> Table:
+def _transmission_table(found: TransmissionFigures, report: LostMotion) -> Table:
     """Return the figures of the transmission error."""
-    found, both = report.transmission, report.recording.encoders
-    if not (found and both):
-        return Table((), ())
-    unit, scale = ('ms', 1e3) if both.timed else ('rows', 1.0)
-    rows = (
-        _angle('transmission accuracy forward', found.forward),
-        _angle('transmission accuracy backward', found.backward),
-        _angle('backward minus forward', found.reversals),
-        _angle('lost motion on reversals', found.lost_motion),
-        _row('delay of the output encoder', unit, found.delay, '', scale),
+    both = report.recording.encoders
+    unit, scale = ('ms', 1e3) if both and both.timed else ('rows', 1.0)
+    rows = _rows(
+        (
+            _angle('transmission accuracy forward', found.forward),
+            _angle('transmission accuracy backward', found.backward),
+            _angle('backward minus forward', found.reversals),
+            _angle('lost motion on reversals', found.lost_motion),
+            _Figure('delay of the output encoder', unit, found.delay, '', scale),
+        )
     )
     travel = number(math.degrees(found.travel), 4)
     offset = (
@@ -178,7 +194,7 @@ def _transmission_table(report: LostMotion) -> Table:
         Cell(''),
         Cell(f'{found.samples} samples over {travel}° of the output'),
     )
-    return Table(_FIGURES, (*(row for row in rows if row), offset), _WORDS)
+    return Table(_FIGURES, (*rows, offset), _WORDS)
 
 
 def _order_table(found: TransmissionFigures) -> Table:
@@ -196,16 +212,17 @@ def _order_table(found: TransmissionFigures) -> Table:
 
 def key(report: LostMotion) -> Table:
     """Return the figures of the summary, which a page shows first."""
-    _, *cells = _summary_row(report)
-    return Table.of_values(Layout.INLINE, *zip(_QUANTITIES, cells, strict=True))
+    return Table.of_values(Layout.INLINE, *_quantities(report).items())
 
 
 def summary(reports: Sequence[LostMotion]) -> Table:
-    """Return a row for each recording."""
-    return Table(('recording', *_QUANTITIES), tuple(map(_summary_row, reports)))
+    """Return a row for each recording, of at least one."""
+    rows = [(printable(report.name), *_quantities(report).values()) for report in reports]
+    columns = ('recording', *_quantities(reports[0]))
+    return Table(columns, tuple(tuple(map(Cell, row)) for row in rows))
 
 
-def _summary_row(report: LostMotion) -> tuple[Cell, ...]:
+def _quantities(report: LostMotion) -> dict[str, str]:
     hysteresis = lost_motion = stiffness = accuracy = None
     backlash = ''
     if error := report.transmission:
@@ -214,36 +231,10 @@ def _summary_row(report: LostMotion) -> tuple[Cell, ...]:
         hysteresis, lost_motion = found.smallest.hysteresis, found.largest.lost_motion
         stiffness = found.largest.stiffness[-1].both if found.largest.stiffness else None
         backlash = interval(found.backlash)
-    angles = (arc_minutes(hysteresis), backlash, arc_minutes(lost_motion))
-    values = (*angles, plus_minus(stiffness), arc_minutes(accuracy))
-    return tuple(map(Cell, (printable(report.name), *values)))
-
-
-def _angle(label: str, estimate: Estimate | None, source: str = '') -> tuple[Cell, ...] | None:
-    return _row(label, 'arcmin', estimate, source, ARC_MINUTES)
-
-
-def _row(
-    label: str, unit: str, estimate: Estimate | None, source: str, scale: float = 1.0
-) -> tuple[Cell, ...] | None:
-    if not estimate:
-        return None
-    value, spread = rounded(estimate, scale)
-    degrees = rounded(estimate, math.degrees(1.0))[0] if scale == ARC_MINUTES else ''
-    return (
-        Cell(label, unit=unit),
-        Cell(value, unit=unit),
-        Cell(spread, Tone.PLAIN if spread else Tone.NOTABLE, unit=unit),
-        Cell(degrees, unit='°'),
-        Cell(str(estimate.repeats)),
-        Cell(source),
-    )
-
-
-def _source(figures: Figures) -> str:
-    several = 's' if figures.loops > 1 else ''
-    return f'{figures.loops} loop{several} to {number(figures.amplitude)} N·m'
-
-
-def _range(stiffness: Stiffness) -> str:
-    return f'{number(stiffness.low)} to {number(stiffness.high)} N·m'
+    return {
+        'hysteresis [arcmin]': arc_minutes(hysteresis),
+        'backlash [arcmin]': backlash,
+        'lost motion [arcmin]': arc_minutes(lost_motion),
+        'stiffness [N·m/rad]': plus_minus(stiffness),
+        'transmission accuracy [arcmin]': arc_minutes(accuracy),
+    }

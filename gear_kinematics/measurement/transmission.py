@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,8 +48,7 @@ class Order:
     backward: Estimate | None
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Spectrum:
+class Spectrum(NamedTuple):
     """Amplitudes over orders, (n,) each, in one direction."""
 
     orders: Array
@@ -58,20 +58,20 @@ class Spectrum:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TransmissionFigures:
-    """Results from a recording of both encoders."""
+    """Results from a recording of both encoders: angles in rad."""
 
     samples: int
     travel: float
-    """rad, from the least to the greatest output angle."""
+    """From the least to the greatest output angle."""
     offset: float
-    """rad, the mean error: the offset of the encoders' zeros."""
+    """The mean error: the offset of the encoders' zeros."""
     forward: Estimate | None
-    """Transmission accuracy, rad: peak-to-peak error of forward motion without a reversal."""
+    """Transmission accuracy: peak-to-peak error of forward motion without a reversal."""
     backward: Estimate | None
     reversals: Estimate | None
-    """rad: error of the backward minus the forward run at the same angles; None without any."""
+    """Error of the backward minus the forward run at the same angles; None without any."""
     lost_motion: Estimate | None
-    """rad: the same at no speed; None where it cannot be told from a delay."""
+    """The same at no speed; None where it cannot be told from a delay."""
     delay: Estimate | None
     """s, or rows of a file without times, by which the stamps of the output are late; None if it
     cannot be told. The other figures are without it."""
@@ -79,9 +79,9 @@ class TransmissionFigures:
     spectra: tuple[Spectrum | None, Spectrum | None]
     """Forward and backward."""
     error: Array
-    """(n,), rad, measured minus ideal."""
+    """(n,), measured minus ideal."""
     angle: Array
-    """(n,), rad, ideal output angle."""
+    """(n,), ideal, of the output."""
     direction: NDArray[np.int8]
     """(n,): 1, -1, or 0 where unknown."""
 
@@ -93,11 +93,7 @@ class _Run:
         order = np.argsort(angle, kind='stable')
         self.angle, self.error, self._speed = angle[order], error[order], speed[order]
         self.low, self.high = float(self.angle[0]), float(self.angle[-1])
-
-    @property
-    def turns(self) -> float:
-        """Length, turns of the output."""
-        return (self.high - self.low) / TURN
+        self.turns = (self.high - self.low) / TURN
 
     @property
     def spacing(self) -> float:
@@ -123,12 +119,11 @@ class _Motion:
         self.error = encoders.error(ratio)
         direction = Direction(travel)
         starts = set(encoders.starts(None).tolist())
-        ways = []
+        way = np.zeros(len(ideal), np.int8)
         for row, step in enumerate(np.diff(ideal, prepend=ideal[0]).tolist()):
             if row in starts:
                 direction.reset()
-            ways.append(direction.move(step))
-        way = np.array(ways, np.int8)
+            way[row] = direction.move(step)
         after = way[np.minimum(encoders.before + (encoders.share > 0.0), len(way) - 1)]
         self.direction = np.where(way[encoders.before] == after, after, 0).astype(np.int8)
         self._speed = encoders.speed(ratio)
@@ -141,6 +136,12 @@ class _Motion:
             if len(rows) > 1:
                 run = _Run(self.angle[rows], self.error[rows], self._speed[rows])
                 yield int(self.direction[rows[0]]), run
+
+    def long_runs(self, way: int) -> list[_Run]:
+        """Return the runs in a direction that are repeats of the longest."""
+        runs = [run for sign, run in self.runs() if sign == way]
+        longest = max((run.turns for run in runs), default=0.0)
+        return [run for run in runs if run.turns >= _LONG * longest]
 
 
 def marked_orders(gear: Gear) -> dict[str, Fraction]:
@@ -178,17 +179,19 @@ def transmission_figures(
     both = Component(math.sqrt(2.0) * reading.standard)
     motion = _Motion(encoders, gear, travel)
     found = _reversals(motion, both, delay)
-    taken = found.delay if found else None
-    if delay is not None or (taken and abs(taken.value) > (taken.uncertainty or 0.0)):
+    shift, late = delay, found.delay if found else None
+    if delay is None and late and abs(late.value) > (late.uncertainty or 0.0):
+        shift = late.value
+    if shift:
         # The error is in proportion to the delay only as long as the speed hardly changes in it.
-        shift = delay if delay is not None else taken.value if taken else 0.0
-        motion = _Motion(encoders.earlier(shift), gear, travel) if shift else motion
+        motion = _Motion(encoders.earlier(shift), gear, travel)
         rest = _reversals(motion, both, None) if delay is None else None
         if found and rest and rest.delay:
             late = replace(rest.delay, value=shift + rest.delay.value)
             found = replace(found, lost_motion=rest.lost_motion, delay=late)
-    runs = list(motion.runs())
-    forward, backward = (_long([run for sign, run in runs if sign == way]) for way in (1, -1))
+    forward, backward = motion.long_runs(1), motion.long_runs(-1)
+    orders = marked_orders(gear)
+    there, back = (_amplitudes(runs, orders.values(), reading) for runs in (forward, backward))
     return TransmissionFigures(
         len(motion.error),
         float(np.ptp(motion.angle)),
@@ -198,17 +201,12 @@ def transmission_figures(
         found.difference if found else None,
         found.lost_motion if found else None,
         found.delay if found else None,
-        tuple(_orders(gear, forward, backward, reading)),
+        tuple(Order(name, at, there.get(at), back.get(at)) for name, at in orders.items()),
         (_spectrum(gear, forward), _spectrum(gear, backward)),
         motion.error,
         motion.angle,
         motion.direction,
     )
-
-
-def _long(runs: Sequence[_Run]) -> list[_Run]:
-    longest = max((run.turns for run in runs), default=0.0)
-    return [run for run in runs if run.turns >= _LONG * longest]
 
 
 def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:
@@ -235,15 +233,6 @@ def _pair(first: tuple[int, _Run], second: tuple[int, _Run]) -> Pair:
 
 
 # Orders
-
-
-def _orders(
-    gear: Gear, forward: Sequence[_Run], backward: Sequence[_Run], reading: Component
-) -> Iterable[Order]:
-    marked = marked_orders(gear)
-    there, back = (_amplitudes(runs, marked.values(), reading) for runs in (forward, backward))
-    for name, cycles in marked.items():
-        yield Order(name, cycles, there.get(cycles), back.get(cycles))
 
 
 def _amplitudes(

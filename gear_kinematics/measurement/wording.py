@@ -66,10 +66,6 @@ def plain(value: Any) -> Any:
         case tuple() | list():
             return [plain(item) for item in value]
     if is_dataclass(value):
-        members = {field.name: getattr(value, field.name) for field in fields(value)}
-        return {
-            name: plain(member)
-            for name, member in members.items()
-            if not isinstance(member, np.ndarray)
-        }
+        members = ((field.name, getattr(value, field.name)) for field in fields(value))
+        return {name: plain(it) for name, it in members if not isinstance(it, np.ndarray)}
     return value

@@ -52,6 +52,7 @@ def test_times_that_differ_are_kept():
         ([3.0, 3.0, 3.0], 'stand still'),
         ([3.0], 'stand still'),
         ([0.0, np.nan, 1.0], 'not numbers'),
+        ([5.0, 1.0, 2.0, 3.0], 'go back'),
     ],
 )
 def test_times_that_cannot_be_used(time, cause):

@@ -9,7 +9,6 @@ from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, w
 
 from gear_kinematics.bag import BagError, BagWriter
 from gear_kinematics.measurement.columns import Columns
-from gear_kinematics.measurement.csv_files import CsvError
 from gear_kinematics.measurement.encoder_step import Source, Step
 from gear_kinematics.measurement.lost_motion import Request, measure
 from gear_kinematics.measurement.reading import read, read_encoders
@@ -89,20 +88,23 @@ def test_real_recordings_need_no_renaming(shared_path, config):
         read(joint, config)
     printed = shared_path('data/dual_encoders/sspg_backlash_sine_vel_2.500tps_2.00s.csv')
     recording, both = read_encoders(printed, config)
-    assert recording.columns[:2] == ('rotor odrive_pos_rad, rad', 'output output_pos_rad, rad')
+    assert recording.columns[:2] == (
+        'rotor from odrive_pos_rad in rad',
+        'output from output_pos_rad in rad',
+    )
     assert both.output_step.size == pytest.approx(TURN / 2**14, rel=1e-3)
     stiffness = shared_path('data/dual_encoders/transmission_stiffness_sspg.csv')
     recording = read(stiffness, config | {'gear_ratio': '7.2'}, Columns(on_rotor=True))
-    assert recording.columns[0] == 'angle encoder_pos_rad of the rotor, rad'
-    assert recording.columns[1].startswith('torque output_torque_Nm at the output')
+    assert recording.columns[0] == 'angle of the rotor from encoder_pos_rad in rad'
+    assert recording.columns[1].startswith('torque at the output from output_torque_Nm')
 
 
 @pytest.mark.parametrize('name', ['angle [µrad]', 'angle_urad', 'winkel_grad', 'angle_mdeg'])
 def test_units_that_are_not_known_are_refused_with_the_list(tmp_path, config, name):
     path = write_csv(tmp_path / 'r.csv', **{name: [1.0, 2.0], 'torque': [1.0, 2.0]})
-    with pytest.raises(CsvError, match=r'known: .*deg, .*mrad, .*rad, rev'):
+    with pytest.raises(RecordingError, match=r'known: .*deg, .*mrad, .*rad, rev'):
         read(path, config)
-    with pytest.raises(CsvError, match=r'the unit .* is not known'):
+    with pytest.raises(RecordingError, match=r'the unit .* is not known'):
         read(path, config, Columns(angle=name))
 
 
@@ -151,7 +153,7 @@ def test_times_of_rows_are_read_if_there_are_any(tmp_path, config, angle, name, 
     path = write_csv(tmp_path / 'r.csv', angle=angle, torque=TORQUE, **{name: values(time)})
     recording = read(path, config)
     np.testing.assert_allclose(recording.locked.time, time, rtol=0, atol=0.0026)
-    assert recording.columns[-1].startswith(f'time {name}')
+    assert recording.columns[-1].startswith(f'time from {name}')
     assert read(write_csv(path, angle=angle, torque=TORQUE), config).locked.time is None
 
 
@@ -162,7 +164,7 @@ def test_times_that_cannot_be_used_are_reported_and_not_used(tmp_path, config, a
     assert len(recording.locked.angle) == len(angle)
     assert recording.locked.time is None
     assert recording.remarks == ('the times in T are not used: they go back',)
-    with pytest.raises(CsvError, match=r'r\.csv: the times in T: they go back'):
+    with pytest.raises(RecordingError, match=r'r\.csv: the times in T: they go back'):
         read(path, config, Columns(time='T'))
     clock = [f'12:{row // 60:02d}:{row % 60:02d}' for row in range(len(angle))]
     columns = {'angle': angle, 'torque': TORQUE, 'time': np.array(clock)}
@@ -233,7 +235,7 @@ def test_unusable_files_get_one_clear_line(tmp_path, config, content, complaint)
     path = tmp_path / 'bad.csv'
     if content is not None:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
-    with pytest.raises(CsvError) as caught:
+    with pytest.raises(RecordingError) as caught:
         read(path, config)
     assert str(caught.value).startswith(str(path))
     assert complaint in str(caught.value)
@@ -242,7 +244,7 @@ def test_unusable_files_get_one_clear_line(tmp_path, config, content, complaint)
 
 def test_column_that_is_not_there_is_named(tmp_path, config):
     path = write_csv(tmp_path / 'r.csv', angle=[1.0], torque=[2.0])
-    with pytest.raises(CsvError, match="no column 'phi'; there are: angle, torque"):
+    with pytest.raises(RecordingError, match="no column 'phi'; there are: angle, torque"):
         read(path, config, Columns(angle='phi'))
 
 

@@ -13,30 +13,27 @@ from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.correction import Corrector
 from gear_kinematics.state.uncertainty import Estimate
 
-_BLOCKS = 24
-"""Blocks of successive samples from which the uncertainty of a delay is estimated."""
-_ROUNDS = 4
-"""Estimates of the delay, each of what the ones before left."""
-_VARIES = 0.05
-"""Standard deviation of the speed, as a share of the greatest, that tells a delay from a zero."""
+_BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
+_ROUNDS = 4  # estimates of the delay, each of what the ones before left
+_VARIES = 0.05  # scatter of the speed over the greatest one that tells a delay from a zero
 
 
 class Judgement(NamedTuple):
-    """A calibration compared with a recording; arrays are (n,), of the measured angles."""
+    """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
     recording: Recording
-    timed: bool
-    seconds: Array
+    encoders: Encoders
+    """Less the delay, if that is clear."""
     output: Array
-    """Ideal output angle, rad."""
+    """Ideal output angle."""
     before: Array
-    """Measured minus ideal output angle less its mean, rad, without the delay."""
+    """Measured minus ideal output angle less its mean, without the delay."""
     after: Array
-    """Measured minus corrected output angle less its mean, rad, without the delay."""
+    """Measured minus corrected output angle less its mean, without the delay."""
     with_delay: tuple[float, float]
-    """rms before and after, rad, with the delay left in."""
+    """rms before and after with the delay left in."""
     half_width: Array
-    """rad, of the interval."""
+    """Of the interval."""
     uncalibrated: float
     """Share of samples in conditions that were not calibrated, or with an unknown history."""
     delay: Estimate | None
@@ -45,12 +42,12 @@ class Judgement(NamedTuple):
 
     @property
     def rms_before(self) -> float:
-        """rad."""
+        """Of the error without the correction."""
         return float(np.std(self.before))
 
     @property
     def rms_after(self) -> float:
-        """rad."""
+        """Of the error with the correction."""
         return float(np.std(self.after))
 
     @property
@@ -71,10 +68,9 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     check_ratio(recording, encoders, ratio)
     if not encoders.timed:
         calibration = replace(calibration, spans=replace(calibration.spans, speed=None))
-    count = len(rotor.turns)
-    unknown, unbroken = np.full(count, np.nan), np.zeros(count, np.int64)
+    unknown = np.full(len(rotor.turns), np.nan)
     effort = unknown if rotor.effort is None else rotor.effort
-    segment = unbroken if rotor.segment is None else rotor.segment
+    segment = np.zeros(len(unknown), np.int64) if rotor.segment is None else rotor.segment
     correction = Corrector(calibration).correct_batch(
         rotor.stamp, rotor.turns, rotor.angle, unknown, effort, segment
     )
@@ -96,9 +92,8 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     half_width = shifted.at_measured(correction.half_width)
     return Judgement(
         recording=recording,
-        timed=encoders.timed,
-        seconds=shifted.seconds,
-        output=shifted.at_measured(encoders.ideal(ratio)),
+        encoders=shifted,
+        output=shifted.at_measured(shifted.ideal(ratio)),
         before=before,
         after=after,
         with_delay=with_delay,
@@ -121,8 +116,6 @@ def _delay(speed: Array, residual: Array, shift: float) -> Estimate | None:
         return None
     columns = np.stack([-speed, np.ones(len(speed)), residual], axis=1)
     sums = np.array([block.T @ block for block in np.array_split(columns, _BLOCKS)])
-    value, *repeats = (
-        shift + float(np.linalg.lstsq(s[:2, :2], s[:2, 2], rcond=None)[0][0])
-        for s in (sums.sum(axis=0), *(sums.sum(axis=0) - sums))
-    )
-    return jackknife(value, repeats)
+    whole = sums.sum(axis=0)
+    fits = (np.linalg.lstsq(s[:2, :2], s[:2, 2], rcond=None)[0] for s in (whole, *(whole - sums)))
+    return jackknife(shift + np.array([delay for delay, _ in fits]))

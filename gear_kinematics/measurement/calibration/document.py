@@ -1,13 +1,13 @@
 """The reports on a calibration and on its check; docs/calibration.md describes their JSON."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.result import Fit
-from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm, output_cycles
+from gear_kinematics.measurement.calibration.terms import output_cycles
 from gear_kinematics.measurement.curves import envelope, marks, peaks
 from gear_kinematics.measurement.ratio import ratio_remarks
 from gear_kinematics.measurement.recording import Array
@@ -36,11 +36,8 @@ from gear_kinematics.report.document import (
 from gear_kinematics.state.uncertainty import COVERAGE
 
 _MILLI = 1e3
-_DECADES = 3
-"""Decades of a spectrum below its greatest amplitude."""
+_DECADES = 3  # decades of a spectrum below its greatest amplitude
 _PENS = {'before': Pen.FAINT, 'after': Pen.FIRST}
-_TIME = {True: 'time [s]', False: 'sample'}
-"""The x axis of a recording with and without times."""
 
 
 def document(fit: Fit, target: str) -> Document:
@@ -53,16 +50,16 @@ def document(fit: Fit, target: str) -> Document:
         else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
         f'{before} in what was left out of the fit, no more than by chance. Nothing is written.'
     )
+    told = list(remarks(fit))
     section = Section(
         printable(target),
         tuple(_tables(fit)),
         verdict,
         (Finding('finding', finding),),
-        tuple(map(printable, remarks(fit))),
+        tuple(map(printable, told)),
         Figure(tuple(_panels(fit)), columns=2),
         picture_first=True,
     )
-    orders = ('cycles', OrderTerm), ('radius', StopTerm)
     left_out = ('rms_before', 'rms_after', 'half_width', 'outside_half_width', 'coverage')
     data = {
         'schema': 'gear_kinematics/calibration_report',
@@ -74,15 +71,13 @@ def document(fit: Fit, target: str) -> Document:
         'left_out': {name: getattr(fit, name) for name in left_out},
         'terms': [
             {
-                'name': f.term.name,
-                **{
-                    name: plain(getattr(f.term, name)) if isinstance(f.term, kind) else None
-                    for name, kind in orders
-                },
-                'amplitude': plain(f.amplitude),
-                'cause': f.term.cause,
+                'name': term.name,
+                'cycles': plain(term.cycles),
+                'radius': term.radius,
+                'amplitude': plain(amplitude),
+                'cause': term.cause,
             }
-            for f in fit.terms
+            for term, _, amplitude in fit.terms
         ],
         'not_fitted': fit.refused,
         'recordings': [
@@ -96,7 +91,7 @@ def document(fit: Fit, target: str) -> Document:
             }
             for r in fit.recordings
         ],
-        'remarks': list(remarks(fit)),
+        'remarks': told,
     }
     return Document('gearkin calibrate', (section,), data, verdict)
 
@@ -110,20 +105,20 @@ def remarks(fit: Fit) -> Iterator[str]:
         yield from ratio_remarks(fit.fitted_ratio)
     for name, cause in fit.refused.items():
         yield f'{name} is not fitted: {cause}.'
-    timed = all(r.samples.encoders.timed for r in fit.recordings)
-    for samples, *_, delay in fit.recordings:
-        if delay and delay.clear:
+    for r in fit.recordings:
+        name = r.samples.recording.name
+        if r.delay and r.delay.clear:
             yield (
-                f'{samples.recording.name}: the output angles are later than the rotor angles by '
-                f'{plus_minus(delay, _MILLI)} ms, or the gear winds up in proportion to its '
+                f'{name}: the output angles are later than the rotor angles by '
+                f'{plus_minus(r.delay, _MILLI)} ms, or the gear winds up in proportion to its '
                 'speed. This part of the error is left out, and not corrected.'
             )
-        elif delay is None and timed:
+        elif r.delay is None and fit.timed:
             yield (
-                f'{samples.recording.name}: a delay of the output angles is not told from '
-                'hysteresis; this takes three strokes or more.'
+                f'{name}: a delay of the output angles is not told from hysteresis; this takes '
+                'three strokes or more.'
             )
-    if not timed:
+    if not fit.timed:
         yield (
             'Time was not recorded: the interval does not depend on the speed, and a delay '
             'between the encoders is not told from hysteresis.'
@@ -141,31 +136,32 @@ def _arc_minutes(angle: float) -> str:
 
 
 def _tables(fit: Fit) -> Iterator[Table]:
-    teeth = fit.mechanism and f'{fit.mechanism.ring_teeth}/{fit.mechanism.satellite_teeth}'
-    samples = sum(len(r.after) for r in fit.recordings)
-    head = ('gear ratio', str(fit.ratio)), ('teeth', teeth or ''), ('samples', str(samples))
+    teeth = f'{fit.mechanism.ring_teeth}/{fit.mechanism.satellite_teeth}' if fit.mechanism else ''
+    samples = str(sum(len(r.after) for r in fit.recordings))
+    head = ('gear ratio', str(fit.ratio)), ('teeth', teeth), ('samples', samples)
     yield Table.of_values(Layout.INLINE, *head)
-    angles = {
-        'rms before': fit.rms_before,
-        'rms after': fit.rms_after,
-        'half width of the interval': fit.half_width,
-        'half width outside the calibrated range': fit.outside_half_width,
-    }
-    values = [(name, _arc_minutes(angle), 'arcmin') for name, angle in angles.items()]
-    values.append(('coverage of the interval', number(100.0 * fit.coverage), '%'))
-    rows = tuple((Cell(name, unit=unit), Cell(value, unit=unit)) for name, value, unit in values)
-    yield Table(('left out of the fit', 'value'), rows)
-    cycles = [f.term.cycles if isinstance(f.term, OrderTerm) else None for f in fit.terms]
+    outside = _arc_minutes(fit.outside_half_width)
+    rows = (
+        ('rms before', _arc_minutes(fit.rms_before), 'arcmin'),
+        ('rms after', _arc_minutes(fit.rms_after), 'arcmin'),
+        ('half width of the interval', _arc_minutes(fit.half_width), 'arcmin'),
+        ('half width outside the calibrated range', outside, 'arcmin'),
+        ('coverage of the interval', number(100.0 * fit.coverage), '%'),
+    )
+    yield Table(
+        ('left out of the fit', 'value'),
+        tuple((Cell(name, unit=unit), Cell(value, unit=unit)) for name, value, unit in rows),
+    )
     output = output_cycles(fit.ratio)
     yield Table.of_items(
         {
-            'term': lambda row: row[0].term.name,
-            'amplitude [arcmin]': lambda row: arc_minutes(row[0].amplitude),
-            'cycles per rotor turn': lambda row: str(row[1] or ''),
-            'per output turn': lambda row: str(row[1] / output) if row[1] else '',
-            'likely cause': lambda row: row[0].term.cause,
+            'term': lambda f: f.term.name,
+            'amplitude [arcmin]': lambda f: arc_minutes(f.amplitude),
+            'cycles per rotor turn': lambda f: str(f.term.cycles or ''),
+            'per output turn': lambda f: str(f.term.cycles / output) if f.term.cycles else '',
+            'likely cause': lambda f: f.term.cause,
         },
-        zip(fit.terms, cycles, strict=True),
+        fit.terms,
         ('', 'likely cause'),
     )
     yield Table.of_items(
@@ -182,39 +178,43 @@ def _tables(fit: Fit) -> Iterator[Table]:
 
 def _panels(fit: Fit) -> Iterator[Panel]:
     """Yield the error before and after the correction, over time, output angle and orders."""
-    used = [(r.samples, r.samples.used) for r in fit.recordings]
-    ends = np.cumsum([0.0, *(s.seconds[-1] for s, _ in used)])
-    time = np.concatenate([s.seconds[at] + end for (s, at), end in zip(used, ends, strict=False)])
-    angle = np.concatenate([s.output[at] + s.first_output for s, at in used])
-    errors = {name: np.concatenate([getattr(r, name) for r in fit.recordings]) for name in _PENS}
-    timed = all(s.encoders.timed for s, _ in used)
-    yield from _error_panels(time, angle, errors, fit.half_width, timed=timed)
-    spectra = [(s, *line) for s, line in zip(fit.spectra, _PENS.items(), strict=True) if s]
+    samples = [r.samples for r in fit.recordings]
+    ends = np.cumsum([0.0, *(s.seconds[-1] for s in samples[:-1])])
+    time = [s.seconds[s.used] + end for s, end in zip(samples, ends, strict=True)]
+    angle = [s.output[s.used] for s in samples]
+    errors = [r.before for r in fit.recordings], [r.after for r in fit.recordings]
+    yield from _error_panels(fit.half_width, time, angle, *errors, timed=fit.timed)
     lines = []
-    for spectrum, name, pen in spectra:
-        shown = spectrum.cycles >= spectrum.resolution
-        curve = peaks(spectrum.cycles[shown], spectrum.amplitude[shown] * ARC_MINUTES)
-        lines.append(Line(name, pen, *curve))
+    for spectrum, (name, pen) in zip(fit.spectra, _PENS.items(), strict=True):
+        if spectrum:
+            shown = spectrum.cycles >= spectrum.resolution
+            curve = peaks(spectrum.cycles[shown], spectrum.amplitude[shown] * ARC_MINUTES)
+            lines.append(Line(name, pen, *curve))
     if lines:
-        orders = [f.term for f in fit.terms if isinstance(f.term, OrderTerm)]
+        orders = [(float(f.term.cycles), f.term.name) for f in fit.terms if f.term.cycles]
         yield Panel(
             'spectrum',
             'order: cycles in a turn of the rotor',
             'amplitude [arcmin]',
             tuple(lines),
-            marks=tuple(marks((float(order.cycles), order.name) for order in orders)),
+            marks=tuple(marks(orders)),
             scale='log',
             low=max(float(line.y.max()) for line in lines) / 10.0**_DECADES,
         )
 
 
-def _error_panels(
-    time: Array, angle: Array, errors: Mapping[str, Array], half_width: float, *, timed: bool
-) -> Iterator[Panel]:
-    """Draw errors, rad, over time and output angle, rad, with the interval."""
+def _error_panels(half_width: float, *columns: Sequence[Array], timed: bool) -> Iterator[Panel]:
+    """Draw errors over time and output angle, with the interval.
+
+    Args:
+        half_width: of the interval, rad.
+        columns: time, output angle, error before and after, rad, each in parts.
+        timed: whether time was recorded.
+    """
+    time, angle, *errors = map(np.concatenate, columns)
     width = half_width * ARC_MINUTES
     for title, label, at in (
-        ('error of samples left out', _TIME[timed], time),
+        ('error of samples left out', 'time [s]' if timed else 'sample', time),
         ('error over the output angle', 'output angle [°]', np.degrees(angle)),
     ):
         yield Panel(
@@ -222,8 +222,8 @@ def _error_panels(
             label,
             'measured less computed [arcmin]',
             tuple(
-                Line(name, pen, *envelope(at, errors[name] * ARC_MINUTES))
-                for name, pen in _PENS.items()
+                Line(name, pen, *envelope(at, error * ARC_MINUTES))
+                for (name, pen), error in zip(_PENS.items(), errors, strict=True)
             ),
             levels=((-width, ''), (width, '')),
         )
@@ -231,27 +231,31 @@ def _error_panels(
 
 def check_document(path: Path, judgements: Sequence[Judgement]) -> Document:
     """Return the document on a calibration file, with a section for each recording."""
-    recordings = [
-        {
-            'name': j.recording.name,
-            'holds': j.holds,
-            'rms_before': j.rms_before,
-            'rms_after': j.rms_after,
-            'rms_before_with_delay': j.with_delay[0],
-            'rms_after_with_delay': j.with_delay[1],
-            'delay': plain(j.delay),
-            'within_interval': 1.0 - j.fit.outside,
-            'within_interval_uncertainty': j.fit.outside_uncertainty,
-            'uncalibrated': j.uncalibrated,
-            'samples': j.fit.samples,
-        }
-        for j in judgements
-    ]
-    schema = {'schema': 'gear_kinematics/calibration_check', 'version': 1}
+    data = {
+        'schema': 'gear_kinematics/calibration_check',
+        'version': 1,
+        'calibration': str(path),
+        'recordings': [
+            {
+                'name': j.recording.name,
+                'holds': j.holds,
+                'rms_before': j.rms_before,
+                'rms_after': j.rms_after,
+                'rms_before_with_delay': j.with_delay[0],
+                'rms_after_with_delay': j.with_delay[1],
+                'delay': plain(j.delay),
+                'within_interval': 1.0 - j.fit.outside,
+                'within_interval_uncertainty': j.fit.outside_uncertainty,
+                'uncalibrated': j.uncalibrated,
+                'samples': j.fit.samples,
+            }
+            for j in judgements
+        ],
+    }
     return Document(
         f'gearkin calibrate --check {printable(path.name)}',
         tuple(map(_section, judgements)),
-        {**schema, 'calibration': str(path), 'recordings': recordings},
+        data,
         Verdict.PASS if all(j.holds for j in judgements) else Verdict.FAIL,
         Table.of_items(
             {
@@ -265,42 +269,37 @@ def check_document(path: Path, judgements: Sequence[Judgement]) -> Document:
     )
 
 
-def _section(judgement: Judgement) -> Section:
-    before, after = _arc_minutes(judgement.rms_before), _arc_minutes(judgement.rms_after)
-    inside, spread = 100.0 * (1.0 - judgement.fit.outside), judgement.fit.outside_uncertainty
-    shown = f'{inside:.1f} ± {100.0 * spread:.1f} %'
+def _section(j: Judgement) -> Section:
+    before, after = _arc_minutes(j.rms_before), _arc_minutes(j.rms_after)
+    inside, spread = 100.0 * (1.0 - j.fit.outside), 100.0 * j.fit.outside_uncertainty
+    shown = f'{inside:.1f} ± {spread:.1f} %'
     finding = (
         f'The correction changes the error from {before} to {after} arcmin rms; {shown} of the '
         f'measured angles are within the {PERCENT} interval.'
     )
-    if not judgement.fit.fits:
+    if not j.fit.fits:
         finding += ' That is too few by more than chance: the interval does not hold.'
-    errors = {'before': judgement.before, 'after': judgement.after}
-    width = float(np.median(judgement.half_width))
-    late = ' and '.join(map(_arc_minutes, judgement.with_delay)) if judgement.delay else ''
+    width = float(np.median(j.half_width))
+    late = ' and '.join(map(_arc_minutes, j.with_delay)) if j.delay else ''
+    uncalibrated = number(100.0 * j.uncalibrated)
     values = (
         ('rms before', before, 'arcmin'),
         ('rms after', after, 'arcmin'),
         ('the same with the delay', late, 'arcmin'),
-        ('delay of the output', plus_minus(judgement.delay, _MILLI), 'ms'),
+        ('delay of the output', plus_minus(j.delay, _MILLI), 'ms'),
         ('median half width of the interval', _arc_minutes(width), 'arcmin'),
         ('within the interval', shown, ''),
-        (
-            'wider for what was not calibrated',
-            number(100.0 * judgement.uncalibrated),
-            '% of the samples',
-        ),
-        ('samples', str(judgement.fit.samples), ''),
+        ('wider for what was not calibrated', uncalibrated, '% of the samples'),
+        ('samples', str(j.fit.samples), ''),
     )
     cells = [(name, Cell(value, unit=unit)) for name, value, unit in values]
-    panels = _error_panels(
-        judgement.seconds, judgement.output, errors, width, timed=judgement.timed
-    )
+    columns = [[column] for column in (j.encoders.seconds, j.output, j.before, j.after)]
+    panels = _error_panels(width, *columns, timed=j.encoders.timed)
     return Section(
-        printable(judgement.recording.name),
+        printable(j.recording.name),
         (Table.of_values(Layout.LINES, *cells),),
-        Verdict.PASS if judgement.holds else Verdict.FAIL,
+        Verdict.PASS if j.holds else Verdict.FAIL,
         (Finding('finding', finding),),
-        tuple(map(printable, judgement.recording.sentences)),
+        tuple(map(printable, j.recording.sentences)),
         Figure(tuple(panels)),
     )

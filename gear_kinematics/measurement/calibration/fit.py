@@ -20,51 +20,39 @@ from gear_kinematics.measurement.calibration import terms as candidates
 from gear_kinematics.measurement.calibration.normal import (
     Block,
     NormalEquations,
-    block_products,
     blocks_of,
+    first_as_good,
     is_as_good,
     jackknife,
     widening,
 )
 from gear_kinematics.measurement.calibration.result import Fit, FittedRecording, FittedTerm
-from gear_kinematics.measurement.calibration.samples import MOST_DRIFT, Samples, thinned
+from gear_kinematics.measurement.calibration.samples import MOST_DRIFT, Recorded, Samples, thinned
 from gear_kinematics.measurement.calibration.selection import Selection
 from gear_kinematics.measurement.calibration.spectrum import Spectrum, as_fraction, spectrum
-from gear_kinematics.measurement.calibration.terms import Term
 from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio, wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.state.uncertainty import COVERAGE, Estimate
 
-_FEWEST = 100
-"""Samples of a recording."""
-_SHIFTS = 4
-"""Corrections of the delays, each for what the ones before left."""
-_ROUNDS = 3
-"""Searches for further orders in the residuals."""
-_PEAKS = 6
-"""Peaks of the spectrum that are tried in each."""
-_CLOSE = 0.2
-"""Share of its uncertainty to which a delay is corrected."""
-_DRIFTS = (0, 2, 4, 8, MOST_DRIFT)
-"""Numbers of waves of drift that are tried."""
+_FEWEST = 100  # samples of a recording
+_SHIFTS = 4  # corrections of the delays, each for what the ones before left
+_ROUNDS = 3  # searches for further orders in the residuals
+_PEAKS = 6  # peaks of the spectrum that are tried in each
+_CLOSE = 0.2  # share of its uncertainty to which a delay is corrected
+_DRIFTS = (0, 2, 4, 8, MOST_DRIFT)  # numbers of waves of drift that are tried
 _DELAY_DRIFT = 4
 """Waves of drift beside a delay. Measured on simulated gears: as many as improve the prediction
 are too few where the zero drifts (over slow strokes the error is 1.14 times its least, not 1.03),
 and 16 hide a delay of 2 ms in 15 s (the error falls to a fourth, not to a seventh)."""
-_LONGEST_PERIOD = 2**20
-"""Rotor turns after which all orders repeat, at most."""
-_SEVERAL = 3
-"""Recordings from which on terms are selected by leaving out a whole one, not a block."""
-_TURNS = 2.0
-"""Turns of the output that tell a ratio from an eccentricity."""
-_COVERED = 0.5
-"""Share of the samples of a half at angles that the other half contains, to be judged by it."""
-_OWN = (0, 1)
-"""A recording's own unknowns that a check determines as well: zero and delay."""
+_LONGEST_PERIOD = 2**20  # rotor turns after which all orders repeat, at most
+_SEVERAL = 3  # recordings from which on terms are selected by leaving out a whole one, not a block
+_TURNS = 2.0  # turns of the output that tell a ratio from an eccentricity
+_COVERED = 0.5  # share of a half at angles that the other half contains, to be judged by it
+_OWN = (0, 1)  # a recording's own unknowns that a check determines as well: zero and delay
 
 
 def fit(
-    recordings: Sequence[tuple[Recording, Encoders]],
+    recordings: Sequence[Recorded],
     ratio: Fraction,
     mechanism: Mechanism | None = None,
     *,
@@ -105,16 +93,14 @@ def check_ratio(recording: Recording, encoders: Encoders, ratio: Fraction) -> No
         raise RecordingError(f'{recording.name}: {wrong}')
 
 
-def _estimate_ratio(
-    recordings: Sequence[tuple[Recording, Encoders]], assumed: Fraction
-) -> RatioEstimate:
+def _estimate_ratio(recordings: Sequence[Recorded], assumed: Fraction) -> RatioEstimate:
     """The ratio from the recording with the longest travel."""
     longest = max((e for _, e in recordings), key=lambda e: float(np.ptp(e.rotor.turns)))
-    turns, angle = longest.position()
-    rotor = (turns - turns[0]) * TURN + angle
-    output = longest.at_measured(longest.ideal(assumed)) + longest.error(assumed)
+    ideal = longest.at_measured(longest.ideal(assumed))
+    output = ideal + longest.error(assumed)
     # Over less, an eccentricity of the output cannot be told from another ratio.
-    return estimate_ratio(rotor, output, eccentric=bool(np.ptp(output) >= _TURNS * TURN))
+    eccentric = bool(np.ptp(output) >= _TURNS * TURN)
+    return estimate_ratio(ideal * float(assumed), output, eccentric=eccentric)
 
 
 class _Fitting:
@@ -122,18 +108,17 @@ class _Fitting:
 
     def __init__(
         self,
-        recordings: Sequence[tuple[Recording, Encoders]],
+        recordings: Sequence[Recorded],
         ratio: Fraction,
         mechanism: Mechanism | None,
     ) -> None:
         self._ratio, self._mechanism = ratio, mechanism
         self._refused: dict[str, str] = {}
-        self._drift: int = 0
-        self._own: Sequence[int] = _OWN[:1]
         self._samples = [Samples(*recording, ratio) for recording in recordings]
         self._orders = candidates.known_orders(self._samples, ratio, mechanism, self._refused)
         self._delays: list[Estimate | None] = [None] * len(recordings)
         self._undelay([encoders for _, encoders in recordings])
+        self._drift = 0
         for _ in range(_ROUNDS):
             self._select()
             if not self._find_orders():
@@ -152,13 +137,13 @@ class _Fitting:
         shifts = [0.0] * len(encoders)
         late = [k for k, s in enumerate(self._samples) if s.tells_delay]
         for _ in range(_SHIFTS if late else 0):
-            self._drift, self._own = _DELAY_DRIFT, _OWN
-            self._select()
-            equations, before = self._normal_equations(self._by_block), shifts.copy()
+            self._select(with_delays=True)
+            equations = self._normal_equations(self._by_block, self._drift)
+            before = shifts.copy()
             for k in late:
-                (_, left, *_), without = equations.own(k, self._selection.columns)
-                delay = jackknife(shifts[k] + float(left), (shifts[k] + without[:, 1]).tolist())
-                self._delays[k], shift = delay, delay.value if delay.clear else 0.0
+                delays = equations.own(k, self._selection.columns)[:, 1]
+                self._delays[k] = delay = jackknife(shifts[k] + delays)
+                shift = delay.value if delay.clear else 0.0
                 if abs(shift - shifts[k]) > _CLOSE * (delay.uncertainty or 0.0):
                     shifts[k] = shift
                     self._samples[k] = Samples(
@@ -166,60 +151,59 @@ class _Fitting:
                     )
             if shifts == before:
                 break
-        self._drift, self._own = 0, _OWN[:1]
 
-    def _select(self) -> None:
-        """Select the terms."""
-        terms: list[Term] = [
-            *self._orders,
-            *candidates.wind_up(self._samples, self._refused),
-            *candidates.stops(self._samples, self._refused),
-        ]
-        self._terms = terms
-        self._common = sum(term.columns for term in terms)
+    def _select(self, *, with_delays: bool = False) -> None:
+        """Select the terms, beside a delay of each recording or the drift that is needed."""
+        self._own = _OWN if with_delays else _OWN[:1]
+        wind_up = candidates.wind_up(self._samples, self._refused)
+        stops = candidates.stops(self._samples, self._refused)
+        self._terms: list[candidates.Term] = [*self._orders, *wind_up, *stops]
         self._blocks = blocks_of([len(s.used) for s in self._samples])
         of = np.array([block.recording for block in self._blocks])
         self._by_block = np.arange(len(of))
         self._by_part = of if len(self._samples) > 1 else (2 * self._by_block) // len(of)
         self._folds = of if len(self._samples) >= _SEVERAL else self._by_block
-        self._products = block_products(self._columns, self._blocks)
-        self._equations = self._normal_equations(self._folds)
-        # Any output has errors that vary slowly with its angle, and limit where others hold.
-        fixed = int(bool(self._orders) and self._orders[0].is_trend)
-        self._selection = Selection(self._equations, terms, fixed)
-        if not self._drift and self._judge_drift():
-            self._equations = self._normal_equations(self._folds)
-            self._selection = Selection(self._equations, terms, fixed)
+        self._products = np.array([c.T @ c for c in map(self._columns, self._blocks)])
+        self._choose(_DELAY_DRIFT if with_delays else self._drift)
+        if not self._drift and (drift := self._needed_drift()):
+            self._choose(drift)
         for name, other in self._selection.inseparable.items():
             self._refused[name] = f'it cannot be told apart from {other}'
 
     def _columns(self, block: Block) -> Array:
+        """Columns of the terms, of the recording's own unknowns, and the error."""
         s = self._samples[block.recording]
         at = s.used[block.rows]
         parts = [term.values(s, at) for term in self._terms]
         return np.column_stack([*parts, s.own_values(at), s.error[at]])
 
-    def _normal_equations(self, folds: Array, *, as_checked: bool = False) -> NormalEquations:
-        drift = range(len(_OWN), len(_OWN) + self._drift)
+    def _choose(self, drift: int) -> None:
+        """Choose among the terms, beside waves of drift."""
+        self._drift = drift
+        self._equations = self._normal_equations(self._folds, drift)
+        # Any output has errors that vary slowly with its angle, and limit where others hold.
+        fixed = int(bool(self._orders) and self._orders[0].is_trend)
+        self._selection = Selection(self._equations, self._terms, fixed)
+
+    def _normal_equations(
+        self, folds: Array, drift: int, *, as_checked: bool = False
+    ) -> NormalEquations:
+        common = sum(term.columns for term in self._terms)
+        fitted = (*self._own, *range(len(_OWN), len(_OWN) + drift))
         predicted = _OWN if as_checked else self._own
         return NormalEquations(
-            self._products, self._blocks, folds, self._common, (*self._own, *drift), predicted,
-            own_of_fold=as_checked,
-        )  # fmt: skip
+            self._products, self._blocks, folds, common, fitted, predicted, own_of_fold=as_checked
+        )
 
-    def _judge_drift(self) -> int:
-        """Fit as much drift of the zeros as improves the prediction."""
-        errors = {}
-        for self._drift in _DRIFTS:
-            equations = self._normal_equations(self._folds)
-            errors[self._drift] = equations.errors(self._selection.columns)
-        best = min(errors.values(), key=lambda error: float(error.mean()))
-        self._drift = next(k for k, error in errors.items() if is_as_good(error, best))
-        return self._drift
+    def _needed_drift(self) -> int:
+        """As much drift of the zeros as improves the prediction."""
+        columns = self._selection.columns
+        equations = (self._normal_equations(self._folds, drift) for drift in _DRIFTS)
+        return _DRIFTS[first_as_good([each.errors(columns) for each in equations])]
 
     def _find_orders(self) -> bool:
         """Add further orders in the residuals; whether there are any."""
-        found = self._spectrum([after for _, after in self._residuals(self._equations)])
+        found = self._spectrum(self._residuals(self._equations, self._selection.columns))
         if found is None:
             return False
         output, count = candidates.output_cycles(self._ratio), len(self._orders)
@@ -233,35 +217,21 @@ class _Fitting:
                 self._orders.append(candidates.order_of(exact, self._ratio, self._mechanism))
         return len(self._orders) > count
 
-    def _spectrum(self, errors: Sequence[Array]) -> Spectrum | None:
+    def _residuals(self, equations: NormalEquations, columns: Sequence[int]) -> Array:
+        """Residuals of all used samples, each predicted without its fold, rad."""
+        return np.concatenate([
+            equations.residuals(k, self._columns(block), columns)
+            for k, block in enumerate(self._blocks)
+        ])  # fmt: skip
+
+    def _by_recording(self, values: Array) -> list[Array]:
+        return np.split(values, np.cumsum([len(s.used) for s in self._samples])[:-1])
+
+    def _spectrum(self, errors: Array) -> Spectrum | None:
         angles = [s.rotor_turns[s.used] for s in self._samples]
-        return spectrum(angles, errors)
+        return spectrum(angles, self._by_recording(errors))
 
     # Results
-
-    def _residuals(self, equations: NormalEquations) -> list[tuple[Array, Array]]:
-        """Errors of the used samples of each recording before and after the correction, rad."""
-        columns = self._selection.columns
-        without = equations.solve_without(columns)
-        residuals: list[tuple[Array, Array]] = [
-            (np.empty(len(s.used)), np.empty(len(s.used))) for s in self._samples
-        ]
-        for number, (block, fold) in enumerate(zip(self._blocks, equations.folds, strict=True)):
-            s = self._samples[block.recording]
-            at = s.used[block.rows]
-            own = s.own_values(at)[:, equations.predicted]
-            before, after = residuals[block.recording]
-            before[block.rows] = s.error[at]
-            before[block.rows] -= own @ equations.predicted_own(number, [], np.zeros(0))
-            after[block.rows] = s.error[at] - self._deviation(s, at, without[fold])
-            after[block.rows] -= own @ equations.predicted_own(number, columns, without[fold])
-        return residuals
-
-    def _deviation(self, s: Samples, at: Array, coefficients: Array) -> Array:
-        """What the chosen terms add up to."""
-        parts = [term.values(s, at) for term in self._selection.chosen]
-        deviation: Array = np.column_stack([np.zeros((len(at), 0)), *parts]) @ coefficients
-        return deviation
 
     def _left_out(self) -> tuple[NormalEquations, Array, Array]:
         """Return equations whose prediction is that of a check, folds and covered of the samples.
@@ -269,46 +239,47 @@ class _Fitting:
         A check is of another part of the gear's life, with a zero and a delay of its own: halves
         of one recording, or each of several. Where those cover different angles, blocks are left.
         """
-        counts = [block.rows.stop - block.rows.start for block in self._blocks]
+        counts = self._equations.counts
         fold = np.repeat(self._by_part, counts)
-        output = np.concatenate([s.output[s.used] + s.first_output for s in self._samples])
+        output = np.concatenate([s.output[s.used] for s in self._samples])
         covered = np.ones(len(fold), bool)
         for left in np.unique(fold):
             known = output[fold != left]
             covered &= (fold != left) | ((known.min() <= output) & (output <= known.max()))
         if np.mean(covered) >= _COVERED:
-            return self._normal_equations(self._by_part, as_checked=True), fold, covered
+            equations = self._normal_equations(self._by_part, self._drift, as_checked=True)
+            return equations, fold, covered
         return self._equations, np.repeat(self._folds, counts), np.ones(len(fold), bool)
 
     def result(self, fitted_ratio: RatioEstimate | None) -> Fit:
         """Everything about the calibration with the selected terms."""
         columns = self._selection.columns
         coefficients = self._equations.solve(columns)
-        without = self._equations.solve_without(columns)
         equations, fold, covered = self._left_out()
-        residuals = self._residuals(equations)
-        before, after = (np.concatenate(parts) for parts in zip(*residuals, strict=True))
-        deviation = np.concatenate(
-            [self._deviation(s, s.used, coefficients) for s in self._samples]
-        )
+        before, after = (self._residuals(equations, chosen) for chosen in ([], columns))
+        deviation = np.concatenate([
+            self._columns(block)[:, columns] @ coefficients[0] for block in self._blocks
+        ])  # fmt: skip
         constant = -float(deviation.mean())
         zeros = [
-            s.offset + float(self._equations.own(k, columns)[0][0]) - constant
+            s.offset + float(self._equations.own(k, columns)[0, 0]) - constant
             for k, s in enumerate(self._samples)
         ]
+        residuals = map(self._by_recording, (before, after))
+        recordings = zip(self._samples, *residuals, zeros, self._delays, strict=True)
         errors = equations.errors(columns)
         half_width = widening(errors) * _half_width(after[covered])
-        terms = tuple(self._fitted_terms(coefficients, without))
+        terms = tuple(self._fitted_terms(coefficients))
         # Beyond the calibrated angles, a trend can be as wrong as it becomes large.
-        trends = sum(t.amplitude.value for t in terms if getattr(t.term, 'is_trend', False))
+        trends = sum(t.amplitude.value for t in terms if t.term.is_trend)
         outside = _half_width(before) + _half_width(deviation + constant) + trends
         inside = [np.abs(after[fold == k]) <= _half_width(after[fold != k]) for k in set(fold)]
-        recordings = zip(self._samples, residuals, zeros, self._delays, strict=True)
+        folds, size = len(coefficients) - 1, len(columns)
         return Fit(
             ratio=self._ratio,
             mechanism=self._mechanism,
             terms=terms,
-            covariance=(len(without) - 1) * np.cov(without.T, ddof=0).reshape(2 * (len(columns),)),
+            covariance=(folds - 1) * np.cov(coefficients[1:].T, ddof=0).reshape(size, size),
             constant=constant,
             half_width=half_width,
             outside_half_width=max(half_width, outside),
@@ -316,21 +287,18 @@ class _Fitting:
             rms_before=float(np.sqrt(np.mean(before**2))),
             rms_after=float(np.sqrt(np.mean(after**2))),
             helps=bool(columns) and not is_as_good(equations.errors([]), errors),
-            recordings=tuple(FittedRecording(s, *r, zero, d) for s, r, zero, d in recordings),
-            spectra=tuple(map(self._spectrum, zip(*residuals, strict=True))),
+            recordings=tuple(FittedRecording(*recording) for recording in recordings),
+            spectra=(self._spectrum(before), self._spectrum(after)),
             refused=self._refused,
             fitted_ratio=fitted_ratio,
         )
 
-    def _fitted_terms(self, coefficients: Array, without: Array) -> Iterator[FittedTerm]:
-        place = 0
-        for term in self._selection.chosen:
-            mine = slice(place, place := place + term.columns)
-            sizes = [
-                term.unit * (math.hypot(*c[mine]) if term.columns > 1 else float(c[mine][0]))
-                for c in (coefficients, *without)
-            ]
-            yield FittedTerm(term, coefficients[mine], jackknife(sizes[0], sizes[1:]))
+    def _fitted_terms(self, coefficients: Array) -> Iterator[FittedTerm]:
+        chosen = self._selection.chosen
+        parts = np.split(coefficients, np.cumsum([term.columns for term in chosen]), axis=1)
+        for term, mine in zip(chosen, parts, strict=False):
+            sizes = np.hypot(*mine.T) if term.columns > 1 else mine[:, 0]
+            yield FittedTerm(term, mine[0], jackknife(term.unit * sizes))
 
 
 def _half_width(residuals: Array) -> float:

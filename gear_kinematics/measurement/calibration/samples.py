@@ -11,29 +11,23 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
 from gear_kinematics.state.correction import MAX_GAP, play_bounds
 
-_MOST = 400_000
-"""Measured angles that are used, of all recordings; more would only take time."""
+Recorded = tuple[Recording, Encoders]
+
+_MOST = 400_000  # measured angles that are used, of all recordings; more would only take time
 _SEED = 13
-MOST_DRIFT = 16
-"""Cosines over the time of a recording, of 1, 2, ... half waves, for the drift of its zero."""
-_MOVING = 0.05
-"""Share of the greatest speed above which the output moves."""
-_STROKES = 3
-"""Strokes that tell a delay from hysteresis."""
-_CHUNK = 4096
-"""Turning points that are followed at a time."""
-_SAME = 1e-9
-"""Share of the radius by which states differ in rounding alone."""
+MOST_DRIFT = 16  # half waves of the drift of a recording's zero over its time
+_MOVING = 0.05  # share of the greatest speed above which the output moves
+_STROKES = 3  # strokes that tell a delay from hysteresis
+_CHUNK = 4096  # turning points that are followed at a time
+_SAME = 1e-9  # share of the radius by which states differ in rounding alone
 
 
-def thinned(
-    recordings: Sequence[tuple[Recording, Encoders]], most: int = _MOST
-) -> list[tuple[Recording, Encoders]]:
+def thinned(recordings: Sequence[Recorded]) -> list[Recorded]:
     """Leave out measured angles if there are very many; the rotor's motion stays as it is.
 
     One of each group of successive ones is chosen, at random: even steps could hide an order.
     """
-    group = max(1, -(-sum(len(encoders.measured) for _, encoders in recordings) // most))
+    group = max(1, -(-sum(len(encoders.measured) for _, encoders in recordings) // _MOST))
     random = np.random.default_rng(_SEED)
     kept = []
     for recording, encoders in recordings:
@@ -56,20 +50,20 @@ class Samples:
         self.speed = encoders.speed(ratio)
         self.torque = encoders.torque(ratio)
         ideal = encoders.ideal(ratio)
-        self.output = encoders.at_measured(ideal)
-        """rad, from the whole turns of the first sample."""
-        self.first_output = TURN * float(encoders.rotor.turns[0]) / float(ratio)
+        first_output = TURN * float(encoders.rotor.turns[0]) / float(ratio)
+        # Outputs of recordings count from different whole turns otherwise.
+        self.output = encoders.at_measured(ideal) + first_output
         self.rotor_turns: Array = self.turns - self.turns[0] + self.angle / TURN
         self.used = np.arange(len(self.error))
         """Indices of the samples at which all stop operators are known."""
         self._points = TurningPoints(encoders, ideal, encoders.starts(MAX_GAP))
         self._stops: dict[float, tuple[Array, Array]] = {}
-        self.tells_delay = encoders.timed and _strokes(self.speed) >= _STROKES
-        """Whether an error in proportion to the speed can be told from one by hysteresis.
-
-        That takes several strokes, as hysteresis depends on their direction and not on the speed,
-        which varies where they begin and end. How well they tell it is up to the uncertainty.
-        """
+        moving = self.speed[np.abs(self.speed) > _MOVING * np.max(np.abs(self.speed))]
+        reversals = int(np.count_nonzero(np.diff(np.sign(moving))))
+        # Hysteresis depends on the direction of strokes, and not on the speed, which varies where
+        # they begin and end.
+        self.tells_delay = encoders.timed and 1 + reversals >= _STROKES
+        """Whether an error in proportion to the speed can be told from one by hysteresis."""
 
     def stop_states(self, radius: float) -> tuple[Array, Array]:
         """States of the stop operator of a radius, rad, and whether they are known."""
@@ -78,22 +72,12 @@ class Samples:
             self._stops[radius] = states.astype(np.float32), known
         return self._stops[radius]
 
-    def use_known(self, radii: Sequence[float]) -> None:
-        """Use the samples at which the states of these stop operators are known."""
-        known = [self.stop_states(radius)[1] for radius in radii]
-        self.used = np.flatnonzero(np.all([np.ones(len(self.error), bool), *known], axis=0))
-
     def own_values(self, at: Array) -> Array:
         """Columns of the recording's own unknowns at some samples: zero, delay, drift."""
         speed = self.speed[at] if self.tells_delay else np.zeros(len(at))
         time = math.pi * self.seconds[at] / self.seconds[-1]
         waves = np.cos(np.multiply.outer(time, np.arange(1, MOST_DRIFT + 1)))
         return np.column_stack([np.ones(len(at)), -speed, waves])
-
-
-def _strokes(speed: Array) -> int:
-    moving = speed[np.abs(speed) > _MOVING * np.max(np.abs(speed))]
-    return 1 + int(np.count_nonzero(np.diff(np.sign(moving))))
 
 
 class TurningPoints:

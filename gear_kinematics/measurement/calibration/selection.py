@@ -7,17 +7,16 @@ sections 3.3.2, 7.10).
 """
 
 from collections.abc import Sequence
+from itertools import islice
 
 import numpy as np
 
-from gear_kinematics.measurement.calibration.normal import NormalEquations, is_as_good
+from gear_kinematics.measurement.calibration.normal import NormalEquations, first_as_good
 from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm, Term
 from gear_kinematics.measurement.recording import Array
 
-_MOST = 30
-"""Terms of a model."""
-_APART = 0.1
-"""Share of an order's columns that the other orders must leave unexplained."""
+_MOST = 30  # terms of a model
+_APART = 0.1  # share of an order's columns that the other orders must leave unexplained
 
 
 class Selection:
@@ -31,15 +30,13 @@ class Selection:
         self.inseparable: dict[str, str] = {}
         """Orders that cannot be told apart from another one that was chosen, with its name."""
         self._equations, self._terms = equations, terms
-        ends = np.cumsum([term.columns for term in terms]).tolist()
-        self._places = [
-            list(range(end - term.columns, end)) for term, end in zip(terms, ends, strict=True)
-        ]
+        places = iter(range(sum(term.columns for term in terms)))
+        self._places = [list(islice(places, term.columns)) for term in terms]
         self._fixed = set(range(fixed))
-        self._chosen = sorted(self._pruned(self._exchanged(self._grown(list(range(fixed))))))
-        self.chosen = [terms[k] for k in self._chosen]
+        chosen = sorted(self._pruned(self._exchanged(self._grown(list(range(fixed))))))
+        self.chosen = [terms[k] for k in chosen]
         """The terms."""
-        self.columns = self._columns(self._chosen)
+        self.columns = self._columns(chosen)
         """Their columns."""
 
     def _columns(self, chosen: Sequence[int]) -> list[int]:
@@ -49,7 +46,12 @@ class Selection:
         return self._equations.errors(self._columns(chosen))
 
     def _score(self, chosen: Sequence[int]) -> float:
-        return float(self._errors(chosen).mean()) if self._is_monotonic(chosen) else np.inf
+        """Mean square of the prediction, infinite if stop operators cancel each other."""
+        columns = self._columns(chosen)
+        stops = [isinstance(self._terms[k], StopTerm) for k in chosen for _ in self._places[k]]
+        if sum(stops) > 1 and np.ptp(np.sign(self._equations.solve(columns)[0, stops])):
+            return np.inf
+        return float(self._equations.errors(columns).mean())
 
     def _grown(self, chosen: list[int]) -> list[int]:
         """Add terms one by one, each the one that improves the prediction most."""
@@ -84,19 +86,8 @@ class Selection:
         while gone := set(path[-1]) - self._fixed:
             smaller = [[k for k in path[-1] if k != left_out] for left_out in gone]
             path.append(min(smaller, key=lambda chosen: float(self._errors(chosen).mean())))
-        errors = [self._errors(chosen) for chosen in path]
-        best = min(errors, key=lambda error: float(error.mean()))
-        smallest = zip(reversed(path), reversed(errors), strict=True)
-        return next(chosen for chosen, error in smallest if is_as_good(error, best))
-
-    def _is_monotonic(self, chosen: Sequence[int]) -> bool:
-        """Whether all stop operators act in the same direction, and do not cancel each other."""
-        columns = self._columns(chosen)
-        stops = [self._places[k][0] for k in chosen if isinstance(self._terms[k], StopTerm)]
-        if len(stops) < 2:  # noqa: PLR2004
-            return True
-        coefficients = self._equations.solve(columns)[[columns.index(stop) for stop in stops]]
-        return bool(np.all(coefficients > 0.0) or np.all(coefficients < 0.0))
+        path.reverse()
+        return path[first_as_good([self._errors(chosen) for chosen in path])]
 
     def _is_inseparable(self, k: int, chosen: Sequence[int]) -> bool:
         """Whether the chosen orders already explain an order."""
@@ -111,7 +102,7 @@ class Selection:
 
     def _unexplained(self, k: int, others: Sequence[int]) -> float:
         """Share of the variance of a term's columns that others leave, at the least."""
-        total, mine, theirs = self._equations.total, self._places[k], self._columns(others)
+        total, mine, theirs = self._equations.products[0], self._places[k], self._columns(others)
         cross = total[np.ix_(theirs, mine)]
         explained = cross.T @ np.linalg.lstsq(total[np.ix_(theirs, theirs)], cross, rcond=1e-10)[0]
         own = total[np.ix_(mine, mine)]

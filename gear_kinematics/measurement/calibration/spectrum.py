@@ -11,19 +11,13 @@ from gear_kinematics.kinematics.gear_ratio import simplest_fraction
 from gear_kinematics.measurement.calibration.terms import CYCLES
 from gear_kinematics.measurement.recording import Array
 
-_HIGHEST = 256.0
-"""Cycles per turn of the rotor that are looked for."""
-_BINS = 4.0
-"""Bins of the rotor's angle in the shortest cycle."""
-_LARGEST = 2**22
-"""Bins in all."""
-_NEAR = 0.25
-"""Share of the resolution within which an order counts as a multiple."""
+_HIGHEST = 256.0  # cycles per turn of the rotor that are looked for
+_BINS = 4.0  # bins of the rotor's angle in the shortest cycle
+_LARGEST = 2**22  # bins in all
+_NEAR = 0.25  # share of the resolution within which an order counts as a multiple
 _LARGEST_DENOMINATOR = 64
-_NEIGHBOURS = 64
-"""Orders whose median is taken as noise."""
-_FALSE = 0.01
-"""Probability that noise looks like an order."""
+_NEIGHBOURS = 64  # orders whose median is taken as noise
+_FALSE = 0.01  # probability that noise looks like an order
 
 
 class Spectrum(NamedTuple):

@@ -16,33 +16,28 @@ from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
 
-_MULTIPLES: Mapping[str, int] = {'output': 4, 'rotor': 4, 'satellite': 2, 'teeth': 2}
-"""Multiples that are tried of each order."""
-_CAUSES: Mapping[str, tuple[str, str]] = {
-    'output': (
-        'eccentricity or runout of the output shaft or of its encoder',
-        'tilt or out-of-roundness of the output shaft, or of its encoder',
-    ),
-    'rotor': (
+_BODIES: Mapping[str, tuple[int, tuple[str, str]]] = {
+    'teeth': (2, ('tooth spacing and tooth form', 'tooth form')),
+    'rotor': (4, (
         'eccentricity or runout of the cams, of the rotor or of its encoder',
         'out-of-roundness or tilt of the rotor or its encoder, or errors within its pole pairs',
-    ),
-    'satellite': (
+    )),
+    'output': (4, (
+        'eccentricity or runout of the output shaft or of its encoder',
+        'tilt or out-of-roundness of the output shaft, or of its encoder',
+    )),
+    'satellite': (2, (
         'eccentricity or runout of a satellite, or an Oldham coupling out of square',
         'out-of-roundness of a satellite, or an Oldham coupling out of square',
-    ),
-    'teeth': ('tooth spacing and tooth form', 'tooth form'),
-}
-"""Likely causes of the first and of the higher multiples."""
+    )),
+}  # fmt: skip
+"""Multiples that are tried, and likely causes of the first and of the higher ones."""
 _TREND = 'not told by so short a travel; known over the calibrated output angles only'
-CYCLES = 2.0
-"""Cycles of an order that a recording must contain."""
+CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
 """Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""
-_KNOWN = 0.8
-"""Share of the samples at which the state of a stop operator must be known."""
-_LARGEST_DENOMINATOR = 2**16
-"""Of an order; a ratio that was fitted may have a longer one."""
+_KNOWN = 0.8  # share of the samples at which the state of a stop operator must be known
+_LARGEST_DENOMINATOR = 2**16  # of an order; a ratio that was fitted may have a longer one
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +51,7 @@ class OrderTerm:
     """The likely one, in words."""
     is_trend: bool = False
     """Whether it is known over the recorded output angles only."""
-    columns = 2
-    unit = 1.0
+    columns, unit, radius = 2, 1.0, None
 
     def values(self, samples: Samples, at: Array) -> Array:
         """Cosine and sine at some samples, (at, 2); exact after many turns."""
@@ -69,11 +63,10 @@ class OrderTerm:
 
 @dataclass(frozen=True, slots=True)
 class StopTerm:
-    """The state of a stop operator, rad."""
+    """The state of a stop operator of a radius, rad."""
 
     radius: float
-    """rad."""
-    columns = 1
+    columns, cycles, is_trend = 1, None, False
     cause = 'play, or friction that winds up the gear'
 
     @property
@@ -99,7 +92,7 @@ class TorqueTerm:
     unit: float
     """N·m: the standard deviation of the torque."""
     name = 'wind-up'
-    columns = 1
+    columns, cycles, radius, is_trend = 1, None, None, False
     cause = 'torsional compliance under the torque'
 
     def values(self, samples: Samples, at: Array) -> Array:
@@ -128,11 +121,15 @@ def _bodies(ratio: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]
     return bodies
 
 
+def _order(body: str, multiple: int, unit: Fraction) -> OrderTerm:
+    return OrderTerm(f'{body} × {multiple}', multiple * unit, _BODIES[body][1][multiple > 1])
+
+
 def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> OrderTerm:
     """Name an order."""
     for body, unit in _bodies(ratio, mechanism).items():
         if (multiple := cycles / unit).denominator == 1:
-            return OrderTerm(f'{body} × {multiple}', cycles, _CAUSES[body][multiple > 1])
+            return _order(body, int(multiple), unit)
     return OrderTerm(f'rotor × {cycles}', cycles, 'another shaft, or a bearing')
 
 
@@ -148,22 +145,21 @@ def known_orders(
     they would be used where they are not known.
     """
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
-    output = output_cycles(ratio)
     found: dict[Fraction, OrderTerm] = {}
     for body, unit in _bodies(ratio, mechanism).items():
-        for multiple in range(1, _MULTIPLES[body] + 1):
-            name, cycles = f'{body} × {multiple}', multiple * unit
-            if travel * float(cycles) >= CYCLES:
-                found.setdefault(cycles, OrderTerm(name, cycles, _CAUSES[body][multiple > 1]))
+        for multiple in range(1, _BODIES[body][0] + 1):
+            order = _order(body, multiple, unit)
+            held = travel * float(order.cycles)
+            if held >= CYCLES:
+                found.setdefault(order.cycles, order)
                 continue
-            refused[name] = (
-                f'the longest travel holds {travel * float(cycles):.2g} cycles, less than 2'
-            )
+            refused[order.name] = f'the longest travel holds {held:.2g} cycles, less than 2'
             # Higher multiples do not differ from the first over a part of its cycle, and a whole
             # number of cycles in a turn of the rotor is not tied to the output's angle.
-            few = body == 'output' and multiple <= 1.0 + travel * float(output)
-            if few and cycles.denominator > 1:
-                found[cycles] = OrderTerm(f'trend × {multiple}', cycles, _TREND, is_trend=True)
+            few = body == 'output' and multiple <= 1.0 + travel * float(unit)
+            if few and order.cycles.denominator > 1:
+                trend = OrderTerm(f'trend × {multiple}', order.cycles, _TREND, is_trend=True)
+                found[order.cycles] = trend
     return sorted(found.values(), key=lambda term: not term.is_trend)
 
 
@@ -196,5 +192,6 @@ def stops(samples: Sequence[Samples], refused: dict[str, str]) -> list[StopTerm]
         else:
             refused[term.name] = f'its state is known at {100 * known.mean():.0f} % of the samples'
     for s in samples:
-        s.use_known([term.radius for term in kept])
+        all_known = [s.stop_states(term.radius)[1] for term in kept]
+        s.used = np.flatnonzero(np.all([np.ones(len(s.error), bool), *all_known], axis=0))
     return kept
