@@ -18,6 +18,7 @@ def bag_with(joint_states: str, pose_arrays: str = '') -> SimpleNamespace:
     return SimpleNamespace(
         path=Path('some.mcap'),
         topics=kinds | {'/rosout': 'rcl/msg/Log'},
+        named={},
         messages=lambda _: iter(()),
     )
 
