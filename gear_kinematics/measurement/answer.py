@@ -91,8 +91,8 @@ def _remarks(report: LostMotion) -> Iterator[str]:
                 'angle, as behind a filter or from another clock.'
             )
     if both := recording.encoders:
-        ratio = float(1 / report.gear_ratio)
-        yield _step(both.rotor_step.scaled(ratio), 'the rotor encoder (at the output)')
+        rotor_step = both.rotor_step_at_output(report.gear_ratio)
+        yield _step(rotor_step, 'the rotor encoder (at the output)')
         yield _step(both.output_step, 'the output encoder')
         yield from _delay(report, timed=both.timed)
         for cause, count in both.unmatched.items():

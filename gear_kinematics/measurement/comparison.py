@@ -7,6 +7,9 @@ from typing import Any
 
 from gear_kinematics.report.document import Section
 
+HYSTERESIS = 'hysteresis'
+"""The figure that is judged first, by its name."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Comparison:

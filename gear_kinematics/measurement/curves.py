@@ -1,7 +1,7 @@
 """The panels of a report on lost motion, in arc minutes."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -16,8 +16,6 @@ from gear_kinematics.report.document import Array, Line, Panel, Pen, number
 _MOST = 2000  # points of a line
 _TOGETHER = 1.1
 """Greatest ratio of orders that share a mark."""
-_DECADES = 4
-"""Decades of a spectrum below its greatest amplitude."""
 _WAYS: tuple[tuple[int, str, Pen], ...] = (
     (0, 'turning back', Pen.FAINT),
     (1, 'forward', Pen.FIRST),
@@ -76,34 +74,46 @@ def _transmission(found: TransmissionFigures) -> Iterator[Panel]:
         tuple(lines),
     )
     spectra = [
-        Line(name, pen, *peaks(spectrum.orders[1:], spectrum.amplitude[1:] * ARC_MINUTES))
+        (name, pen, spectrum.orders[1:], spectrum.amplitude[1:])
         for spectrum, (_, name, pen) in zip(found.spectra, _WAYS[1:], strict=True)
         if spectrum
     ]
-    if spectra:
-        highest = max(float(line.x[-1]) for line in spectra)
+    highest = max((cycles[-1] for _, _, cycles, _ in spectra), default=0.0)
+    orders = [(float(o.cycles), o.name) for o in found.orders if float(o.cycles) <= highest]
+    yield from spectrum_panel('output', spectra, orders, decades=4)
+
+
+def spectrum_panel(
+    body: str,
+    spectra: Sequence[tuple[str, Pen, Array, Array]],
+    orders: Iterable[tuple[float, str]],
+    decades: int,
+) -> Iterator[Panel]:
+    """Draw spectra, if there are any, and mark orders.
+
+    Args:
+        body: in whose turn cycles are counted.
+        spectra: name, pen, cycles and amplitudes, rad, of each.
+        orders: cycles and name of each.
+        decades: to show below the greatest amplitude.
+    """
+    lines = [Line(name, pen, *_peaks(x, y * ARC_MINUTES)) for name, pen, x, y in spectra]
+    if lines:
         yield Panel(
             'spectrum',
-            'order: cycles in a turn of the output',
+            f'order: cycles in a turn of the {body}',
             'amplitude [arcmin]',
-            tuple(spectra),
-            marks=tuple(marks(((float(o.cycles), o.name) for o in found.orders), highest)),
+            tuple(lines),
+            marks=tuple(_marks(orders)),
             scale='log',
-            low=max(float(np.max(line.y)) for line in spectra) / 10.0**_DECADES,
+            low=max(float(np.max(line.y)) for line in lines) / 10.0**decades,
         )
 
 
-def marks(
-    orders: Iterable[tuple[float, str]], highest: float = math.inf
-) -> list[tuple[float, str]]:
-    """Return marks for orders, each with its name; neighbouring ones share a mark.
-
-    Args:
-        orders: on the x axis of a spectrum.
-        highest: the highest order to mark.
-    """
+def _marks(orders: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:
+    """Marks of orders, each with its name; neighbouring ones share a mark."""
     groups: list[list[tuple[float, str]]] = []
-    for order in sorted(order for order in orders if order[0] <= highest):
+    for order in sorted(orders):
         if groups and order[0] <= _TOGETHER * groups[-1][0][0]:
             groups[-1].append(order)
         else:
@@ -122,7 +132,7 @@ def envelope(x: Array, y: Array) -> tuple[Array, Array]:
     return np.repeat(x[starts], 2), bounds.ravel()
 
 
-def peaks(x: Array, y: Array) -> tuple[Array, Array]:
+def _peaks(x: Array, y: Array) -> tuple[Array, Array]:
     """Reduce points that are too dense for a logarithmic axis to their maxima."""
     starts = np.unique(np.geomspace(1, len(x), _MOST).astype(np.intp) - 1)
     return x[starts], np.maximum.reduceat(y, starts)

@@ -92,7 +92,7 @@ def _recording(report: LostMotion, limits: Limits) -> Mapping[str, Any]:
         'encoders': both
         and {
             'delay_unit': 's' if both.timed else 'rows',
-            'rotor_step': both.rotor_step.scaled(float(1 / report.gear_ratio)).size,
+            'rotor_step': both.rotor_step_at_output(report.gear_ratio).size,
             'rotor_step_source': both.rotor_step.source,
             'output_step': both.output_step.size,
             'output_step_source': both.output_step.source,

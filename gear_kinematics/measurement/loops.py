@@ -22,8 +22,8 @@ _NEAR = 3.0
 """Standard deviations of the noise within which two torques count as equal."""
 _SMOOTHED = 0.01
 """Share of a ramp's amplitude to which a moving mean reduces the noise."""
-_ALIKE = 1.5
-"""Ratio up to which peaks count as of one amplitude."""
+ALIKE = 1.5
+"""Ratio up to which ramps count as of one amplitude, in a recording and among several."""
 _ROUNDING = 1e-9
 """Relative differences of torques that are rounding errors, as where a torque stands still."""
 _COMPLETE = 0.9
@@ -155,7 +155,7 @@ def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[
         raise RampError('no torque ramp that goes to one side, to the other and back to zero')
     groups: list[list[Loop]] = []
     for loop in sorted(loops, key=lambda loop: loop.amplitude):
-        if groups and loop.amplitude <= _ALIKE * groups[-1][0].amplitude:
+        if groups and loop.amplitude <= ALIKE * groups[-1][0].amplitude:
             groups[-1].append(loop)
         else:
             groups.append([loop])
@@ -163,7 +163,7 @@ def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[
 
 
 def _ramps(group: Sequence[Loop], loops: Sequence[Loop], halves: Sequence[HalfLoop]) -> Ramps:
-    low, high = group[0].amplitude / _ALIKE, group[-1].amplitude * _ALIKE
+    low, high = group[0].amplitude / ALIKE, group[-1].amplitude * ALIKE
     alike = [half for half in halves if low <= abs(half.end) <= high]
     rises, falls = ([half for half in alike if half.rising == up] for up in (True, False))
     return Ramps(

@@ -124,6 +124,14 @@ class Encoders:
         output: Array = self.rotor.turned * (ratio.denominator / ratio.numerator)
         return output
 
+    def rotor_step_at_output(self, ratio: Fraction) -> Step:
+        """The step of the rotor's encoder, rad of the output."""
+        return self.rotor_step.scaled(float(1 / ratio))
+
+    def error_step(self, ratio: Fraction) -> Step:
+        """The step of the error, rad."""
+        return self.rotor_step_at_output(ratio).joined(self.output_step)
+
     def error(self, ratio: Fraction) -> Array:
         """Measured minus ideal output angle, rad, without jumps; its zero is arbitrary."""
         error = self.measured - self.at_measured(self.ideal(ratio))
@@ -225,9 +233,9 @@ class Recording:
         known = np.isfinite(torque)
         if not known.any():
             return None
-        step = both.rotor_step.scaled(float(1 / ratio)).joined(both.output_step)
         time = both.seconds[known] if both.timed else None
-        return Loading(torque[known], -both.error(ratio)[known], step, measured=True, time=time)
+        step, twist = both.error_step(ratio), -both.error(ratio)[known]
+        return Loading(torque[known], twist, step, measured=True, time=time)
 
     @cached_property
     def sha256(self) -> str:

@@ -1,7 +1,7 @@
 """Measures one recording, or many in processes of this machine or on a Dask cluster."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +26,8 @@ class Task:
     """In the report."""
     parameters: Mapping[str, Any]
     """Parameters of the node, as `parameters.load` returns them."""
-    request: Request = field(default_factory=Request)
-    columns: Columns = field(default_factory=Columns)
+    request: Request
+    columns: Columns
     rotor_topic: str | None = None
     """Of a bag, as `encoder_topic`; None finds it by type and name."""
     encoder_topic: str | None = None

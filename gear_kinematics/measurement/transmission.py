@@ -144,20 +144,26 @@ class _Motion:
         return [run for run in runs if run.turns >= _LONG * longest]
 
 
-def marked_orders(gear: Gear) -> dict[str, Fraction]:
-    """The orders to look for, by name, in cycles per turn of the output.
+def bodies(output: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
+    """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
 
-    In a turn of the output, the rotor turns abs(i) times. In a mechanism, the cam turns
-    abs(i) + 1 times against the satellite, as do its mesh and the Oldham coupling, and teeth mesh
-    zk times per turn of the rotor.
+    In a turn of the rotor, the output turns 1/abs(i) times, which is `output`. In a mechanism, the
+    cam turns 1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and
+    teeth mesh zk times.
     """
+    cycles = {'rotor': Fraction(1), 'output': output}
+    if mechanism:
+        cycles = {'teeth': Fraction(mechanism.ring_teeth), **cycles, 'satellite': 1 + output}
+    return cycles
+
+
+def marked_orders(gear: Gear) -> dict[str, Fraction]:
+    """The orders to look for, by name, in cycles per turn of the output."""
     rotor = abs(gear.gear_ratio)
-    base = {'output': Fraction(1), 'rotor': rotor}
-    if isinstance(gear, Mechanism):
-        base |= {'satellite': rotor + 1, 'teeth': gear.ring_teeth * rotor}
+    cycles = bodies(1 / rotor, gear if isinstance(gear, Mechanism) else None)
     return {
-        f'{name} × {multiple}': multiple * cycles
-        for name, cycles in base.items()
+        f'{body} × {multiple}': multiple * rotor * cycles[body]
+        for body in sorted(cycles)
         for multiple in (1, 2)
     }
 
@@ -174,8 +180,7 @@ def transmission_figures(
         delay: s or rows by which the output's stamps are late; None estimates it, and takes out
             what is more than its uncertainty.
     """
-    step = encoders.rotor_step.scaled(float(1 / gear.gear_ratio)).joined(encoders.output_step)
-    reading = Component(resolution(step.size))
+    reading = Component(resolution(encoders.error_step(gear.gear_ratio).size))
     both = Component(math.sqrt(2.0) * reading.standard)
     motion = _Motion(encoders, gear, travel)
     found = _reversals(motion, both, delay)

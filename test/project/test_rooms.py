@@ -152,9 +152,9 @@ ROOMS = {
 }
 """Each room of the package and the rooms it imports, all of which stand before it."""
 MEASUREMENT = {
-    'preload': ('comparison', 'encoder_step', 'lost_motion', 'wording'),
+    'preload': ('comparison', 'encoder_step', 'loops', 'lost_motion', 'wording'),
     'compare': ('comparison', 'figures', 'loops', 'lost_motion', 'wording'),
-    'calibration': ('clock', 'curves', 'ratio', 'recording', 'wording'),
+    'calibration': ('clock', 'curves', 'ratio', 'recording', 'transmission', 'wording'),
 }
 """Rooms within `measurement`, and what of its modules they import."""
 TENANTS = {

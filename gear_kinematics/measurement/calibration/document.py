@@ -8,7 +8,7 @@ import numpy as np
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.result import Fit
 from gear_kinematics.measurement.calibration.terms import output_cycles
-from gear_kinematics.measurement.curves import envelope, marks, peaks
+from gear_kinematics.measurement.curves import envelope, spectrum_panel
 from gear_kinematics.measurement.ratio import ratio_remarks
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.wording import (
@@ -36,7 +36,6 @@ from gear_kinematics.report.document import (
 from gear_kinematics.state.uncertainty import COVERAGE
 
 _MILLI = 1e3
-_DECADES = 3  # decades of a spectrum below its greatest amplitude
 _PENS = {'before': Pen.FAINT, 'after': Pen.FIRST}
 
 
@@ -184,23 +183,13 @@ def _panels(fit: Fit) -> Iterator[Panel]:
     angle = [s.output[s.used] for s in samples]
     errors = [r.before for r in fit.recordings], [r.after for r in fit.recordings]
     yield from _error_panels(fit.half_width, time, angle, *errors, timed=fit.timed)
-    lines = []
+    spectra = []
     for spectrum, (name, pen) in zip(fit.spectra, _PENS.items(), strict=True):
         if spectrum:
             shown = spectrum.cycles >= spectrum.resolution
-            curve = peaks(spectrum.cycles[shown], spectrum.amplitude[shown] * ARC_MINUTES)
-            lines.append(Line(name, pen, *curve))
-    if lines:
-        orders = [(float(f.term.cycles), f.term.name) for f in fit.terms if f.term.cycles]
-        yield Panel(
-            'spectrum',
-            'order: cycles in a turn of the rotor',
-            'amplitude [arcmin]',
-            tuple(lines),
-            marks=tuple(marks(orders)),
-            scale='log',
-            low=max(float(line.y.max()) for line in lines) / 10.0**_DECADES,
-        )
+            spectra.append((name, pen, spectrum.cycles[shown], spectrum.amplitude[shown]))
+    orders = [(float(f.term.cycles), f.term.name) for f in fit.terms if f.term.cycles]
+    yield from spectrum_panel('rotor', spectra, orders, decades=3)
 
 
 def _error_panels(half_width: float, *columns: Sequence[Array], timed: bool) -> Iterator[Panel]:

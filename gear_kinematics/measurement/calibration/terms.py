@@ -13,6 +13,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.calibration.samples import Samples
 from gear_kinematics.measurement.recording import Array
+from gear_kinematics.measurement.transmission import bodies
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
 
@@ -108,26 +109,13 @@ def output_cycles(ratio: Fraction) -> Fraction:
     return (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
 
 
-def _bodies(ratio: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
-    """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
-
-    In a turn of the rotor, the output turns 1/|i| times; the cam turns 1 + 1/|i| times against
-    the satellite. Teeth mesh zk times.
-    """
-    output = output_cycles(ratio)
-    bodies = {'rotor': Fraction(1), 'output': output}
-    if mechanism:
-        bodies = {'teeth': Fraction(mechanism.ring_teeth), **bodies, 'satellite': 1 + output}
-    return bodies
-
-
 def _order(body: str, multiple: int, unit: Fraction) -> OrderTerm:
     return OrderTerm(f'{body} × {multiple}', multiple * unit, _BODIES[body][1][multiple > 1])
 
 
 def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> OrderTerm:
     """Name an order."""
-    for body, unit in _bodies(ratio, mechanism).items():
+    for body, unit in bodies(output_cycles(ratio), mechanism).items():
         if (multiple := cycles / unit).denominator == 1:
             return _order(body, int(multiple), unit)
     return OrderTerm(f'rotor × {cycles}', cycles, 'another shaft, or a bearing')
@@ -146,7 +134,7 @@ def known_orders(
     """
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
     found: dict[Fraction, OrderTerm] = {}
-    for body, unit in _bodies(ratio, mechanism).items():
+    for body, unit in bodies(output_cycles(ratio), mechanism).items():
         for multiple in range(1, _BODIES[body][0] + 1):
             order = _order(body, multiple, unit)
             held = travel * float(order.cycles)

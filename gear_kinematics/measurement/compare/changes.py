@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gear_kinematics.measurement.compare.groups import Group
-from gear_kinematics.measurement.compare.quantities import HYSTERESIS, Quantity
+from gear_kinematics.measurement.compare.quantities import Quantity
+from gear_kinematics.measurement.comparison import HYSTERESIS
 from gear_kinematics.measurement.loops import Array
 from gear_kinematics.state.uncertainty import COVERAGE, Component, Estimate, combined
 

@@ -7,16 +7,14 @@ from functools import partial
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from gear_kinematics.measurement.comparison import HYSTERESIS
 from gear_kinematics.measurement.figures import Figures, settings_for
-from gear_kinematics.measurement.loops import Ramps
+from gear_kinematics.measurement.loops import ALIKE, Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import Cell, number
 from gear_kinematics.state.uncertainty import Estimate
 
-HYSTERESIS = 'hysteresis'
-_ALIKE = 1.5
-"""Ratio up to which amplitudes are alike, as among the peaks of a recording."""
 _RATES = 1.25
 """Ratio of rates that is named: by creep of 10 % in a decade of time, the most of the simulated
 gears, angles then differ by 1 %."""
@@ -92,7 +90,7 @@ def in_common(reports: Sequence[LostMotion]) -> Common:
     tops = (min(own.settings.rated_torque, own.largest.amplitude) for own in known)
     reach = min(tops, default=0.0)
     # For hysteresis and friction: of about one amplitude. For lost motion and stiffness: loaded.
-    small = tuple(_first(report, least / _ALIKE, least * _ALIKE) for report in reports)
+    small = tuple(_first(report, least / ALIKE, least * ALIKE) for report in reports)
     loaded = tuple(_first(report, _REACHED * reach, math.inf) for report in reports)
     remarks = []
     if lacking := [r.name for r, c in zip(reports, small, strict=True) if r.figures and not c]:

@@ -8,9 +8,9 @@ from typing import Any
 from gear_kinematics.measurement.compare import panels
 from gear_kinematics.measurement.compare.changes import SIGNIFICANCE, Change, changes_of, judged
 from gear_kinematics.measurement.compare.groups import Group, by_label, single
-from gear_kinematics.measurement.compare.quantities import HYSTERESIS, Common, in_common
+from gear_kinematics.measurement.compare.quantities import Common, in_common
 from gear_kinematics.measurement.compare.trend import FEWEST, trend
-from gear_kinematics.measurement.comparison import Comparison
+from gear_kinematics.measurement.comparison import HYSTERESIS, Comparison
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT
 from gear_kinematics.report.document import Cell, Section, Table, Tone, number, printable

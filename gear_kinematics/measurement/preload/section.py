@@ -5,7 +5,8 @@ from dataclasses import asdict
 
 import numpy as np
 
-from gear_kinematics.measurement.comparison import Comparison
+from gear_kinematics.measurement.comparison import HYSTERESIS, Comparison
+from gear_kinematics.measurement.loops import ALIKE
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.preload.advice import FEWEST, Advice, Reading, advise
 from gear_kinematics.measurement.preload.file import Span
@@ -22,10 +23,6 @@ from gear_kinematics.report.document import (
     printable,
 )
 
-_HYSTERESIS = 'hysteresis'
-_ALIKE = 1.5
-"""Ratio up to which the amplitudes of the small ramps may differ: hysteresis depends on them."""
-
 
 def over_preload(
     reports: Sequence[LostMotion], settings: Sequence[float], scale: Scale, load: float | None
@@ -39,7 +36,7 @@ def over_preload(
     """
     known = [report.figures for report in reports if report.figures]
     amplitude = max((figures.smallest.amplitude for figures in known), default=0.0)
-    for name in (_HYSTERESIS, 'lost motion without friction'):
+    for name in (HYSTERESIS, 'lost motion without friction'):
         found = [
             (report.name, reading)
             for report, setting in zip(reports, settings, strict=True)
@@ -87,13 +84,13 @@ def _reading(report: LostMotion, setting: float, amplitude: float, name: str) ->
     if not report.figures:
         return None
     small = min(report.figures.by_amplitude, key=lambda own: abs(own.amplitude - amplitude))
-    alike = 1.0 / _ALIKE <= small.amplitude / amplitude <= _ALIKE
-    angle = small.hysteresis if name == _HYSTERESIS else small.frictionless
+    alike = 1.0 / ALIKE <= small.amplitude / amplitude <= ALIKE
+    angle = small.hysteresis if name == HYSTERESIS else small.frictionless
     # A torque that is later than the angle makes the hysteresis negative.
     if not (alike and small.friction and angle and angle.value > 0.0):
         return None
     friction = small.friction.value
-    load = friction if name == _HYSTERESIS else report.figures.settings.small_load
+    load = friction if name == HYSTERESIS else report.figures.settings.small_load
     # With play, one branch alone carries the load in all but the lowest range.
     ranges = [s for s in report.figures.largest.stiffness if s.low > 0.0]
     sides = [(1.0 / s.positive.value, 1.0 / s.negative.value) for s in ranges[-1:]]
