@@ -37,7 +37,7 @@ setup(
     package_data={
         PACKAGE: ['py.typed'],
         f'{PACKAGE}.report': ['*.css', '*.js'],
-        f'{PACKAGE}.ros.watch': ['*.css', '*.js'],
+        f'{PACKAGE}.watch': ['*.css', '*.js'],
     },
     data_files=[
         *ON_PATH,

@@ -19,8 +19,8 @@ from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from validation import compare, repeated
 
 from gear_kinematics.bag import Bag, BagWriter, in_batches
-from gear_kinematics.state import parameters
-from gear_kinematics.state.compute import compute
+from gear_kinematics.bag.compute import compute
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _ROTOR = '/rotor_state'

@@ -36,7 +36,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.motion import closed_form
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 
 Array = NDArray[np.float64]
 

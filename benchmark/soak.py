@@ -33,7 +33,7 @@ from rotor_driver import counted_number, counted_stamp
 from state_listener import Listener, receive_answers
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 
 TOPICS: Mapping[str, type[ExpectedMessages]] = {
     'output_state': ExpectedOutputState,

@@ -27,9 +27,9 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
 from gear_kinematics.bag import Bag, BagWriter, Message, in_batches
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters.share import share_directory
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state import parameters
-from gear_kinematics.state.share import share_directory
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.wire.topics import RECORDED_TOPICS

@@ -9,7 +9,7 @@ from pathlib import Path
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
 from gear_kinematics.measurement.reading import read_encoders
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 
 first, second, ratio = Path(sys.argv[1]), Path(sys.argv[2]), GearRatio.parse(sys.argv[3])
 config = {**parameters.defaults(), 'gear_ratio': str(ratio)}

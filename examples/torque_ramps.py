@@ -6,7 +6,7 @@ from pathlib import Path
 from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.measurement.lost_motion import Request, measure
 from gear_kinematics.measurement.reading import read
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 
 config = parameters.load(parameters.default_config())
 ramps = Path(__file__).parents[1] / 'docs/examples/ramps.csv'

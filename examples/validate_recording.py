@@ -6,7 +6,7 @@ python validate_recording.py [BAG [PARAMETERS]]
 import sys
 from pathlib import Path
 
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 

@@ -7,8 +7,8 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
+from gear_kinematics.parameters.node_parameters import NODE
 from gear_kinematics.ros.launch_arguments import node_arguments
-from gear_kinematics.state.parameters import NODE
 
 
 def start_node(context: LaunchContext) -> list[Node]:

@@ -9,9 +9,9 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.launch_arguments import node_arguments
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state.meshes import folder_uri
 
 
 def start_viewers(context: LaunchContext) -> list[Node]:

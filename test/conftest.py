@@ -38,7 +38,7 @@ import hypothesis  # noqa: E402
 import pytest  # noqa: E402
 
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
-from gear_kinematics.state import parameters  # noqa: E402
+from gear_kinematics.parameters import node_parameters as parameters  # noqa: E402
 
 pytest_plugins = ['hanging']
 
@@ -115,6 +115,18 @@ def figures(monkeypatch) -> list:
 
     monkeypatch.setattr(module, 'Figure', Kept)
     return made
+
+
+@pytest.fixture(scope='module')
+def context():
+    """Give a context of rclpy for nodes in the process of the test."""
+    rclpy = pytest.importorskip('rclpy', reason='rclpy is not installed')
+    from rclpy.signals import SignalHandlerOptions  # noqa: PLC0415, only where rclpy is
+
+    context = rclpy.Context()
+    rclpy.init(context=context, signal_handler_options=SignalHandlerOptions.NO)
+    yield context
+    rclpy.shutdown(context=context)
 
 
 @pytest.fixture(scope='module')

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics import plotting
+from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import progress, warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.trajectory import Trajectory
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _BOUNDS = {'width': (100, 1920), 'fps': (1, 50)}

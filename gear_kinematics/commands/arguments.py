@@ -12,7 +12,7 @@ from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import ANGLE_UNITS, Columns
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.wire.nearest import among
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag import fleet
+from gear_kinematics.bag.trajectory import Trajectory, read_trajectory
 from gear_kinematics.commands.arguments import positive
 from gear_kinematics.commands.output import message_progress, progress
-from gear_kinematics.state.trajectory import Trajectory, read_trajectory
 
 
 def add_rotor(parser: argparse._ActionsContainer, *, configured: bool = True) -> None:

@@ -7,12 +7,12 @@ from typing import Any
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress, write
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
 from gear_kinematics.measurement.calibration.document import check_document, document
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
-from gear_kinematics.state.calibration_file import Calibration
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.commands import arguments
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import gear_from_mapping
-from gear_kinematics.state.calibration_file import Calibration
 
 BESIDE = 'calibration.yaml'
 """Name of the file beside a bag."""

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics.bag import Bag, TopicError
+from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import Topics, find_rotor_topic
 from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import complain, message_progress
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.report.document import printable
-from gear_kinematics.state import parameters
-from gear_kinematics.state.compute import ComputeResult, compute
 from gear_kinematics.wire.nearest import listed
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.parameters.new_config import new_config, start_command, write_new
+from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report.document import printable
-from gear_kinematics.state.new_config import new_config, start_command, write_new
-from gear_kinematics.state.parameters import default_config
 from gear_kinematics.wire.nearest import nearest
 
 if TYPE_CHECKING:
-    from gear_kinematics.ros.watch.drivers import Driver
+    from gear_kinematics.watch.drivers import Driver
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -46,8 +46,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         raise ValueError(f'{path}: exists already; give another name with -o')
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.ros.watch.drivers import listen  # noqa: PLC0415
-    from gear_kinematics.ros.watch.text import list_drivers  # noqa: PLC0415
+    from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
+    from gear_kinematics.watch.text import list_drivers  # noqa: PLC0415
 
     drivers = listen(options.wait)
     if not drivers:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics import plotting
+from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory
 from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.commands.paper_size import add_paper, paper
@@ -19,7 +20,6 @@ from gear_kinematics.kinematics import (
     split_turns,
 )
 from gear_kinematics.report.image import format_of
-from gear_kinematics.state.trajectory import MOST_TURNS, Trajectory
 
 Config = Mapping[str, Any]
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 from gear_kinematics.bag.finding import is_recording
+from gear_kinematics.correction.calibration_file import is_calibration
 from gear_kinematics.report.mark import is_report
-from gear_kinematics.state.calibration_file import is_calibration
 
 _INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check', 'measured')
 """Options and arguments that name files to read."""

@@ -7,9 +7,9 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import meshes
 from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state import meshes
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,7 +12,7 @@ from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
 
 if TYPE_CHECKING:
-    from gear_kinematics.ros.watch.watcher import Watcher
+    from gear_kinematics.watch.watcher import Watcher
 
 _MAX_PORT = 65535
 
@@ -47,7 +47,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
-    from gear_kinematics.ros.watch.watcher import Watcher  # noqa: PLC0415
+    from gear_kinematics.watch.watcher import Watcher  # noqa: PLC0415
 
     show = _show_text if options.text else _serve(options.port)
     console = Console()
@@ -74,15 +74,15 @@ _Show = Callable[['Watcher', Console, Callable[[], bool]], None]
 
 
 def _show_text(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
-    from gear_kinematics.ros.watch.text import show  # noqa: PLC0415
+    from gear_kinematics.watch.text import show  # noqa: PLC0415
 
     show(watcher, console, stopped)
 
 
 def _serve(port: int) -> _Show:
     """Return the function that serves the page, after a look whether it can."""
-    from gear_kinematics.ros.watch.server import Server  # noqa: PLC0415, an extra
-    from gear_kinematics.ros.watch.text import wait_and_list  # noqa: PLC0415
+    from gear_kinematics.watch.server import Server  # noqa: PLC0415, an extra
+    from gear_kinematics.watch.text import wait_and_list  # noqa: PLC0415
 
     def serve(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
         server = Server(watcher, port)

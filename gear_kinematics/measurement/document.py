@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
+from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.measurement.answer import answer, remarks
 from gear_kinematics.measurement.comparison import Comparison
 from gear_kinematics.measurement.curves import panels
@@ -22,7 +23,6 @@ from gear_kinematics.report.document import (
     Verdict,
     printable,
 )
-from gear_kinematics.state.uncertainty import COVERAGE, Estimate
 
 SCHEMA = 'gear_kinematics/lost_motion'
 VERSION = 2

@@ -7,6 +7,15 @@ from itertools import pairwise
 
 import numpy as np
 
+from gear_kinematics.correction.uncertainty import (
+    Component,
+    Estimate,
+    by_steps,
+    common_part,
+    hidden_resolution,
+    resolution,
+    slope_resolution,
+)
 from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.measurement.middle_line import (
     MOST_FRICTION,
@@ -16,15 +25,6 @@ from gear_kinematics.measurement.middle_line import (
     middle_lines,
     reconciled,
     stiffness_of,
-)
-from gear_kinematics.state.uncertainty import (
-    Component,
-    Estimate,
-    by_steps,
-    common_part,
-    hidden_resolution,
-    resolution,
-    slope_resolution,
 )
 
 LOST_MOTION_SHARE = 0.03

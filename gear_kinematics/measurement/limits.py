@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import number
-from gear_kinematics.state.uncertainty import Estimate
 
 
 class Judgement(NamedTuple):

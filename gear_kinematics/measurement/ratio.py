@@ -9,11 +9,11 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.correction.uncertainty import Estimate, student_t
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
 from gear_kinematics.report.document import number
-from gear_kinematics.state.uncertainty import Estimate, student_t
 
 Array = NDArray[np.float64]
 

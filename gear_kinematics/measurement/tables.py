@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, Figures, GearFigures, Stiffness
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import Backlash
@@ -16,7 +17,6 @@ from gear_kinematics.measurement.wording import (
     rounded,
 )
 from gear_kinematics.report.document import Cell, Layout, Table, Tone, counted, number, printable
-from gear_kinematics.state.uncertainty import Estimate
 
 _FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from')
 _WORDS = ('', 'from')

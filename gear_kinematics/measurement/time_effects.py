@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy import stats
 
+from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.wording import arc_minutes
 from gear_kinematics.report.document import number
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 _FEWEST = 4
 """Loops, or reversals, in which an effect can be told from scatter."""

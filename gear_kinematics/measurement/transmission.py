@@ -13,12 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.correction.reversals import Pair, Reversals, separate
+from gear_kinematics.correction.transmission_error import Direction
+from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders
-from gear_kinematics.state.reversals import Pair, Reversals, separate
-from gear_kinematics.state.transmission_error import Direction
-from gear_kinematics.state.uncertainty import Component, Estimate, resolution
 
 Array = NDArray[np.float64]
 

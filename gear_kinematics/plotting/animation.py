@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
@@ -18,7 +19,6 @@ from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, styled
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.outlines import NAMES
-from gear_kinematics.state.trajectory import Trajectory
 
 _WIDTH = 4.0  # inches for any number of pixels, so that lines and text scale with them
 _HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size

@@ -7,15 +7,15 @@ from typing import Any
 
 import numpy as np
 
+from gear_kinematics.bag.trajectory import Trajectory
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Correction
+from gear_kinematics.correction.uncertainty import COVERAGE
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.image import FAINT, INK, SERIES, Paper, add_legend, render
 from gear_kinematics.shape import outlines
 from gear_kinematics.shape.outlines import Array
-from gear_kinematics.state.calibration_file import Calibration
-from gear_kinematics.state.correction import Correction
-from gear_kinematics.state.trajectory import Trajectory
-from gear_kinematics.state.uncertainty import COVERAGE
 
 MOST_PETALS = 1000
 """With more, a rose looks like a disc."""

@@ -13,11 +13,11 @@ from rich.table import Table
 
 from gear_kinematics.bag import Bag, Message
 from gear_kinematics.bag.roles import Topics, corrected_beside
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import gear_from_mapping, matrix_method
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters.share import share_directory
 from gear_kinematics.ros.live import live_messages, outputs_of
-from gear_kinematics.state import parameters
-from gear_kinematics.state.calibration_file import Calibration
-from gear_kinematics.state.share import share_directory
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator

@@ -13,9 +13,9 @@ from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state.meshes import folder_uri
 from gear_kinematics.wire import topics
 
 

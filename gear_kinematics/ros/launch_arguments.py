@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from gear_kinematics.state import parameters
+from gear_kinematics.parameters import node_parameters as parameters
 
 
 class NodeArguments(NamedTuple):

@@ -29,10 +29,10 @@ from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+from gear_kinematics.parameters.node_parameters import as_file
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.process import make_executor
-from gear_kinematics.state.parameters import as_file
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError

@@ -19,7 +19,12 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
+from gear_kinematics.correction.calibrated_output import CalibratedOutput
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters.files import calibration_path, require_any
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
@@ -27,15 +32,10 @@ from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.ros.unheard import UnheardTopic
 from gear_kinematics.shape.urdf import joint_names
-from gear_kinematics.state import parameters
-from gear_kinematics.state.calibrated_output import CalibratedOutput
-from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
-from gear_kinematics.state.parameter_files import calibration_path, require_any
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.state.transmission_error import ErrorSample
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
 

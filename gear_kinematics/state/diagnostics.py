@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
+from gear_kinematics.correction.calibrated_output import CalibrationFit
+from gear_kinematics.correction.reversals import Reversals
+from gear_kinematics.correction.transmission_error import ErrorWindow
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Gear, Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.calibrated_output import CalibrationFit
 from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.reversals import Reversals
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.state.transmission_error import ErrorWindow
-from gear_kinematics.state.uncertainty import Estimate
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""

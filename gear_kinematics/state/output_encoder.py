@@ -6,9 +6,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from gear_kinematics.correction.transmission_error import (
+    ErrorSample,
+    ErrorWindow,
+    TransmissionError,
+)
 from gear_kinematics.kinematics import Gear
 from gear_kinematics.state.rotor_input import RotorSample
-from gear_kinematics.state.transmission_error import ErrorSample, ErrorWindow, TransmissionError
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, Settings
 

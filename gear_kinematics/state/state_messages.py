@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.correction.corrector import Correction
+from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.shape.urdf import joint_names
-from gear_kinematics.state.correction import Correction
 from gear_kinematics.state.rotor_input import RotorSample, RotorSamples
-from gear_kinematics.state.transmission_error import ErrorSample
 from gear_kinematics.wire.batches import encode
 from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
 from gear_kinematics.wire.topics import (

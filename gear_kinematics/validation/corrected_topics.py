@@ -10,9 +10,9 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.calibration_file import Calibration
-from gear_kinematics.state.correction import Corrector
 from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.validation.matching import Columns
 from gear_kinematics.validation.output_topics import STATE_UNITS, JointStateTopic

@@ -9,11 +9,11 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.correction.uncertainty import student_t
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import counted
-from gear_kinematics.state.uncertainty import student_t
 
 Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]

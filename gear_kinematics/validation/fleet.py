@@ -14,9 +14,9 @@ from gear_kinematics.bag.roles import (
     find_topics,
 )
 from gear_kinematics.bag.schedule import count_due
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from gear_kinematics.bag import Message, ReportProgress, TopicMessages, in_batches, sort_by_topic
 from gear_kinematics.bag.roles import Topics
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism, gear_from_mapping, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.calibration_file import Calibration
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.validation import checks
 from gear_kinematics.validation.corrected_topics import (

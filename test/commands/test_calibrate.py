@@ -12,7 +12,7 @@ from lxml import html
 from simulated_gear import GearSet, gears, simulate, strokes
 
 from gear_kinematics.commands.cli import main
-from gear_kinematics.state.calibration_file import Calibration
+from gear_kinematics.correction.calibration_file import Calibration
 
 
 @pytest.fixture(scope='module')

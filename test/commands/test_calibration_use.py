@@ -10,7 +10,7 @@ from calibrations import calibration
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
-from gear_kinematics.state.parameters import load
+from gear_kinematics.parameters.node_parameters import load
 
 SERVO = BAGS / 'servo_point_to_point'
 CORRECTED = ('/corrected_state', '/corrected_interval')

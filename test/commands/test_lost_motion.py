@@ -19,9 +19,9 @@ from lxml import html
 
 from gear_kinematics.commands import lost_motion
 from gear_kinematics.commands.cli import main
+from gear_kinematics.correction.uncertainty import Component, Estimate
 from gear_kinematics.measurement.task import Outcome, measure_recording
 from gear_kinematics.measurement.wording import rounded
-from gear_kinematics.state.uncertainty import Component, Estimate
 
 GEAR = Gear(play=0.02, stiffness=300.0, friction=0.5)
 

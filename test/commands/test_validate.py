@@ -39,7 +39,7 @@ from terminals import ENVIRONMENT, Terminal
 
 from gear_kinematics.bag import Bag, BagWriter
 from gear_kinematics.commands.cli import main
-from gear_kinematics.state.parameters import load
+from gear_kinematics.parameters.node_parameters import load
 
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
 CONFIG = CONFIGS / 'actuator.yaml'

@@ -11,10 +11,10 @@ from calibrations import calibration
 from gear_recordings import encoders
 from simulated_gear import GearSet, gears, simulate, strokes, wandering
 
+from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import RecordingError
-from gear_kinematics.state.calibrated_output import CalibrationFit
 
 
 def two_halves(setting, seed, motion=wandering, duration=31.0, *, timed=True):

@@ -9,6 +9,7 @@ import pytest
 from gear_recordings import Gear, creep, ramps
 from scipy import stats
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.compare.changes import Change, changes_of, judged
 from gear_kinematics.measurement.compare.groups import (
     DEFAULT_PATTERN,
@@ -22,7 +23,6 @@ from gear_kinematics.measurement.compare.section import _play, compared, over_po
 from gear_kinematics.measurement.figures import gear_figures, settings_for
 from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.state.uncertainty import Estimate
 
 NAMES = ['before_1.csv', 'other.csv', 'before_2.csv', 'after_1.csv']
 MINUTE = math.radians(1.0 / 60.0)

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, quantised, ramps
 
+from gear_kinematics.correction.uncertainty import student_t
 from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
 from gear_kinematics.measurement.loops import RampError, find_ramps
 from gear_kinematics.measurement.middle_line import Cause
-from gear_kinematics.state.uncertainty import student_t
 
 RATED = 40.0
 STEP = 2.0 * math.pi / 65536.0

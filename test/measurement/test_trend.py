@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.compare.quantities import Quantity, at_common_torque
 from gear_kinematics.measurement.compare.section import over_time
 from gear_kinematics.measurement.compare.trend import trend
 from gear_kinematics.measurement.figures import gear_figures, settings_for
 from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.state.uncertainty import Estimate
 
 DAY = 86400.0
 

@@ -13,11 +13,11 @@ from calibrations import single_order
 from properties import numbers_of
 
 from gear_kinematics import plotting
+from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Branch, Mechanism, matrix_method, split_turns
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
 from gear_kinematics.report.image import Paper, to_image
 from gear_kinematics.shape.outlines import bodies
-from gear_kinematics.state.trajectory import Trajectory
 
 figure_module = pytest.importorskip('matplotlib.figure', reason='matplotlib is not installed')
 

@@ -11,7 +11,7 @@ import yaml
 from gear_recordings import record_both_encoders
 
 from gear_kinematics.commands.cli import COMMANDS, main, make_parser
-from gear_kinematics.state.parameters import BRANCH_PARAMETERS, PARAMETERS, defaults
+from gear_kinematics.parameters.node_parameters import BRANCH_PARAMETERS, PARAMETERS, defaults
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text('utf-8')

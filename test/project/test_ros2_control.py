@@ -15,9 +15,9 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.kinematics import split_turns
+from gear_kinematics.parameters.node_parameters import defaults
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state.parameters import defaults
 from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.wire.topics import CORRECTED_STATE, JOINT_STATE, OUTPUT_STATE, TOPICS

@@ -26,9 +26,9 @@ from rosbags.typesys import Stores, get_typestore
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import cli, output
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.ros.live import ReplayError
 from gear_kinematics.ros.replay import play
-from gear_kinematics.state import parameters
 from gear_kinematics.wire.topics import TOPICS
 
 ROOT = Path(__file__).resolve().parents[2]

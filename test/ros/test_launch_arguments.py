@@ -4,9 +4,9 @@ import re
 
 import pytest
 
+from gear_kinematics.parameters.files import ConfigError
+from gear_kinematics.parameters.node_parameters import default_config, load
 from gear_kinematics.ros.launch_arguments import node_arguments
-from gear_kinematics.state.parameter_files import ConfigError
-from gear_kinematics.state.parameters import default_config, load
 
 NODES = {
     '/gear_state_publisher': 81,

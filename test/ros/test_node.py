@@ -18,9 +18,9 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.ros.node import GearStatePublisher
 from gear_kinematics.ros.process import make_executor
-from gear_kinematics.state import parameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 
 pytestmark = pytest.mark.live

@@ -22,10 +22,10 @@ from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.schedule import due_messages
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.ros import live
 from gear_kinematics.ros.live import ReplayError, live_messages, replay_node
 from gear_kinematics.ros.replay import play
-from gear_kinematics.state import parameters
 
 pytestmark = pytest.mark.live
 

@@ -15,6 +15,7 @@ from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
+from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import (
     Branch,
     GearRatio,
@@ -23,7 +24,6 @@ from gear_kinematics.kinematics import (
     solve,
     split_turns,
 )
-from gear_kinematics.state.correction import Correction
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample, RotorSamples
 from gear_kinematics.state.state_messages import StateMessages, state_messages
 

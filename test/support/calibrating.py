@@ -9,11 +9,11 @@ import numpy as np
 from gear_recordings import encoders
 from simulated_gear import GearSet, Simulated, gears, simulate, slow_strokes, strokes
 
+from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.measurement.calibration import Fit, fit, to_calibration
 from gear_kinematics.measurement.clock import Dates
 from gear_kinematics.measurement.recording import Encoders, Recording
-from gear_kinematics.state.correction import Corrector
 
 LIMITED = GearSet(
     1, rotor_errors=(2e-3, 1e-3, 5e-4), output_error=2.5e-3, satellite_error=0.0, tooth_error=0.0,

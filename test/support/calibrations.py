@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import mpmath
 
-from gear_kinematics.state.calibration_file import (
+from gear_kinematics.correction.calibration_file import (
     Calibration,
     Compliance,
     Order,

@@ -18,8 +18,8 @@ from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.ros.live import running_node
-from gear_kinematics.ros.watch.view import View
-from gear_kinematics.ros.watch.watcher import Answer
+from gear_kinematics.watch.view import View
+from gear_kinematics.watch.watcher import Answer
 from gear_kinematics.wire.batches import decode_joint_states
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -12,11 +12,11 @@ from live import rotor_bytes
 from shipped_bags import BAGS, JOINT_STATE, TYPES, read_bag, write_bag
 
 from gear_kinematics.bag import Message
+from gear_kinematics.correction.calibration_file import Order, Stop
+from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state import parameters
-from gear_kinematics.state.calibration_file import Order, Stop
-from gear_kinematics.state.correction import Corrector
 from gear_kinematics.state.rotor_input import InputSettings, RotorInput
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.validation.fleet import Task, validate_bag

@@ -26,8 +26,8 @@ from shipped_bags import ROTOR, TYPES, write_bag
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.fleet import on_this_machine
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state import parameters
 from gear_kinematics.validation.fleet import WORK, Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 

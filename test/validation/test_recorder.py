@@ -11,8 +11,8 @@ from replaying import SECOND
 from rosbag2_recorder import Message, record
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state import parameters
 from gear_kinematics.validation import wording
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances

@@ -14,8 +14,8 @@ from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES
 from gear_kinematics.bag import Message
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.parameters import node_parameters as parameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state import parameters
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport, TopicReport

@@ -5,13 +5,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gear_kinematics.correction.calibrated_output import CalibrationFit
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Corrector
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.calibration.fit import check_ratio
 from gear_kinematics.measurement.calibration.normal import jackknife
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
-from gear_kinematics.state.calibrated_output import CalibrationFit
-from gear_kinematics.state.calibration_file import Calibration
-from gear_kinematics.state.correction import Corrector
-from gear_kinematics.state.uncertainty import Estimate
 
 _BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gear_kinematics.correction.uncertainty import COVERAGE
 from gear_kinematics.measurement.calibration.check import Judgement
 from gear_kinematics.measurement.calibration.result import Fit
 from gear_kinematics.measurement.calibration.terms import output_cycles
@@ -33,7 +34,6 @@ from gear_kinematics.report.document import (
     number,
     printable,
 )
-from gear_kinematics.state.uncertainty import COVERAGE
 
 _MILLI = 1e3
 _PENS = {'before': Pen.FAINT, 'after': Pen.FIRST}

@@ -13,6 +13,7 @@ from fractions import Fraction
 
 import numpy as np
 
+from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -32,7 +33,6 @@ from gear_kinematics.measurement.calibration.selection import Selection
 from gear_kinematics.measurement.calibration.spectrum import Spectrum, as_fraction, spectrum
 from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio, wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
-from gear_kinematics.state.uncertainty import COVERAGE, Estimate
 
 _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left

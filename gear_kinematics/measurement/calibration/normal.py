@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gear_kinematics.correction.uncertainty import Estimate, student_t
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.state.uncertainty import Estimate, student_t
 
 _BLOCKS = 24  # blocks of all recordings together
 _RIDGE = 1e-9  # share of a column's sum of squares that keeps equations solvable

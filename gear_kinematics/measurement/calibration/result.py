@@ -7,15 +7,15 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from gear_kinematics.correction import calibration_file as file
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration.samples import Samples
 from gear_kinematics.measurement.calibration.spectrum import Spectrum
 from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm, Term, TorqueTerm
 from gear_kinematics.measurement.ratio import RatioEstimate
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.state import calibration_file as file
-from gear_kinematics.state.share import version
-from gear_kinematics.state.uncertainty import Estimate
+from gear_kinematics.parameters.share import version
 
 _Kind = TypeVar('_Kind', OrderTerm, StopTerm, TorqueTerm)
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated

@@ -7,9 +7,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from gear_kinematics.correction.corrector import MAX_GAP, play_bounds
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
-from gear_kinematics.state.correction import MAX_GAP, play_bounds
 
 Recorded = tuple[Recording, Encoders]
 

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gear_kinematics.correction.uncertainty import COVERAGE, Component, Estimate, combined
 from gear_kinematics.measurement.compare.groups import Group
 from gear_kinematics.measurement.compare.quantities import Quantity
 from gear_kinematics.measurement.comparison import HYSTERESIS
 from gear_kinematics.measurement.loops import Array
-from gear_kinematics.state.uncertainty import COVERAGE, Component, Estimate, combined
 
 SIGNIFICANCE = 1.0 - COVERAGE
 """Probability of a false alarm in each of the two families of `judged`."""

@@ -7,13 +7,13 @@ from functools import partial
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.comparison import HYSTERESIS
 from gear_kinematics.measurement.figures import Figures, settings_for
 from gear_kinematics.measurement.loops import ALIKE, Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
 from gear_kinematics.report.document import Cell, number
-from gear_kinematics.state.uncertainty import Estimate
 
 _RATES = 1.25
 """Ratio of rates that is named: by creep of 10 % in a decade of time, the most of the simulated

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby, product
 from typing import Any
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.compare import panels
 from gear_kinematics.measurement.compare.changes import SIGNIFICANCE, Change, changes_of, judged
 from gear_kinematics.measurement.compare.groups import Group, by_label, single
@@ -14,7 +15,6 @@ from gear_kinematics.measurement.comparison import HYSTERESIS, Comparison
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT
 from gear_kinematics.report.document import Cell, Section, Table, Tone, number, printable
-from gear_kinematics.state.uncertainty import Estimate
 
 _DAY = 86400.0  # s
 _LEAST = 1e-4

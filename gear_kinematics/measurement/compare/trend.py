@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.stats import theilslopes
 
+from gear_kinematics.correction.uncertainty import COVERAGE
 from gear_kinematics.measurement.compare.changes import Change, changes_of
 from gear_kinematics.measurement.compare.groups import Group
 from gear_kinematics.measurement.compare.quantities import Quantity
-from gear_kinematics.state.uncertainty import COVERAGE
 
 FEWEST = 5
 """Recordings: of four, a steady rise or fall comes up by chance in 2 of 24 orders."""

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
+from gear_kinematics.correction.uncertainty import COVERAGE, Estimate, student_t
 from gear_kinematics.measurement.preload.file import Span
-from gear_kinematics.state.uncertainty import COVERAGE, Estimate, student_t
 
 FEWEST = 3
 """Settings that are needed."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.preload import Preload, Stiffness
-from gear_kinematics.state.uncertainty import Estimate
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,174 @@
+"""Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from itertools import repeat
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, Literal
+
+import numpy as np
+
+from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_batches
+from gear_kinematics.bag.roles import Topics, corrected_beside
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Corrector
+from gear_kinematics.kinematics import gear_from_mapping
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.state_messages import state_messages
+from gear_kinematics.wire.topics import (
+    BODY_POSES,
+    JOINT_STATE,
+    OUTPUT_STATE,
+    ROTOR_STATE,
+    TOPICS,
+)
+
+_BATCH = 1024  # messages
+_TOPICS = Topics()
+
+
+@dataclass(frozen=True, slots=True)
+class ComputeResult:
+    """Numbers of messages."""
+
+    received: int
+    """Messages on the rotor topic."""
+    computed: int
+    """Messages written on each output topic."""
+    rejected: Mapping[str, int]
+    """Rotor messages without an output, by cause."""
+    mostly_rejected: bool
+    """Whether more rotor messages were rejected than accepted."""
+    missing_joint: str
+    """Which joints there are, if some rotor messages lack the rotor's; otherwise empty."""
+    zero_stamps: int
+    """Rotor messages without a stamp, whose outputs have their time of reception."""
+    copied: int
+    """Messages copied from other topics."""
+    left_out: tuple[str, ...]
+    """Topics that were not copied."""
+    undefined: tuple[str, ...]
+    """Topics that were copied without a type definition, which the bag lacks."""
+
+
+def compute(
+    source: Bag,
+    target: Path,
+    parameters: Mapping[str, Any],
+    *,
+    rotor_topic: str = _TOPICS.rotor,
+    output_topic: str = _TOPICS.output,
+    poses_topic: str = _TOPICS.poses,
+    calibration: Calibration | None = None,
+    topics: Collection[str] | None = None,
+    files: Mapping[str, bytes] = MappingProxyType({}),
+    storage: Literal['mcap', 'sqlite3'] = 'mcap',
+    compression: Literal['none', 'zstd'] = 'none',
+    progress: ReportProgress | None = None,
+) -> ComputeResult:
+    """Copy a bag and add or replace the output topics: `output_state` alone with `gear_ratio`.
+
+    Each output directly follows its rotor message and has its time of reception. The same input
+    gives the same bytes. If this fails or is interrupted, no target is left.
+
+    Args:
+        source: an open bag.
+        target: the folder to create.
+        parameters: of the node, as `parameters.load` returns them.
+        rotor_topic: name of the input in the bag.
+        output_topic: name of the node's output_state in the bag.
+        poses_topic: name of the node's body_poses in the bag.
+        calibration: of the gear, to compute CORRECTED_TOPICS beside the topic of the output.
+        topics: other topics to copy; None copies all.
+        files: contents of further files of the target, by name.
+        storage: of the target, see `BagWriter`.
+        compression: of the target, see `BagWriter`.
+        progress: called after each batch; the total is known if all topics are read.
+
+    Raises:
+        BagError: if the source lacks a topic, is damaged or has no valid rotor message, or if the
+            target cannot be written.
+        ValueError: if the parameters are invalid, or two topics have the same name.
+    """
+    gear = gear_from_mapping(parameters)
+    names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
+    messages_of = state_messages(gear, **names)
+    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
+    topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
+    corrector = None
+    if calibration:
+        corrector = Corrector(calibration)
+        topic_of |= corrected_beside(output_topic)
+    if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
+        raise ValueError(f'{", ".join(all_names)}: the names must differ')
+    outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
+    chosen = {rotor_topic, *(source.topics if topics is None else topics)}
+    _check_topics(source, rotor_topic, chosen, outputs)
+    kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
+
+    computed = copied = 0
+    with BagWriter(target, storage=storage, compression=compression) as writer:
+        for name, content in files.items():
+            writer.add_file(name, content)
+        written = [writer.copy_topic(source, topic) for topic in kept]
+        for topic, message_type in outputs.items():
+            writer.add_topic(topic, message_type)
+        for name, topic in {ROTOR_STATE: rotor_topic, **topic_of}.items():
+            writer.name_topic(name, topic)
+        total = source.message_count if topics is None else None
+        for batch in in_batches(source.messages({*kept, *outputs}), _BATCH, progress, total):
+            messages = [message for message in batch if message[0] not in outputs]
+            rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
+            samples = rotor_input.accept_batch(
+                [messages[place][2] for place in rotor], [messages[place][1] for place in rotor]
+            )
+            answered = [rotor[row] for row in samples.row.tolist()]
+            computed += len(answered)
+            copied += len(messages) - len(rotor)
+            encoded_outputs = messages_of.encode_outputs(samples)
+            if corrector:
+                correction = corrector.correct_batch(
+                    *samples[:5], samples.stretch, referenced=rotor_input.referenced
+                )
+                encoded_outputs |= messages_of.encode_corrections(samples, correction)
+            # A stable sort by these puts each output directly after its rotor message.
+            places = [*range(len(messages)), *(len(encoded_outputs) * answered)]
+            received = [messages[place][1] for place in answered]
+            for state, encoded in encoded_outputs.items():
+                messages += zip(repeat(topic_of[state]), received, encoded)
+            writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
+        if not computed:
+            raise BagError(_nothing_computed(source, rotor_topic, rotor_input))
+    return ComputeResult(
+        rotor_input.received,
+        computed,
+        dict(rotor_input.rejected),
+        rotor_input.mostly_rejected,
+        rotor_input.missing_joint,
+        rotor_input.zero_stamps,
+        copied,
+        left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
+        undefined=tuple(topic.name for topic in written if not topic.syntax),
+    )
+
+
+def _check_topics(
+    source: Bag, rotor: str, needed: Collection[str], outputs: Mapping[str, str]
+) -> None:
+    source.type_of(rotor, JOINT_STATE)
+    for topic in sorted(needed):
+        source.type_of(topic)
+    for topic, message_type in outputs.items():
+        # A topic of another type is not an earlier output, and must not be replaced.
+        found = source.topics.get(topic, message_type)
+        if found != message_type:
+            raise BagError(f'{source.path}: {topic} is of type {found}, not {message_type}')
+
+
+def _nothing_computed(source: Bag, topic: str, rotor_input: RotorInput) -> str:
+    if not rotor_input.received:
+        return f'{source.path}: no messages on {topic}'
+    joint, why = rotor_input.settings.rotor_joint, rotor_input.why_rejected
+    return f'{source.path}: no valid state of the joint {joint!r} on {topic}: {why}'

@@ -1,0 +1,173 @@
+"""The rotor's motion over time: recorded, or at a constant speed."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicMessages
+from gear_kinematics.bag.roles import find_rotor_topic
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Correction, Corrector
+from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.wire.cdr import SECOND
+
+Array = NDArray[np.float64]
+
+MOST_TURNS = 1000
+"""Rotor turns at a constant speed; figures cannot show more."""
+_PER_TURN = 360  # samples
+_ROUNDING = 1e-9  # by which intervals may miss the end
+
+
+class Trajectory(NamedTuple):
+    """The rotor angle φ2 over time; arrays (n,)."""
+
+    time: Array
+    """s from the start, ascending."""
+    turns: Array
+    """Whole turns of the rotor."""
+    angle: Array
+    """rad: φ2 is 2π turns + angle."""
+    velocity: Array
+    """rad/s."""
+
+    @classmethod
+    def at_constant_speed(
+        cls, speed: float, *, turns: int = 1, duration: float | None = None
+    ) -> Self:
+        """Create a motion from φ2 = 0 on, with samples close enough for smooth curves.
+
+        Args:
+            speed: rad/s.
+            turns: of the rotor.
+            duration: s, instead of a number of turns.
+
+        Raises:
+            ValueError: if the rotor stands still, or turns more often than `MOST_TURNS`.
+        """
+        if not (speed and math.isfinite(speed)):
+            raise ValueError(f'the speed must be finite and not 0, but is {speed:g} rad/s')
+        if duration is None:
+            duration = turns * TURN / abs(speed)
+        length = abs(speed) * duration / TURN
+        if length > MOST_TURNS:
+            raise ValueError(f'{length:g} turns of the rotor are more than {MOST_TURNS}')
+        time = np.linspace(0.0, duration, math.ceil(_PER_TURN * length) + 1)
+        return cls(time, *split_turns(speed * time), np.full(len(time), speed))
+
+    def state(self, mechanism: Mechanism) -> MotionState:
+        """The motion of all bodies, (n, ...)."""
+        with np.errstate(over='ignore'):  # nothing here shows accelerations
+            return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
+
+    def correction(self, calibration: Calibration) -> Correction:
+        """The correction of the output, arrays (n,); its efforts are not known."""
+        stamp = np.round(self.time * SECOND).astype(np.int64)
+        unknown = np.full(len(stamp), np.nan)
+        motion = self.turns, self.angle, self.velocity
+        return Corrector(calibration).correct_batch(stamp, *motion, unknown, np.zeros(len(stamp)))
+
+    @property
+    def longest_step(self) -> float:
+        """The greatest turn of the rotor between samples, turns."""
+        position = self.turns + self.angle / TURN
+        return float(np.max(np.abs(np.diff(position)), initial=0.0))
+
+    @property
+    def travel(self) -> Array:
+        """Turns of the rotor since the start, back and forth, (n,)."""
+        with np.errstate(over='ignore', invalid='ignore'):
+            position = self.turns - self.turns[0] + self.angle / TURN
+            return np.append(0.0, np.cumsum(np.abs(np.diff(position))))
+
+    def fastest(self, turns: float) -> tuple[float, float]:
+        """Find the time in which the rotor travels so many turns, around its greatest speed.
+
+        Returns:
+            Start and end, s.
+        """
+        travel = self.travel
+        middle = travel[int(np.argmax(np.abs(self.velocity)))]
+        first = min(max(0.0, middle - 0.5 * turns), max(0.0, travel[-1] - turns))
+        start, end = np.interp([first, first + turns], travel, self.time)
+        return float(start), float(end)
+
+    def part(self, start: float, end: float, count: int) -> Self:
+        """Interpolate between two times, s, at even intervals."""
+        time = np.linspace(start, end, count)
+        position = np.interp(time, self.time, self.turns * TURN + self.angle)
+        turns, angle = split_turns(position)
+        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
+
+    def between(self, start: float, end: float) -> Self:
+        """Select the samples between two times, s.
+
+        Raises:
+            ValueError: if there are none.
+        """
+        inside = (self.time >= start) & (self.time <= end)
+        if not inside.any():
+            there = f'they are from 0 s to {self.time[-1]:g} s'
+            raise ValueError(f'no rotor states from {start:g} s to {end:g} s; {there}')
+        return type(self)(*(column[inside] for column in self))
+
+    def every(self, interval: float, *, closed: bool = False) -> Self:
+        """Interpolate at even intervals.
+
+        Args:
+            interval: s; adjusted to divide the duration if `closed`.
+            closed: whether the motion is periodic, so that its end is left out.
+        """
+        duration = self.time[-1] - self.time[0]
+        if closed:
+            count = max(1, round(duration / interval))
+            interval = duration / count
+        else:
+            count = math.floor(duration / interval * (1.0 + _ROUNDING)) + 1
+        first = float(self.time[0])
+        return self.part(first, first + interval * (count - 1), count)
+
+
+def read_trajectory(
+    path: Path,
+    parameters: Mapping[str, Any],
+    rotor_topic: str | None = None,
+    progress: ReportProgress | None = None,
+) -> Trajectory:
+    """Read the rotor's motion from a bag, up to the first stamp that jumps back.
+
+    Args:
+        path: of the bag.
+        parameters: of the node, as `parameters.load` returns them.
+        rotor_topic: its name; None: by type and name.
+        progress: called after each batch; the total counts all topics of the bag.
+
+    Returns:
+        The motion; missing velocities are derived from the positions.
+
+    Raises:
+        BagError: if the bag cannot be read, or has fewer than two rotor states of different times.
+    """
+    rotor = TopicMessages()
+    with Bag(path) as bag:
+        topic = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
+        bag.read({topic: rotor}, progress)
+    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    samples = rotor_input.accept_batch(rotor.data, rotor.received)
+    anew = np.flatnonzero(np.diff(samples.stamp) < 0)
+    _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
+    if len(used) < 2:  # noqa: PLR2004, what a motion takes
+        why = f' ({rotor_input.why_rejected})' if rotor_input.rejected else ''
+        raise BagError(f'{path}: {topic} has fewer than two rotor states of different times{why}')
+    stamps, turns, angle, velocity = (column[used] for column in samples[:4])
+    time = (stamps - stamps[0]) / SECOND
+    positions = (turns - turns[0]) * TURN + angle
+    with np.errstate(over='ignore', invalid='ignore'):
+        velocity = np.where(np.isnan(velocity), np.gradient(positions, time), velocity)
+    return Trajectory(time, turns, angle, velocity)

@@ -1,0 +1,311 @@
+"""The file of a calibration: what corrects the output of one gear, and what it was made from."""
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, is_dataclass
+from fractions import Fraction
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, Self, get_args, get_origin, get_type_hints
+
+import yaml
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
+
+SCHEMA = 'gear_kinematics/calibration/1'
+"""Identifies the files and their version."""
+UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
+"""The units of all numbers in a file."""
+_RATIO = re.compile(r'-?[0-9]{1,9}(/(?P<denominator>[0-9]{1,9}))?', re.ASCII)
+_GREATEST = 1e30  # no number of a real gear is near it
+_LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
+
+
+def is_calibration(path: Path) -> bool:
+    """Return whether a file is a calibration of any version.
+
+    Raises:
+        OSError: if it cannot be read.
+    """
+    begin = f'schema: {SCHEMA.rpartition("/")[0]}'.encode()
+    with path.open('rb') as file:
+        return file.read(len(begin)) == begin
+
+
+class CalibrationError(ValueError):
+    """A calibration that cannot be used; the text names the cause."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A recording that a calibration was made from."""
+
+    name: str
+    """Of the file."""
+    sha256: str
+    samples: int
+    duration: float
+    """s."""
+    zero: float
+    """rad: what was added to the deviation in this recording, by the zero of its encoder."""
+
+
+@dataclass(frozen=True, slots=True)
+class Order:
+    """A periodic deviation: cos · cos(n φ2) + sin · sin(n φ2)."""
+
+    name: str
+    cycles: Fraction
+    """n, greater than 0: cycles per turn of the rotor."""
+    cos: float
+    """rad."""
+    sin: float
+    """rad."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """A stop operator on the ideal output angle: its coefficient times its state in ±radius."""
+
+    radius: float
+    """rad, greater than 0."""
+    coefficient: float
+    """rad/rad."""
+
+
+@dataclass(frozen=True, slots=True)
+class Compliance:
+    """Wind-up by the output torque M: coefficient · (M - torque)."""
+
+    coefficient: float
+    """rad/(N·m)."""
+    torque: float
+    """N·m."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spans:
+    """What the recordings covered, each from its least to its greatest value, of the output."""
+
+    speed: tuple[float, float] | None
+    """rad/s; None if time was not recorded."""
+    torque: tuple[float, float] | None
+    """N·m; None if no effort was recorded."""
+    angle: tuple[float, float]
+    """rad, ideal output angle."""
+    time: float
+    """s, in all."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """How well blocks that were left out of the fit were predicted."""
+
+    rms_before: float
+    """rad, without the correction."""
+    rms_after: float
+    """rad, with it."""
+    coverage: float
+    """Share of samples within the 95 % interval."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Calibration:
+    """Deviation of the real from the ideal output angle x = φ2/i of one gear.
+
+    The deviation at the rotor angle φ2 and the output torque M is
+
+        constant + Σ orders(φ2) + Σ stops(x) + compliance(M)
+
+    Raises:
+        CalibrationError: if a number is out of range.
+    """
+
+    made_by: str
+    """Program and version."""
+    created: str
+    """Date and time, ISO 8601."""
+    recordings: tuple[Recording, ...]
+    gear_ratio: Fraction
+    """i, signed and exact."""
+    ring_teeth: int | None
+    """None if only the ratio is known."""
+    satellite_teeth: int | None
+    """None if only the ratio is known."""
+    constant: float
+    """rad."""
+    orders: tuple[Order, ...]
+    hysteresis: tuple[Stop, ...]
+    compliance: Compliance | None
+    covariance: tuple[tuple[float, ...], ...]
+    """Of the coefficients: cos and sin of each order, of each stop, of the compliance."""
+    half_width: float
+    """rad, of the 95 % interval within `spans`."""
+    outside_half_width: float
+    """rad, of the 95 % interval elsewhere; not less than `half_width`."""
+    spans: Spans
+    validation: Prediction
+
+    def __post_init__(self) -> None:
+        """Check the numbers beyond their types."""
+        if faults := self._faults():
+            raise CalibrationError('; '.join(faults))
+
+    @classmethod
+    def load(cls, path: Path, mechanism: Mechanism | Fraction | None = None) -> Self:
+        """Read a file.
+
+        Args:
+            path: of the file.
+            mechanism: the gear to correct, or its ratio; None checks no gear.
+
+        Raises:
+            CalibrationError: if the file cannot be used, or is of another gear; the text names it.
+        """
+        document = read_yaml(path, CalibrationError)
+        try:
+            if not isinstance(document, dict) or document.get('schema') != SCHEMA:
+                raise CalibrationError(f'no calibration: its `schema` is not {SCHEMA}')
+            if document.get('units') != UNITS:
+                raise CalibrationError(f'`units` must be {UNITS}')
+            entries = {key: document[key] for key in document if key not in {'schema', 'units'}}
+            calibration: Self = _read(cls, entries, '')
+            if mechanism is not None:
+                calibration.check(mechanism)
+        except CalibrationError as error:
+            raise CalibrationError(f'{path}: {error}') from error
+        return calibration
+
+    def text(self) -> str:
+        """The content of the file."""
+        plain = _plain({'schema': SCHEMA, 'units': UNITS} | asdict(self))
+        return yaml.dump(
+            plain,
+            Dumper=Dumper,
+            sort_keys=False,
+            allow_unicode=True,
+            default_flow_style=None,  # a line for each order, stop and row of the covariance
+            width=math.inf,
+        )
+
+    def check(self, mechanism: Mechanism | Fraction) -> None:
+        """Check that this is a calibration of a gear.
+
+        Args:
+            mechanism: the gear, or its ratio if no more is known.
+
+        Raises:
+            CalibrationError: if it is of another one, naming both.
+        """
+        if isinstance(mechanism, Fraction):
+            there, teeth = mechanism, None
+        else:
+            there = mechanism.gear_ratio
+            teeth = mechanism.ring_teeth, mechanism.satellite_teeth
+        own_teeth = None
+        if self.ring_teeth is not None and self.satellite_teeth is not None:
+            own_teeth = self.ring_teeth, self.satellite_teeth
+        differ = None not in {teeth, own_teeth} and teeth != own_teeth
+        if differ or there != self.gear_ratio:
+            own = _gear(self.gear_ratio, own_teeth)
+            raise CalibrationError(f'calibrated for {own}, not for {_gear(there, teeth)}')
+
+    @property
+    def period(self) -> int:
+        """Rotor turns after which all orders repeat."""
+        return math.lcm(*(order.cycles.denominator for order in self.orders))
+
+    def _faults(self) -> list[str]:
+        faults = []
+        if not self.gear_ratio:
+            faults.append('gear_ratio must not be 0')
+        if (self.ring_teeth is None) != (self.satellite_teeth is None):
+            faults.append('ring_teeth and satellite_teeth must both be given or both be null')
+        if any(order.cycles <= 0 for order in self.orders):
+            faults.append('the cycles of an order must be greater than 0')
+        elif self.period > _LONGEST_PERIOD:
+            faults.append(f'the orders repeat only after {self.period} rotor turns')
+        if any(stop.radius <= 0.0 for stop in self.hysteresis):
+            faults.append('a radius of the hysteresis must be greater than 0')
+        if self.compliance is not None and self.spans.torque is None:
+            faults.append('a compliance needs the span of the torque')
+        if not 0.0 < self.half_width <= self.outside_half_width:
+            faults.append('half_width must be greater than 0 and at most outside_half_width')
+        spans = {name: getattr(self.spans, name) for name in ('speed', 'torque', 'angle')}
+        faults += [
+            f'the span of the {name} must not end before it begins'
+            for name, span in spans.items()
+            if span is not None and span[0] > span[1]
+        ]
+        size = 2 * len(self.orders) + len(self.hysteresis) + (self.compliance is not None)
+        if [len(row) for row in self.covariance] != size * [size]:
+            faults.append(f'covariance must have {size} rows of {size} numbers')
+        return faults
+
+
+def _gear(ratio: Fraction, teeth: tuple[int, int] | None) -> str:
+    pair = '' if teeth is None else f' (ring {teeth[0]}, satellite {teeth[1]} teeth)'
+    return f'gear ratio {ratio}{pair}'
+
+
+def _plain(value: Any) -> Any:
+    """Convert what YAML has no type for."""
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, tuple):
+        return [_plain(item) for item in value]
+    return str(value) if isinstance(value, Fraction) else value
+
+
+def _read(kind: Any, value: Any, where: str) -> Any:
+    """Convert a value of a document to a type: a dataclass, a tuple, an optional or a scalar."""
+    if isinstance(kind, UnionType):
+        (kind,) = set(get_args(kind)) - {NoneType}
+        return None if value is None else _read(kind, value, where)
+    if is_dataclass(kind):
+        return _read_fields(kind, value, where)
+    if get_origin(kind) is tuple:
+        item, *others = get_args(kind)
+        if not isinstance(value, list) or (others != [...] and len(value) != 1 + len(others)):
+            raise CalibrationError(f'{where} must be a list of {_length(others)}, not {value!r}')
+        return tuple(_read(item, entry, f'{where}[{k}]') for k, entry in enumerate(value))
+    return _read_scalar(kind, value, where)
+
+
+def _length(others: list[Any]) -> str:
+    return 'any length' if others == [...] else f'{1 + len(others)} numbers'
+
+
+def _read_fields(kind: Any, value: Any, where: str) -> Any:
+    if not isinstance(value, Mapping):
+        raise CalibrationError(f'{where} must have named values, not {value!r}')
+    names = [field.name for field in fields(kind)]
+    place = f'{where}.' if where else ''
+    if missing := [place + name for name in names if name not in value]:
+        raise CalibrationError(f'{", ".join(missing)} is missing')
+    if unknown := [f'{place}{name}' for name in value if name not in names]:
+        raise CalibrationError(f'unknown: {", ".join(unknown)}')
+    hints = get_type_hints(kind)
+    return kind(**{name: _read(hints[name], value[name], place + name) for name in names})
+
+
+def _read_scalar(kind: type, value: Any, where: str) -> Any:
+    if kind is float and type(value) in {int, float} and abs(value) <= _GREATEST:
+        return float(value)
+    if kind in {int, str} and type(value) is kind:
+        return value
+    if kind is Fraction and type(value) in {int, str}:
+        match = _RATIO.fullmatch(str(value))
+        if match and int(match['denominator'] or 1):
+            return Fraction(match[0])
+    raise CalibrationError(f'{where} must be {_KINDS[kind]}, not {value!r}')
+
+
+_KINDS: Mapping[type, str] = {
+    float: 'a finite number',
+    int: 'an integer',
+    str: 'a text',
+    Fraction: "an exact ratio such as '-19' or '1457/26'",
+}

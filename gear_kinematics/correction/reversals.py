@@ -1,0 +1,133 @@
+"""Lost motion on reversals, told apart from a delay between the stamps of the encoders.
+
+Both make the error of backward motion exceed that of forward motion at the same output angle. Lost
+motion does so by a constant, a delay τ in proportion to the speed: an output angle that is stamped
+late by τ lags by its speed times τ. So over the common angles
+
+    error backward - error forward = lost motion + τ (speed forward - speed backward)
+
+which is a straight line over the difference of the signed speeds.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.correction.uncertainty import Component, Estimate
+
+Array = NDArray[np.float64]
+
+_BLOCKS = 20
+"""Blocks of a pair of runs. Errors within a block may be correlated, those of blocks are not."""
+_PAIRS = 4
+"""Pairs of runs from which on they are the repeats, and not their blocks."""
+_LEAST = 3
+"""Blocks that a straight line and its scatter need, at least."""
+_SPREAD = 0.01
+"""Least standard deviation of the speed, relative to its mean, that tells a delay."""
+_STEADY = 0.02
+"""Greatest share of the speed's variance that may be noise; it makes the delay too small."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reversals:
+    """What differs between both directions of motion."""
+
+    difference: Estimate
+    """Mean error of backward minus forward motion, rad: lost motion, and delay times speed."""
+    speed: float
+    """Mean difference of the speeds, forward minus backward, rad/s."""
+    lost_motion: Estimate | None
+    """rad, at no speed; None where the speed varies too little to tell it from a delay."""
+    delay: Estimate | None
+    """s by which the stamps of the measured angles are late; None as above."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Pair:
+    """A run and the next one back, at angles that both cover, in the order of the angles."""
+
+    difference: Array
+    """(n,), rad: error of backward minus forward motion."""
+    speed: Array
+    """(n,), rad/s: speed of forward minus that of backward motion."""
+
+
+def separate(
+    pairs: Sequence[Pair], *others: Component, delay: float | None = None
+) -> Reversals | None:
+    """Separate lost motion from a delay.
+
+    Uncertainties are those of the jackknife by Tukey's pseudo-values (Efron, The Jackknife, the
+    Bootstrap and Other Resampling Plans, 1982), which leaves out a pair at a time, or a block of
+    angles where there are few pairs.
+
+    Args:
+        pairs: of runs; those without angles are ignored.
+        others: components of the uncertainty that are the same in all pairs, rad.
+        delay: s, if it is known; None estimates it.
+
+    Returns:
+        None without common angles.
+    """
+    pairs = [pair for pair in pairs if len(pair.difference)]
+    if not pairs:
+        return None
+    blocks = [_blocks(pair) for pair in pairs]
+    groups = blocks if len(blocks) >= _PAIRS else [row[None] for rows in blocks for row in rows]
+    left_out = [np.concatenate(groups)]
+    if len(groups) > 1:
+        left_out += [np.concatenate([*groups[:k], *groups[k + 1 :]]) for k in range(len(groups))]
+
+    def estimate(of: Callable[[Array], float], *others: Component) -> Estimate:
+        whole, *parts = (of(rows) for rows in left_out)
+        values = [whole + len(parts[1:]) * (whole - part) for part in parts] or [whole]
+        return replace(Estimate.of_mean(values, *others), repeats=len(pairs))
+
+    difference = estimate(lambda rows: float(_mean(rows)[0]), *others)
+    speed = float(_mean(left_out[0])[1])
+    noise = float(np.mean([_noise(pair) for pair in pairs]))
+    if delay is not None:
+        known = Estimate(delay, 0.0, np.inf, len(pairs))
+        lost_motion = estimate(lambda rows: float(_mean(rows) @ [1.0, -delay]), *others)
+        return Reversals(difference, speed, lost_motion, known)
+    if len(groups) <= _LEAST or not all(_varies(rows, noise) for rows in left_out):
+        return Reversals(difference, speed, None, None)
+    lost_motion = estimate(lambda rows: float(_mean(rows) @ [1.0, -_slope(rows)]), *others)
+    return Reversals(difference, speed, lost_motion, estimate(_slope))
+
+
+def _blocks(pair: Pair) -> Array:
+    """Number of angles, and means of difference and speed, in blocks of neighbouring angles."""
+    values = np.stack([np.ones(len(pair.speed)), pair.difference, pair.speed], axis=1)
+    rows = np.array_split(values, min(_BLOCKS, len(values)))
+    return np.array([[len(row), *row[:, 1:].mean(axis=0)] for row in rows])
+
+
+def _mean(rows: Array) -> Array:
+    """Means of difference and speed."""
+    return np.average(rows[:, 1:], axis=0, weights=rows[:, 0])
+
+
+def _slope(rows: Array) -> float:
+    """Slope of the difference over the speed, s."""
+    difference, speed = (rows[:, 1:] - _mean(rows)).T
+    weighted = rows[:, 0] * speed
+    return float(weighted @ difference / (weighted @ speed))
+
+
+def _noise(pair: Pair) -> float:
+    """Variance of the noise in the mean speed of a block, from its second differences."""
+    if len(pair.speed) <= _LEAST:
+        return 0.0
+    in_block = max(1.0, len(pair.speed) / _BLOCKS)
+    return float(np.mean(np.diff(pair.speed, 2) ** 2)) / 6.0 / in_block
+
+
+def _varies(rows: Array, noise: float) -> bool:
+    """Whether the speed varies, and not only by noise."""
+    mean = _mean(rows)[1]
+    variance = float(np.average((rows[:, 2] - mean) ** 2, weights=rows[:, 0]))
+    return variance > (_SPREAD * mean) ** 2 and noise <= _STEADY * variance

@@ -1,0 +1,154 @@
+"""Parameter files of ROS: which of their parameters apply to a node."""
+
+import re
+from collections.abc import Collection, Iterable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from gear_kinematics.parameters.yaml_file import Loader, read_yaml
+from gear_kinematics.wire.nearest import nearest
+
+_NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
+"""A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
+
+
+class ConfigError(ValueError):
+    """A parameter file that cannot be used; the text names the file and the cause."""
+
+
+class _OtherNodesError(ConfigError):
+    """A parameter file that has parameters, but none of the node."""
+
+
+def require_any(paths: Collection[Path], node: str) -> None:
+    """Check that parameter files have parameters, and at least one has some for the node.
+
+    ROS silently ignores other files, and the node would run with its default values.
+
+    Args:
+        paths: parameter files of ROS, as many as the node is started with.
+        node: the node's fully qualified name.
+
+    Raises:
+        ConfigError: if a file cannot be read or has no parameters, or none has any for the node.
+    """
+    useless = []
+    for path in paths:
+        try:
+            given_parameters(path, node)
+        except _OtherNodesError as error:
+            useless.append(str(error))
+    if useless and len(useless) == len(paths):
+        raise ConfigError('; '.join(useless))
+
+
+def calibration_path(value: str, paths: Collection[Path], node: str) -> Path:
+    """Find the calibration that the node's parameter names.
+
+    Args:
+        value: of the parameter. A relative path is relative to the parameter file that gives this
+            value, or else to the working directory.
+        paths: parameter files of ROS with which the node was started.
+        node: the node's fully qualified name.
+    """
+    for path in paths:
+        with suppress(ConfigError):
+            if given_parameters(path, node).get('calibration') == value:
+                return path.parent / value
+    return Path(value)
+
+
+def given_parameters(path: Path, node: str) -> dict[str, Any]:
+    """The parameters that a file has for a node, by dotted names.
+
+    All blocks that apply to the node count, in the order in which they begin: a later value of a
+    parameter replaces an earlier one, whether its block has a wildcard or not.
+    """
+    blocks = _read(path)
+    if not blocks:
+        raise ConfigError(f'{path}: no ros__parameters in it')
+    name = f'/{node.lstrip("/")}' if '/' in node else _full_name(path, node, blocks)
+    applying = [parameters for pattern, parameters in blocks if _applies(pattern, name)]
+    if not applying:
+        patterns = [pattern for pattern, _ in blocks]
+        there = f'{", ".join(patterns)}{nearest(name, patterns)}'
+        raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
+    given: dict[str, Any] = {}
+    for parameters in applying:
+        given |= parameters
+    return given
+
+
+def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
+    """The fully qualified name of the node of this name in a file."""
+    patterns = [
+        pattern for pattern, _ in blocks if pattern.rpartition('/')[2] in {node, '*', '**'}
+    ]
+    # A node that is named takes precedence over wildcards.
+    patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
+    for pattern in patterns:
+        # A namespace that matches the pattern, with an arbitrary token for `*`.
+        namespace = pattern.rpartition('/')[0].replace('/**', '').replace('/*', '/_')
+        name = f'{namespace}/{node}'
+        if all(_applies(other, name) for other in patterns):
+            return name
+    if len(patterns) > 1:
+        raise ConfigError(
+            f'{path}: parameters of more than one node: {", ".join(patterns)}; '
+            'choose one with --node'
+        )
+    return f'/{node}'
+
+
+def _applies(pattern: str, name: str) -> bool:
+    """Whether a block of a parameter file is for a node, as rclpy and rclcpp see it."""
+    return re.fullmatch(pattern.replace('/*', r'(/\w+)'), name, re.ASCII) is not None
+
+
+def _read(path: Path) -> list[tuple[str, dict[str, Any]]]:
+    """The blocks of a parameter file: names of nodes, and parameters by dotted names."""
+    document = read_yaml(path, ConfigError, _RosLoader)
+    blocks: dict[str, dict[str, Any]] = {}
+    for name, parameters in _blocks(document):
+        blocks.setdefault(name, {}).update(parameters)
+    # `node` and `/node` mean the same to rcl, but are two blocks.
+    found = [(f'/{name.removeprefix("/")}', parameters) for name, parameters in blocks.items()]
+    for name, _ in found:
+        if not _NODE_PATTERN.fullmatch(name):
+            raise ConfigError(f'{path}: {name} is not a valid node name')
+    return found
+
+
+class _Pairs(tuple[tuple[Any, Any], ...]):
+    """A mapping with possibly repeated keys, which ROS merges."""
+
+    __slots__ = ()
+
+
+class _RosLoader(Loader):
+    """Keeps repeated keys, which ROS merges."""
+
+
+_RosLoader.add_constructor(
+    'tag:yaml.org,2002:map',
+    lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True)),
+)
+
+
+def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:
+    for key, value in tree if isinstance(tree, _Pairs) else ():
+        if key != 'ros__parameters':
+            yield from _blocks(value, f'{name}/{key}' if name.strip('/') else f'{name}{key}')
+        elif isinstance(value, _Pairs):
+            yield name, _flatten(value)
+
+
+def _flatten(tree: _Pairs, prefix: str = '') -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in tree:
+        if isinstance(value, _Pairs):
+            flat |= _flatten(value, f'{prefix}{key}.')
+        else:
+            flat[f'{prefix}{key}'] = value
+    return flat

@@ -1,0 +1,75 @@
+"""A parameter file for a driver: the default one, with the driver's joint."""
+
+import math
+import re
+import shlex
+from pathlib import Path
+
+import yaml
+
+from gear_kinematics.parameters.files import ConfigError
+from gear_kinematics.parameters.node_parameters import NODE, default_config
+from gear_kinematics.wire.topics import ROTOR_STATE
+
+
+def new_config(topic: str, joint: str, name: str) -> str:
+    """Return the text of a parameter file for the joint of a driver.
+
+    Args:
+        topic: of the driver.
+        joint: its name there, or its index if no joint has a name.
+        name: of the file, for the command that starts the node.
+    """
+    # The head of the default file is about the default file.
+    body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
+    if joint.isascii() and joint.isprintable():
+        quoted = "'{}'".format(joint.replace("'", "''"))
+    else:
+        quoted = yaml.safe_dump(joint, default_style='"', width=math.inf).strip()
+    body = re.sub(r'(?m)^( +rotor_joint: ).*', lambda match: match[1] + quoted, body)
+    return (
+        f'# For the joint {_one_line(joint)} on {_one_line(topic)}. Start the node with\n'
+        f'#     {start_command(topic, name)}\n'
+        '# Check the mechanism, rotor_direction and rotor_encoder. SI units: m, rad, s.\n' + body
+    )
+
+
+def start_command(topic: str, name: str) -> str:
+    """The command that starts the node for a driver's topic with a parameter file."""
+    remapping = shlex.quote(f'{ROTOR_STATE}:={topic}')
+    return f'{NODE} --ros-args --params-file {shlex.quote(name)} -r {remapping}'
+
+
+def write_new(path: Path, text: str) -> None:
+    """Write a file that must not exist yet, completely or not at all.
+
+    Raises:
+        ConfigError: if it exists already or cannot be written.
+    """
+    try:
+        file = path.open('x', encoding='utf-8')
+    except FileExistsError as error:
+        raise ConfigError(f'{path}: exists already') from error
+    except OSError as error:
+        raise ConfigError(f'{path}: {error.strerror}') from error
+    try:
+        with file:
+            file.write(text)
+    except BaseException as error:
+        path.unlink()
+        if isinstance(error, OSError):
+            raise ConfigError(f'{path}: {error.strerror}') from error
+        raise
+
+
+def unused_name(folder: Path, name: str) -> Path:
+    """Return the path of the name in a folder, with a number if it is taken."""
+    path, number = folder / name, 1
+    while path.exists() or path.is_symlink():
+        number += 1
+        path = (folder / name).with_stem(f'{Path(name).stem}_{number}')
+    return path
+
+
+def _one_line(text: str) -> str:
+    return ''.join(char if char.isprintable() else '�' for char in text)

@@ -1,0 +1,171 @@
+"""Serves the page of `gearkin watch` on this machine, to those who have its address."""
+
+import asyncio
+import hmac
+import json
+import secrets
+import socket
+from collections.abc import Callable
+from dataclasses import asdict
+from typing import Any
+
+from tornado.httpserver import HTTPServer
+from tornado.web import Application, HTTPError, RequestHandler
+from tornado.websocket import WebSocketClosedError, WebSocketHandler
+
+from gear_kinematics.watch.page import drawing, watch_page
+from gear_kinematics.watch.view import View
+from gear_kinematics.watch.watcher import PERIOD, Answer, Watcher
+
+HOST = '127.0.0.1'
+_NAMES = (HOST, 'localhost')
+"""Host names of requests. A page elsewhere whose name is made to lead here (DNS rebinding) has
+another one; a forwarded port has another number."""
+_LARGEST = 4096  # bytes of a command
+_PING = 20.0  # s
+
+
+class Server:
+    """The page, with a new secret in its address."""
+
+    def __init__(self, watcher: Watcher, port: int = 0) -> None:
+        """Open the port.
+
+        Args:
+            watcher: gives what is shown, and does what is asked.
+            port: 0 takes a free one.
+
+        Raises:
+            OSError: if the port is taken.
+        """
+        token = secrets.token_urlsafe(24)
+        self._socket = socket.create_server((HOST, port))
+        self._socket.setblocking(False)  # noqa: FBT003, its only argument
+        given = {'watcher': watcher, 'token': token}
+        self._application = Application(
+            [(r'/([^/]+)/', _Page, given), (r'/([^/]+)/live', _Live, given)],
+            log_function=lambda _: None,
+            websocket_ping_interval=_PING,
+            websocket_max_message_size=_LARGEST,
+        )
+        self.address = f'http://{HOST}:{self._socket.getsockname()[1]}/{token}/'
+
+    def close(self) -> None:
+        """Close the port without having served."""
+        self._socket.close()
+
+    async def run(self, stopped: Callable[[], bool]) -> None:
+        """Serve until stopped."""
+        server = HTTPServer(self._application)
+        server.add_socket(self._socket)
+        try:
+            while not stopped():  # noqa: ASYNC110, a signal only sets a flag
+                await asyncio.sleep(PERIOD)
+        finally:
+            server.stop()
+            await server.close_all_connections()
+
+
+class _Guarded(RequestHandler):
+    """Refuses whoever does not know the token, and pages of other origins."""
+
+    def initialize(self, watcher: Watcher, token: str) -> None:
+        """Take what all requests have in common."""
+        self._watcher, self._token = watcher, token
+
+    def prepare(self) -> None:
+        """Check a request before anything else.
+
+        Raises:
+            HTTPError: if it is refused.
+        """
+        given = self.path_args[0].encode()
+        origin = self.request.headers.get('Origin')
+        if (
+            self.request.host_name not in _NAMES
+            or not hmac.compare_digest(given, self._token.encode())
+            or (origin is not None and origin != f'http://{self.request.host}')
+        ):
+            raise HTTPError(403)
+
+    def set_default_headers(self) -> None:
+        """Let nobody keep the page, frame it, or learn its address."""
+        self.clear_header('Server')
+        self.set_header('Cache-Control', 'no-store')
+        self.set_header('Content-Security-Policy', "frame-ancestors 'none'")
+        self.set_header('Cross-Origin-Resource-Policy', 'same-origin')
+        self.set_header('Referrer-Policy', 'no-referrer')
+        self.set_header('X-Content-Type-Options', 'nosniff')
+
+
+class _Page(_Guarded):
+    async def get(self, _token: str) -> None:
+        """Send the page."""
+        self.finish(watch_page(f'ws://{self.request.host}'))
+
+
+class _Live(_Guarded, WebSocketHandler):
+    """Sends the latest view at most thirty times a second, and takes commands."""
+
+    def check_origin(self, origin: str) -> bool:
+        """Take only the page itself; `prepare` has refused other origins."""
+        return origin == f'http://{self.request.host}'
+
+    def prepare(self) -> None:
+        """Check a request; browsers always name the origin of a WebSocket.
+
+        Raises:
+            HTTPError: if it is refused.
+        """
+        super().prepare()
+        if 'Origin' not in self.request.headers:
+            raise HTTPError(403)
+
+    def open(self, _token: str) -> None:
+        """Begin to send."""
+        self._sending = asyncio.create_task(self._send())
+
+    def on_close(self) -> None:
+        """End sending."""
+        self._sending.cancel()
+
+    async def on_message(self, message: str | bytes) -> None:
+        """Do what a button asks for, and answer in words."""
+        try:
+            command = json.loads(message)
+            answer = await self._do(command)
+        except (ValueError, KeyError, TypeError):
+            answer = Answer('There is no such command.', done=False)
+        await self.write_message({'answer': answer._asdict()})
+
+    async def _do(self, command: dict[str, Any]) -> Answer:
+        watcher = self._watcher
+        match command['do']:
+            case 'home':
+                asked = watcher.home()
+            case 'record':
+                asked = watcher.record()
+            case 'stop':
+                asked = watcher.stop()
+            case 'configure':
+                asked = watcher.configure(str(command['topic']), str(command['joint']))
+            case other:
+                raise ValueError(other)
+        return await asyncio.wrap_future(asked)
+
+    async def _send(self) -> None:
+        drawn = View().gear
+        loop = asyncio.get_running_loop()
+        try:
+            while True:
+                due = loop.time() + PERIOD
+                watcher = self._watcher
+                view = watcher.view
+                if view.gear != drawn:
+                    drawn = view.gear
+                    html = await loop.run_in_executor(None, drawing, watcher.drawn, watcher.module)
+                    await self.write_message({'drawing': html})
+                await self.write_message({'view': asdict(view)})  # until it has gone out
+                await asyncio.sleep(due - loop.time())
+        except WebSocketClosedError:
+            pass

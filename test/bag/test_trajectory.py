@@ -1,0 +1,151 @@
+"""The rotor's motion over time: read from bags, or at a constant speed."""
+
+import math
+
+import numpy as np
+import pytest
+from gear_recordings import Samples, write_recording
+
+from gear_kinematics.bag import BagError, BagWriter
+from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory, read_trajectory
+from gear_kinematics.kinematics import matrix_method, split_turns
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.wire.cdr import JointStateTemplate
+
+MS = 1_000_000  # ns
+TURN = 2.0 * math.pi
+
+
+def config(**changes) -> dict:
+    return {**parameters.load(parameters.default_config()), **changes}
+
+
+def positions(trajectory: Trajectory) -> np.ndarray:
+    return TURN * trajectory.turns + trajectory.angle
+
+
+def test_recorded_positions_are_those_of_the_rotor(tmp_path):
+    stamps = [5_000 * MS, 5_010 * MS, 5_030 * MS]
+    bag = write_recording(tmp_path / 'bag', Samples(stamps, [1.0, 2.0, 40.0]))
+    read = read_trajectory(bag, config(rotor_direction=-1, rotor_zero=0.5))
+    assert read.time == pytest.approx([0.0, 0.01, 0.03], abs=1e-15)
+    assert positions(read) == pytest.approx([-0.5, -1.5, -39.5], abs=1e-12)
+    # Without velocities: the slopes, in the middle weighted for uneven intervals.
+    middle = (-1.0 / 0.01) * 2 / 3 + (-38.0 / 0.02) / 3
+    assert read.velocity == pytest.approx([-100.0, middle, -1900.0])
+
+
+def test_recorded_velocities_are_taken(shared_bag):
+    read = read_trajectory(shared_bag, config())
+    assert read.velocity == pytest.approx(100.0 * math.pi, abs=1.0)
+    assert len(set(read.velocity.tolist())) > 100  # the noise of the recording
+
+
+@pytest.fixture
+def shared_bag():
+    return share_directory() / 'bags' / 'constant_speed_3000rpm'
+
+
+def test_a_stamp_counts_once_and_a_jump_back_ends_the_motion(tmp_path):
+    stamps = [7_000 * MS, 7_001 * MS, 7_001 * MS, 7_002 * MS, 3_000 * MS, 3_001 * MS]
+    template = JointStateTemplate(['rotor'], velocity=False, effort=False)
+    with BagWriter(tmp_path / 'bag') as writer:
+        writer.add_topic('/rotor_state', 'sensor_msgs/msg/JointState')
+        for received, (stamp, position) in enumerate(zip(stamps, [0, 1, 9, 2, 5, 6], strict=True)):
+            writer.write('/rotor_state', received, template.encode(stamp, [float(position)]))
+    read = read_trajectory(tmp_path / 'bag', config())
+    assert read.time == pytest.approx([0.0, 0.001, 0.002])
+    assert positions(read) == pytest.approx([0.0, 1.0, 2.0])
+
+
+def test_faulty_messages_are_ignored():
+    read = read_trajectory(share_directory() / 'bags' / 'driver_faults', config())
+    assert np.all(np.diff(read.time) > 0.0)
+    assert np.all(np.isfinite(positions(read)) & np.isfinite(read.velocity))
+
+
+def test_huge_positions_give_no_warning(tmp_path, actuator):
+    rotor = Samples([MS, MS + 1, 2 * MS, 3 * MS], [0.0, 1.4e16, -1.4e16, 1e300])
+    read = read_trajectory(write_recording(tmp_path / 'bag', rotor), config())
+    assert len(read.time) == 3
+    assert np.all(np.isfinite(positions(read)))
+    assert np.all(np.abs(read.state(actuator).oldham_centre) <= 0.0011)
+
+
+def test_bags_without_a_motion_are_refused(tmp_path):
+    still = write_recording(tmp_path / 'still', Samples([MS, MS], [0.0, 1.0]))
+    with pytest.raises(BagError, match='/rotor_state has fewer than two rotor states'):
+        read_trajectory(still, config())
+    with pytest.raises(BagError, match='no topic /motor of type sensor_msgs/msg/JointState'):
+        read_trajectory(still, config(), '/motor')
+
+
+def test_constant_speed_turns_from_zero(actuator):
+    backwards = Trajectory.at_constant_speed(-50.0, turns=3)
+    assert positions(backwards) == pytest.approx(-50.0 * backwards.time, abs=1e-12)
+    assert positions(backwards)[[0, -1]] == pytest.approx([0.0, -3.0 * TURN])
+    assert backwards.longest_step <= 1.001 / 360
+    assert Trajectory.at_constant_speed(2.0, duration=0.3).time[-1] == pytest.approx(0.3)
+    state, expected = (
+        backwards.state(actuator),
+        matrix_method.solve(actuator, -50.0 * backwards.time, -50.0),
+    )
+    for field in ('output_angle', 'oldham_centre', 'satellite_velocity'):
+        assert getattr(state, field) == pytest.approx(getattr(expected, field), abs=1e-9)
+
+
+@pytest.mark.parametrize('speed', [0.0, math.nan, math.inf])
+def test_speeds_without_motion_are_refused(speed):
+    with pytest.raises(ValueError, match='finite and not 0'):
+        Trajectory.at_constant_speed(speed)
+
+
+def test_too_many_turns_are_refused():
+    with pytest.raises(ValueError, match=f'2000 turns of the rotor are more than {MOST_TURNS}'):
+        Trajectory.at_constant_speed(TURN, duration=2000.0)
+
+
+def test_even_intervals_reach_to_the_end():
+    samples = Trajectory(
+        np.array([1.0, 2.0, 4.0]), np.array([0.0, 1.0, 4.0]), np.zeros(3), np.ones(3)
+    )
+    even = samples.every(0.5)
+    assert even.time == pytest.approx([1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0])
+    assert positions(even) / TURN == pytest.approx([0.0, 0.5, 1.0, 1.75, 2.5, 3.25, 4.0])
+    assert even.longest_step == pytest.approx(0.75)
+
+
+def test_a_closed_loop_continues_seamlessly():
+    loop = Trajectory.at_constant_speed(10.0, turns=19).every(0.05, closed=True)
+    steps = np.diff([*positions(loop), 19.0 * TURN])
+    assert steps == pytest.approx(19.0 * TURN / len(steps), rel=1e-9)
+    assert len(steps) == round(19.0 * TURN / 10.0 / 0.05)
+    short = Trajectory.at_constant_speed(10.0, turns=1).every(100.0, closed=True)
+    assert positions(short).tolist() == [0.0]
+
+
+def test_parts_are_between_two_times():
+    samples = Trajectory.at_constant_speed(1.0, duration=3.0)
+    part = samples.between(1.0, 2.0)
+    assert part.time[[0, -1]] == pytest.approx([1.0, 2.0], abs=0.02)
+    assert positions(part) == pytest.approx(part.time)
+    with pytest.raises(ValueError, match='no rotor states from 5 s to inf s'):
+        samples.between(5.0, math.inf)
+
+
+def test_fastest_part_is_as_long_as_wanted():
+    """Slow, fast and slow again: 10, 40 and 10 rad/s for a second each."""
+    time = np.linspace(0.0, 3.0, 3001)
+    angle = np.interp(time, [0.0, 1.0, 2.0, 3.0], [0.0, 10.0, 50.0, 60.0])
+    speed = np.where((time > 1.0) & (time < 2.0), 40.0, 10.0)
+    moved = Trajectory(time, *split_turns(angle), speed)
+    assert moved.travel[-1] == pytest.approx(60.0 / math.tau)
+    start, end = moved.fastest(2.0)
+    assert 40.0 * (end - max(start, 1.0)) + 10.0 * max(1.0 - start, 0.0) == pytest.approx(
+        2.0 * math.tau, abs=0.05
+    )
+    assert start <= 1.001 <= end
+    assert moved.fastest(100.0) == (0.0, 3.0)
+    back = Trajectory(time, *split_turns(50.0 * np.sin(angle)), speed)
+    assert back.travel[-1] > 60.0  # back and forth

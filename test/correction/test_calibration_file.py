@@ -1,0 +1,219 @@
+"""The file of a calibration: what is read is what was written, and nothing else is accepted."""
+
+from fractions import Fraction
+
+import pytest
+import yaml
+from calibrations import calibration
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gear_kinematics.correction.calibration_file import (
+    SCHEMA,
+    Calibration,
+    CalibrationError,
+    Order,
+    Spans,
+    Stop,
+)
+from gear_kinematics.kinematics import Branch, Mechanism
+
+
+def mechanism(ring: int, satellite: int) -> Mechanism:
+    return Mechanism(ring, satellite, 0.0011, (Branch('a'),))
+
+
+@pytest.fixture
+def file(tmp_path):
+    """Write a calibration with entries changed, or deleted where they are None."""
+
+    def write(**changes):
+        document = yaml.safe_load(calibration().text()) | changes
+        path = tmp_path / 'calibration.yaml'
+        path.write_text(yaml.safe_dump(document), 'utf-8')
+        return path
+
+    return write
+
+
+numbers = st.floats(-1e30, 1e30)
+positive = st.floats(1e-12, 1e30)
+texts = st.text(st.characters(categories=['L', 'N', 'P', 'S']) | st.just(' '), max_size=10)
+
+
+@given(
+    st.lists(
+        st.builds(
+            Order, texts, st.fractions(Fraction(1, 19), 99, max_denominator=99), numbers, numbers
+        ),
+        max_size=3,
+    ),
+    st.lists(st.builds(Stop, positive, numbers), max_size=3),
+    texts,
+    numbers,
+)
+def test_what_is_read_is_what_was_written(tmp_path_factory, orders, stops, created, constant):
+    made = calibration(
+        orders=tuple(orders), hysteresis=tuple(stops), created=created, constant=constant
+    )
+    path = tmp_path_factory.mktemp('files') / 'calibration.yaml'
+    path.write_text(made.text(), 'utf-8')
+    assert Calibration.load(path) == made
+
+
+def test_file_without_teeth_torque_and_compliance_is_read(tmp_path):
+    made = calibration(
+        ring_teeth=None,
+        satellite_teeth=None,
+        gear_ratio=Fraction(1457, 26),
+        compliance=None,
+        spans=Spans((-1.0, 1.0), None, (0.0, 6.0), 10.0),
+    )
+    path = tmp_path / 'calibration.yaml'
+    path.write_text(made.text(), 'utf-8')
+    assert Calibration.load(path, Fraction(1457, 26)) == made
+
+
+def test_file_says_what_its_numbers_are():
+    document = yaml.safe_load(calibration().text())
+    assert document['schema'] == SCHEMA == 'gear_kinematics/calibration/1'
+    assert document['units'] == {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
+    assert document['gear_ratio'] == '-19'
+    assert document['orders'][2] == {
+        'name': 'output × 1',
+        'cycles': '1/19',
+        'cos': 5e-4,
+        'sin': 7e-4,
+    }
+
+
+def test_numbers_can_be_written_without_a_point(file):
+    path = file()
+    text = path.read_text('utf-8')
+    changed = text.replace("gear_ratio: '-19'", 'gear_ratio: -19')
+    changed = changed.replace('half_width: 0.0001\n', 'half_width: 1e-4\n')
+    assert changed.count('1e-4') == 1
+    path.write_text(changed, 'utf-8')
+    assert Calibration.load(path) == calibration()
+
+
+@pytest.mark.parametrize(
+    ('changes', 'fault'),
+    [
+        ({'schema': 'gear_kinematics/calibration/2'}, 'no calibration: its `schema` is not'),
+        ({'units': {'angle': 'deg'}}, '`units` must be'),
+        ({'half_widht': 1.0}, 'unknown: half_widht'),
+        ({'half_width': 'wide'}, "half_width must be a finite number, not 'wide'"),
+        ({'half_width': float('nan')}, 'half_width must be a finite number, not nan'),
+        ({'half_width': 10**400}, 'half_width must be a finite number, not 1000'),
+        ({'half_width': True}, 'half_width must be a finite number, not True'),
+        ({'half_width': 0.0}, 'half_width must be greater than 0'),
+        ({'outside_half_width': 1e-9}, 'at most outside_half_width'),
+        ({'constant': None}, 'constant must be a finite number, not None'),
+        ({'gear_ratio': '-19.5'}, "gear_ratio must be an exact ratio such as '-19' or '1457/26'"),
+        ({'gear_ratio': '1/0'}, 'gear_ratio must be an exact ratio'),
+        ({'gear_ratio': '1e999999999'}, 'gear_ratio must be an exact ratio'),
+        ({'gear_ratio': '0'}, 'gear_ratio must not be 0'),
+        ({'ring_teeth': None}, 'must both be given or both be null'),
+        ({'ring_teeth': 80.5}, 'ring_teeth must be an integer, not 80.5'),
+        ({'orders': {}}, 'orders must be a list of any length, not {}'),
+        ({'orders': [3]}, 'orders[0] must have named values, not 3'),
+        ({'orders': [{'name': 'a', 'cycles': '1'}]}, 'orders[0].cos, orders[0].sin is missing'),
+        (
+            {'orders': [{'name': 'a', 'cycles': '-1', 'cos': 0.0, 'sin': 0.0}]},
+            'the cycles of an order must be greater than 0',
+        ),
+        (
+            {'orders': [{'name': 'a', 'cycles': '1/99999989', 'cos': 0.0, 'sin': 0.0}]},
+            'the orders repeat only after 99999989 rotor turns',
+        ),
+        ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),
+        (
+            {'spans': {'speed': [1.0, -1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
+            'a compliance needs the span of the torque; the span of the speed must not end',
+        ),
+        (
+            {'spans': {'speed': [1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
+            'spans.speed must be a list of 2 numbers, not [1.0]',
+        ),
+        ({'covariance': [[1.0]]}, 'covariance must have 11 rows of 11 numbers'),
+    ],
+)
+def test_fault_of_a_file_is_named_with_the_file(file, changes, fault):
+    path = file(**changes)
+    with pytest.raises(CalibrationError) as error:
+        Calibration.load(path)
+    assert str(error.value).startswith(f'{path}: ')
+    assert fault in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ('content', 'fault'),
+    [
+        (b'', 'no calibration: its `schema` is not'),
+        (b'- 1\n', 'no calibration: its `schema` is not'),
+        (b'schema: [', 'not YAML'),
+        (b'a: &a [1]\nb: *a\n', 'aliases are not supported'),
+        (b'\xff\xfe\x00', 'codec'),
+        (b'# ' + 2**18 * b'x', 'longer than 262144 characters'),
+    ],
+)
+def test_anything_else_is_no_calibration(tmp_path, content, fault):
+    path = tmp_path / 'calibration.yaml'
+    path.write_bytes(content)
+    with pytest.raises(CalibrationError, match=r'calibration\.yaml: ') as error:
+        Calibration.load(path)
+    assert fault in str(error.value)
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(CalibrationError, match=r'none\.yaml: No such file or directory'):
+        Calibration.load(tmp_path / 'none.yaml')
+    with pytest.raises(CalibrationError, match='Is a directory'):
+        Calibration.load(tmp_path)
+    with pytest.raises(CalibrationError, match='null'):
+        Calibration.load(tmp_path / 'a\0b')
+
+
+def test_entry_that_is_missing_is_named(file):
+    path = file()
+    document = yaml.safe_load(path.read_text('utf-8'))
+    del document['half_width'], document['spans']
+    path.write_text(yaml.safe_dump(document), 'utf-8')
+    with pytest.raises(CalibrationError, match='yaml: half_width, spans is missing'):
+        Calibration.load(path)
+
+
+@pytest.mark.parametrize('gear', [mechanism(80, 76), Fraction(-19)])
+def test_calibration_fits_its_gear(file, gear):
+    assert Calibration.load(file(), gear) == calibration()
+
+
+@pytest.mark.parametrize(
+    ('gear', 'there'),
+    [
+        (mechanism(61, 58), r'gear ratio -58/3 \(ring 61, satellite 58 teeth\)'),
+        (mechanism(40, 38), r'gear ratio -19 \(ring 40, satellite 38 teeth\)'),
+        (Fraction(19), 'gear ratio 19'),
+    ],
+)
+def test_calibration_of_another_gear_is_refused_naming_both(file, gear, there):
+    own = r'gear ratio -19 \(ring 80, satellite 76 teeth\)'
+    with pytest.raises(CalibrationError, match=f'yaml: calibrated for {own}, not for {there}$'):
+        Calibration.load(file(), gear)
+
+
+def test_calibration_by_ratio_fits_every_gear_of_that_ratio(file):
+    path = file(ring_teeth=None, satellite_teeth=None)
+    assert Calibration.load(path, mechanism(40, 38)).gear_ratio == -19
+    with pytest.raises(CalibrationError, match='calibrated for gear ratio -19, not for'):
+        Calibration.load(path, mechanism(61, 58))
+
+
+def test_lines_of_another_file_are_not_shown(tmp_path):
+    path = tmp_path / 'passwords'
+    path.write_text('root:secret:0\n\tadmin: [hidden\n', 'utf-8')
+    with pytest.raises(CalibrationError, match=r'not YAML: .* in line 2$') as error:
+        Calibration.load(path)
+    assert 'secret' not in str(error.value)
+    assert 'hidden' not in str(error.value)

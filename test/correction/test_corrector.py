@@ -1,0 +1,312 @@
+"""The correction of the output angle, against its definition in 50 digits."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from calibrations import MP, calibration, expected_deviations
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gear_kinematics.correction.calibration_file import Order, Stop
+from gear_kinematics.correction.corrector import MAX_GAP, Correction, Corrector, play_bounds
+from gear_kinematics.kinematics import RotorPosition
+from gear_kinematics.state.rotor_input import RotorSample
+
+MS = 10**6
+START = 1_700_000_000 * 10**9
+STEADY = 1.0  # rad/s of the rotor: within the span
+
+
+def samples(positions, *, velocity=STEADY, effort=None, period=MS) -> list[RotorSample]:
+    return [
+        RotorSample(START + k * period, RotorPosition(*position), velocity, effort)
+        for k, position in enumerate(positions)
+    ]
+
+
+def at_angles(*angles, **fields) -> list[RotorSample]:
+    """Make samples at rotor angles, rad."""
+    return samples([(0, angle) for angle in angles], **fields)
+
+
+def correct_all(corrector: Corrector, motion, **options) -> list[Correction]:
+    return [corrector.correct(sample, **options) for sample in motion]
+
+
+def columns(motion, stretch=0) -> list[np.ndarray]:
+    """Convert samples to the arrays that `correct_batch` takes."""
+    stamps = np.array([sample.stamp for sample in motion], np.int64)
+    numbers = [(*s.position, s.velocity, s.effort) for s in motion]
+    table = np.array(numbers, np.float64).reshape(-1, 4)  # None becomes NaN
+    return [stamps, *table.T, np.full(len(motion), stretch)]
+
+
+@st.composite
+def motions(draw) -> list[RotorSample]:
+    """Draw a motion with reversals, standstills, jumps of many turns, gaps and missing fields."""
+    turns, angle, stamp = draw(st.integers(-(10**9), 10**9)), 0.0, START
+    efforts = st.none() | st.floats(-3.0, 3.0)
+    velocities = st.none() | st.floats(-100.0, 100.0)
+    motion = []
+    for _ in range(draw(st.integers(1, 40))):
+        angle += draw(st.sampled_from((0.0, 1e-3, -1e-3)) | st.floats(-0.05, 0.05))
+        turns += draw(st.sampled_from((0, 0, 0, 0, 0, 0, 1, -1, 700, -3000)))
+        stamp += draw(st.sampled_from((0, MS, MS, MS, 150 * MS, MAX_GAP, MAX_GAP + 1)))
+        position = RotorPosition(turns, angle)
+        motion.append(RotorSample(stamp, position, draw(velocities), draw(efforts)))
+    return motion
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(-1, 1), st.floats(-math.pi, math.pi), st.none() | st.floats(-1, 1)),
+        min_size=1,
+        max_size=30,
+    ),
+    st.integers(-(2**40), 2**40),
+)
+def test_deviation_and_unknown_part_are_those_of_the_definition(steps, turns):
+    made = calibration()
+    motion = []
+    for step, angle, effort in steps:
+        turns += step
+        motion.append((turns, angle, effort))
+    corrector = Corrector(made)
+    for k, (moved, expected) in enumerate(
+        zip(motion, expected_deviations(made, motion), strict=True)
+    ):
+        sample = RotorSample(START + k * MS, RotorPosition(*moved[:2]), STEADY, moved[2])
+        deviation, _, half_width, _ = corrector.correct(sample)
+        assert abs(MP.mpf(deviation) - expected[0]) < 1e-14
+        inside = math.isclose(half_width - float(expected[1]), made.half_width, abs_tol=1e-14)
+        outside = made.outside_half_width
+        assert inside or math.isclose(half_width - float(expected[1]), outside, abs_tol=1e-14)
+
+
+@given(motions(), st.lists(st.integers(0, 40), max_size=3), st.booleans())
+def test_batches_give_the_same_as_single_samples(motion, cuts, referenced):
+    made = calibration()
+    single = correct_all(Corrector(made), motion, referenced=referenced)
+    corrector = Corrector(made)
+    bounds = sorted({0, *(min(cut, len(motion)) for cut in cuts), len(motion)})
+    batches = [
+        corrector.correct_batch(*columns(motion[start:stop]), referenced=referenced)
+        for start, stop in pairwise(bounds)
+    ]
+    for field, scale in (
+        ('deviation', 1.0),
+        ('slope', 100.0),
+        ('half_width', 1.0),
+        ('unknown_history', 1.0),
+    ):
+        expected = [getattr(correction, field) for correction in single]
+        found = np.concatenate([getattr(batch, field) for batch in batches])
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-15 * scale, err_msg=field)
+
+
+def test_single_samples_can_follow_a_batch():
+    made, motion = calibration(), at_angles(*np.cumsum(np.tile([0.004, 0.007, -0.009], 50)))
+    expected = correct_all(Corrector(made), motion)
+    corrector = Corrector(made)
+    corrector.correct_batch(*columns(motion[:100]))
+    for sample, correction in zip(motion[100:], expected[100:], strict=True):
+        assert corrector.correct(sample) == pytest.approx(correction, rel=1e-12)
+
+
+def test_long_batch_in_small_steps_gives_the_same_as_single_samples():
+    made, steps = calibration(), np.random.default_rng(3).normal(0.0, 0.002, 10_000)
+    motion = at_angles(*np.cumsum(steps).tolist())
+    expected = np.array(correct_all(Corrector(made), motion))
+    found = np.transpose(Corrector(made).correct_batch(*columns(motion)))
+    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13)
+
+
+def test_slope_is_the_derivative_along_the_output_angle():
+    step = 1e-7
+    for start in np.linspace(-3.0, 3.0, 25):
+        corrector = Corrector(calibration())
+        # Away and a little back, so that some stop operators move, at a distance from their ends.
+        angles = start + np.array([0.0, 0.2, 0.2 - 0.01, 0.2 - 0.01 - step, 0.2 - 0.01 - 2 * step])
+        corrections = correct_all(corrector, at_angles(*angles))
+        change = corrections[4].deviation - corrections[2].deviation
+        assert corrections[3].slope == pytest.approx(change / (-2 * step / -19), rel=1e-5)
+
+
+def test_play_is_taken_out_only_on_reversal():
+    # One stop operator alone, which rises to its radius, and falls to minus its radius.
+    made = calibration(constant=0.0, orders=(), hysteresis=(Stop(1e-3, 1.0),), compliance=None)
+    forward = np.linspace(0.0, -0.1, 11)  # the output turns backwards
+    backward = -0.1 + np.array([0.019, 0.038, 0.1])
+    corrections = correct_all(Corrector(made), at_angles(*forward, *backward))
+    deviations = [correction.deviation for correction in corrections[10:]]
+    assert deviations == pytest.approx([1e-3, 0.0, -1e-3, -1e-3], abs=1e-15)
+
+
+def test_interval_is_wide_until_the_output_has_travelled_twice_the_radii():
+    made = calibration(compliance=None)
+    unknown = 0.6 * 4e-4 + 0.2 * 2e-3
+    corrector = Corrector(made)
+    travels = (0.0, 8e-4, 2e-3, 4e-3 - 1e-9, 4e-3 + 1e-9, 3e-3, 0.0)
+    widths = [c.half_width for c in correct_all(corrector, at_angles(*(19 * x for x in travels)))]
+    assert widths[0] == pytest.approx(1e-4 + unknown)
+    assert widths[1] == pytest.approx(1e-4 + 0.2 * (2e-3 - 4e-4))
+    assert widths[2] == pytest.approx(1e-4 + 0.2 * 1e-3)
+    assert widths[3] > 1e-4
+    assert widths[4:] == [1e-4, 1e-4, 1e-4]
+
+
+@pytest.mark.parametrize('cause', ['gap', 'clock', 'stretch', 'reset'])
+def test_plays_are_unknown_again_after_motion_was_missed(cause):
+    corrector = Corrector(calibration(compliance=None))
+    first = at_angles(0.0, 0.5)
+    assert correct_all(corrector, first)[-1].half_width == 1e-4
+    stamp = {'gap': MAX_GAP + 1, 'clock': -2 * 10**9}.get(cause, MS) + first[-1].stamp
+    if cause == 'reset':
+        corrector.reset()
+    again = corrector.correct(first[-1]._replace(stamp=stamp), stretch=int(cause == 'stretch'))
+    assert again.half_width == pytest.approx(1e-4 + 0.6 * 4e-4 + 0.2 * 2e-3)
+
+
+def test_motion_is_followed_across_a_gap_that_is_not_too_long():
+    corrector = Corrector(calibration(compliance=None))
+    motion = at_angles(0.0, 0.5, 0.6, period=MAX_GAP)
+    assert correct_all(corrector, motion)[-1].half_width == 1e-4
+
+
+def half_width(sample: RotorSample, *, angle_span=(-4.0, 4.0), **options) -> float:
+    """Give the half width at a sample, when all plays are known."""
+    made = calibration()
+    corrector = Corrector(replace(made, spans=replace(made.spans, angle=angle_span)))
+    before = sample.position._replace(angle=sample.position.angle - 0.2)
+    corrector.correct(sample._replace(stamp=sample.stamp - MS, position=before), **options)
+    return corrector.correct(sample, **options).half_width
+
+
+def at(turns=0, angle=0.0, velocity=STEADY, effort=0.0) -> RotorSample:
+    return RotorSample(START, RotorPosition(turns, angle), velocity, effort)
+
+
+@pytest.mark.parametrize(
+    ('sample', 'inside'),
+    [
+        (at(), True),
+        (at(velocity=19 * 2.99), True),
+        (at(velocity=19 * 3.01), False),
+        (at(velocity=-19 * 3.01), False),
+        (at(effort=-29.9 / 19), True),
+        (at(effort=-30.1 / 19), False),
+        (at(effort=19.9 / 19), True),
+        (at(effort=20.1 / 19), False),
+    ],
+)
+def test_interval_is_that_of_the_ideal_output_outside_of_what_was_calibrated(sample, inside):
+    assert half_width(sample) == (1e-4 if inside else 2e-3)
+
+
+@pytest.mark.parametrize('output_turns', [0, 1, -1, 10**9])
+def test_span_of_the_angle_counts_within_the_period_of_the_orders(output_turns):
+    def inside(x: float) -> bool:
+        turns = round(-19 * x / (2 * math.pi))
+        sample = at(-19 * output_turns + turns, -19 * x - 2 * math.pi * turns)
+        return half_width(sample, angle_span=(-0.5, 1.0)) == 1e-4
+
+    assert [inside(x) for x in (-0.51, -0.49, 0.0, 0.99, 1.01, 3.0)] == [
+        False,
+        True,
+        True,
+        True,
+        False,
+        False,
+    ]
+
+
+def test_span_of_the_angle_does_not_matter_where_orders_repeat_every_turn():
+    made = calibration(orders=(Order('rotor × 1', Fraction(1), 1e-3, 0.0),))
+    corrector = Corrector(replace(made, spans=replace(made.spans, angle=(0.0, 0.1))))
+    motion = at_angles(100.0, 101.0, effort=0.0)
+    assert correct_all(corrector, motion)[-1].half_width == 1e-4
+
+
+def test_orders_of_the_output_are_unknown_until_referenced():
+    made = calibration(hysteresis=(), compliance=None)
+    corrector = Corrector(made)
+    deviation, slope, width, _ = corrector.correct(at(7, 0.3), referenced=False)
+    rotor = 1e-3 * math.cos(0.3) - 4e-4 * math.sin(0.3) + 2e-4 * math.sin(0.6)
+    assert deviation == pytest.approx(1e-5 + rotor, rel=1e-13)
+    along_rotor = -1e-3 * math.sin(0.3) - 4e-4 * math.cos(0.3) + 4e-4 * math.cos(0.6)
+    assert slope == pytest.approx(-19 * along_rotor, rel=1e-13)
+    assert width == pytest.approx(1e-4 + math.hypot(5e-4, 7e-4) + math.hypot(1e-4, 3e-5))
+
+
+def test_wind_up_is_unknown_without_an_effort():
+    made = calibration(orders=(), hysteresis=(), constant=0.0)
+    unknown = Corrector(made).correct(at(effort=None))
+    assert unknown.deviation == 0.0
+    assert unknown.half_width == pytest.approx(1e-4 + 2e-5 * 25.0)
+    known = Corrector(made).correct(at(effort=0.5))
+    assert known.deviation == pytest.approx(-2e-5 * (-19 * 0.5 - 1.0))
+    assert known.half_width == 1e-4
+
+
+@pytest.mark.parametrize(('speed', 'inside'), [(19 * 2.9, True), (19 * 3.1, False)])
+def test_missing_velocity_is_that_of_the_travel(speed, inside):
+    corrector = Corrector(calibration(compliance=None))
+    angles = speed * 1e-3 * np.arange(250)
+    noise = np.tile([5e-3, -5e-3], 125)  # of the encoder: 10 rad/s from sample to sample
+    motion = at_angles(*(angles + noise), velocity=None)
+    widths = [correction.half_width for correction in correct_all(corrector, motion)]
+    assert widths[199] == 2e-3  # unknown up to here: the first of two tenths may be incomplete
+    assert set(widths[200:]) == {1e-4 if inside else 2e-3}
+
+
+def test_correction_keeps_its_precision_after_many_turns():
+    made = calibration()
+    motion = [(0, angle) for angle in np.cumsum(np.tile([0.01, 0.02, -0.025], 20)).tolist()]
+    near = correct_all(Corrector(made), samples(motion, effort=0.0))
+    far = [(19 * 10**12 + turns, angle) for turns, angle in motion]
+    assert correct_all(Corrector(made), samples(far, effort=0.0)) == near
+
+
+def test_calibration_without_terms_adds_its_constant():
+    made = calibration(orders=(), hysteresis=(), compliance=None)
+    assert Corrector(made).correct(at()) == (1e-5, 0.0, 1e-4, 0.0)
+    batch = Corrector(made).correct_batch(*columns([at(), at()]))
+    np.testing.assert_array_equal(np.transpose(batch), 2 * [(1e-5, 0.0, 1e-4, 0.0)])
+
+
+@given(
+    st.lists(st.floats(-1.0, 1.0), min_size=1, max_size=70),
+    st.lists(st.floats(1e-3, 0.5), max_size=4),
+    st.floats(-0.1, 0.1),
+)
+def test_play_bounds_are_those_of_step_by_step_play(x, radii, known):
+    radii = np.array(radii)
+    for start in ((-math.inf, math.inf), (known, known)):
+        ends = np.array(start)[:, np.newaxis].repeat(len(radii), axis=1)
+        least, most = play_bounds(np.array(x), radii, *ends)
+        for k, angle in enumerate(x):
+            ends = np.array(
+                [
+                    [
+                        min(max(play, angle - r), angle + r)
+                        for play, r in zip(row, radii, strict=True)
+                    ]
+                    for row in ends
+                ]
+            ).reshape(2, -1)
+            np.testing.assert_array_equal([least[k], most[k]], ends)
+
+
+@given(motions(), st.integers(1, 39))
+def test_history_before_the_first_sample_changes_no_more_than_is_said(motion, start):
+    made = calibration()
+    whole = correct_all(Corrector(made), motion)[start:]
+    part = correct_all(Corrector(made), motion[start:])
+    for known, unknown in zip(whole, part, strict=True):
+        less = unknown.half_width - known.half_width
+        assert -1e-12 <= less <= unknown.unknown_history + 1e-12
+        assert abs(known.deviation - unknown.deviation) <= unknown.unknown_history + 1e-12

@@ -1,0 +1,138 @@
+"""Lost motion and delay of simulated gears, live and from pairs of runs."""
+
+import math
+
+import numpy as np
+import pytest
+from simulated_encoders import (
+    ARC_MINUTE,
+    MS,
+    TURN,
+    Drive,
+    even_strokes,
+    ramped_strokes,
+    sine_strokes,
+    stamps,
+)
+
+from gear_kinematics.correction.reversals import Pair, separate
+from gear_kinematics.correction.transmission_error import ErrorWindow, TransmissionError
+
+PLAY = 3.0 * ARC_MINUTE
+DELAY = 2e-3  # s
+ERRORS = {1: 4.0 * ARC_MINUTE, 19: 1.0 * ARC_MINUTE, 20: 0.3 * ARC_MINUTE}
+STEPS = {'rotor_step': TURN / 2**14, 'output_step': TURN / 2**17}
+
+
+def live(drive: Drive, profile, seconds, every=1.0, rate=500.0, seed=1):
+    """Return what the node's window of 10 s says at times from the first reversal on."""
+    times, rotor, output = drive.readings(profile, seconds, rate, seed)
+    comparison = TransmissionError(max_gap=100 * MS, travel=math.radians(1.0))
+    window, found, due = ErrorWindow(10 * 1000 * MS), [], 9.0
+    ideal = (rotor / drive.ratio).tolist()
+    readings = zip(times.tolist(), stamps(times).tolist(), ideal, output.tolist(), strict=True)
+    for time, stamp, angle, reading in readings:
+        for sample in comparison.add_ideal(stamp, 0, angle) + comparison.add_measured(
+            stamp, reading
+        ):
+            window.add(sample)
+        if time >= due:
+            found.append(window.reversals)
+            due += every
+    return found
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('delay', [0.0, DELAY])
+def test_lost_motion_is_the_play_at_any_time(delay):
+    drive = Drive(PLAY, ERRORS, delay, noise=0.1 * ARC_MINUTE, **STEPS)
+    found = live(drive, sine_strokes(1.0, 8.0), 41.0)
+    known = [reversals for reversals in found if reversals and reversals.lost_motion]
+    assert len(known) >= 0.7 * len(found)  # about the turning points too few angles are covered
+    values = np.array([k.lost_motion.value for k in known])
+    spreads = np.array([k.lost_motion.uncertainty for k in known])
+    np.testing.assert_allclose(values, PLAY, rtol=0, atol=0.2 * ARC_MINUTE)
+    assert np.mean(np.abs(values - PLAY) <= spreads) >= 0.85
+    assert np.median(spreads) < 0.1 * ARC_MINUTE
+    delays = np.array([k.delay.value for k in known])
+    np.testing.assert_allclose(delays, delay, rtol=0, atol=2e-4)
+
+
+@pytest.mark.slow
+def test_at_an_even_speed_a_delay_is_not_called_play():
+    drive = Drive(PLAY, ERRORS, DELAY, noise=0.1 * ARC_MINUTE, **STEPS)
+    found = live(drive, even_strokes(1.0, 8.0), 31.0)
+    known = [reversals for reversals in found if reversals]
+    assert len(known) >= 15
+    for reversals in known:
+        assert reversals.lost_motion is None
+        assert reversals.delay is None
+        expected = PLAY + DELAY * 2.0 / 8.0
+        assert reversals.difference.value == pytest.approx(expected, abs=0.1 * ARC_MINUTE)
+        assert reversals.speed == pytest.approx(2.0 / 8.0, rel=1e-2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('profile', 'delay'),
+    [
+        (sine_strokes(1.0, 8.0), DELAY),
+        (ramped_strokes(1.0, 4.0, 1.0), DELAY),
+        (sine_strokes(0.3, 2.0), 1e-3),
+    ],
+    ids=['long', 'ramped', 'short'],
+)
+def test_intervals_of_the_live_values_hold_for_any_seed(profile, delay):
+    inside, seeds = 0, 20
+    for seed in range(seeds):
+        drive = Drive(PLAY, ERRORS | {1520: 0.1 * ARC_MINUTE}, delay, noise=1e-5 * seed, **STEPS)
+        reversals = live(drive, profile, 16.0 + seed / seeds, rate=250.0, seed=seed)[-1]
+        estimates = (reversals.lost_motion, PLAY), (reversals.delay, delay)
+        inside += sum(abs(e.value - true) <= e.uncertainty for e, true in estimates)
+    # 95 % of 40: fewer than 34 have a probability of less than 1 %.
+    assert inside >= 34
+
+
+def test_what_left_the_window_leaves_no_trace():
+    drive = Drive(PLAY, ERRORS)
+    late = live(drive, lambda t: np.where(t < 20.0, 1e3 * t, sine_strokes(1.0, 4.0)(t)), 40.0)[-1]
+    fresh = live(drive, sine_strokes(1.0, 4.0), 40.0)[-1]
+    assert late.lost_motion.value == pytest.approx(fresh.lost_motion.value, abs=1e-9)
+    assert late.lost_motion.uncertainty == pytest.approx(fresh.lost_motion.uncertainty, rel=1e-4)
+
+
+# Pairs of runs
+
+
+def pair(speed, lost_motion, delay, noise=0.0, seed=0):
+    error = lost_motion + delay * speed
+    return Pair(error + noise * np.random.default_rng(seed).standard_normal(len(speed)), speed)
+
+
+def test_runs_at_two_speeds_tell_a_delay():
+    pairs = [pair(np.full(200, v), 1e-3, -4e-3, 1e-5, k) for k, v in enumerate([0.2, 1.0])]
+    found = separate(pairs)
+    for estimate, true in ((found.lost_motion, 1e-3), (found.delay, -4e-3)):
+        assert abs(estimate.value - true) <= 2.0 * estimate.uncertainty
+        assert estimate.repeats == 2
+    assert found.delay.uncertainty < 2e-5
+
+
+def test_noise_of_the_speed_is_no_variation_of_it():
+    noisy = 0.5 + 0.3 * np.random.default_rng(3).standard_normal(400)
+    true = Pair(1e-3 + 2e-3 * np.full(400, 0.5), noisy)
+    assert separate([true]).lost_motion is None
+
+
+def test_known_delay_is_taken_out_at_any_speed():
+    pairs = [pair(np.full(50, 0.5), 1e-3, 2e-3, 1e-6, seed) for seed in range(5)]
+    found = separate(pairs, delay=2e-3)
+    assert abs(found.lost_motion.value - 1e-3) <= 2.0 * found.lost_motion.uncertainty
+    assert found.lost_motion.uncertainty < 1e-6
+    assert found.lost_motion.degrees_of_freedom == 4
+    assert (found.delay.value, found.delay.uncertainty) == (2e-3, 0.0)
+
+
+def test_nothing_in_common_is_nothing_found():
+    assert separate([]) is None
+    assert separate([Pair(np.zeros(0), np.zeros(0))]) is None

@@ -1,0 +1,317 @@
+"""The transmission error sample by sample, against numpy over whole records."""
+
+import math
+from fractions import Fraction
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from gear_kinematics.correction.transmission_error import (
+    Direction,
+    ErrorSample,
+    ErrorWindow,
+    SlidingStatistics,
+    TransmissionError,
+)
+
+SECOND = 10**9
+MS = 10**6
+START = 1_700_000_000 * SECOND + 123_456_789
+
+
+def make(**changes) -> TransmissionError:
+    return TransmissionError(**{'max_gap': 50 * MS, 'travel': 0.01, **changes})
+
+
+def feed(comparison, ideal, measured, order) -> list[ErrorSample]:
+    """Feed both records; `order` says for each sample whether it is an ideal one."""
+    samples, ideal, measured = [], list(ideal), list(measured)
+    for is_ideal in order:
+        if is_ideal and ideal:
+            samples += comparison.add_ideal(*ideal.pop(0))
+        elif measured:
+            samples += comparison.add_measured(*measured.pop(0))
+    for sample in ideal:
+        samples += comparison.add_ideal(*sample)
+    for sample in measured:
+        samples += comparison.add_measured(*sample)
+    return samples
+
+
+def split(angle: float) -> tuple[int, float]:
+    turns = round(angle / (2 * math.pi))
+    return turns, angle - turns * 2 * math.pi
+
+
+def wrapped(angle):
+    return (angle + math.pi) % (2 * math.pi) - math.pi
+
+
+@pytest.mark.slow
+@given(
+    st.lists(st.integers(1, 40 * MS), min_size=2, max_size=40),
+    st.lists(st.integers(0, 1000 * MS), max_size=40),
+    st.lists(st.booleans(), max_size=80),
+    st.floats(-30.0, 30.0),
+    st.floats(-3.0, 3.0),
+)
+def test_errors_are_those_of_the_interpolated_record_in_any_order_of_arrival(
+    periods, times, order, speed, offset
+):
+    stamps = START + np.cumsum(periods)
+    angles = speed * (stamps - START) * 1e-9 + 0.3 * np.sin(np.arange(len(stamps)))
+    times = START + np.sort(np.array(times, np.int64))
+    known = (times >= stamps[0]) & (times <= stamps[-1])
+    ideal_at = np.interp(
+        (times - START).astype(float), (stamps - START).astype(float), angles.astype(float)
+    )
+    errors = offset + 1e-3 * np.cos(np.arange(len(times)))
+    measured = wrapped(ideal_at + errors)
+
+    comparison = make()
+    samples = feed(
+        comparison,
+        ((int(s), *split(a)) for s, a in zip(stamps, angles, strict=True)),
+        ((int(s), float(a)) for s, a in zip(times, measured, strict=True)),
+        order,
+    )
+    assert [sample.stamp for sample in samples] == times[known].tolist()
+    found = np.array([sample.error for sample in samples])
+    np.testing.assert_allclose(found, errors[known], rtol=0, atol=1e-12)
+    ideal = [sample.turns * 2 * math.pi + sample.ideal for sample in samples]
+    ideal = np.array(ideal) - ideal_at[known]
+    np.testing.assert_allclose(ideal, 0.0, rtol=0, atol=1e-12)
+    assert comparison.matched == len(samples)
+    early = np.count_nonzero(times < stamps[0])
+    # What is later than the last ideal sample still waits for one.
+    assert dict(comparison.unmatched) == ({'no ideal angle before': early} if early else {})
+
+
+def test_last_bits_survive_any_number_of_turns():
+    comparison = make()
+    comparison.add_ideal(START, 10**12, 3.0)
+    # Past half a turn, the turns increase and the angle wraps.
+    comparison.add_ideal(START + 10 * MS, 10**12 + 1, 3.1 - 2 * math.pi)
+    (sample,) = comparison.add_measured(START + 5 * MS, 3.05 + 1e-13)
+    assert sample.error == pytest.approx(1e-13, abs=1e-15)
+    assert (sample.turns, sample.ideal) == (10**12, pytest.approx(3.05))
+
+
+@pytest.mark.parametrize('turns', [0, -3, 7, 1000])
+def test_single_and_multi_turn_encoders_give_the_same(turns):
+    comparison = make()
+    comparison.add_ideal(START, 5, 1.0)
+    comparison.add_ideal(START + MS, 5, 1.0)
+    (sample,) = comparison.add_measured(START + MS, 1.25 + turns * 2 * math.pi)
+    assert sample.error == pytest.approx(0.25, abs=1e-12)
+
+
+def test_errors_are_continuous_at_an_offset_of_half_a_turn():
+    comparison = make()
+    comparison.add_ideal(START, 0, 0.0)
+    comparison.add_ideal(START + 40 * MS, 0, 0.0)
+    errors = [
+        comparison.add_measured(START + k * MS, math.pi + 0.01 * math.cos(k))[0].error
+        for k in range(40)
+    ]
+    assert max(errors) - min(errors) < 0.021
+    assert all(abs(b - a) < 0.02 for a, b in pairwise(errors))
+
+
+def test_nothing_is_known_before_there_are_ideal_samples_on_both_sides():
+    comparison = make()
+    assert comparison.add_measured(START + 4 * MS, 0.1) == []
+    assert comparison.add_ideal(START, 0, 0.0) == []
+    assert comparison.add_ideal(START + 3 * MS, 0, 0.03) == []
+    (sample,) = comparison.add_ideal(START + 5 * MS, 0, 0.05)
+    assert sample == ErrorSample(
+        START + 4 * MS, pytest.approx(0.06), 0, pytest.approx(0.04), 1, pytest.approx(10.0)
+    )
+
+
+def test_nothing_is_compared_across_a_gap():
+    comparison = make(max_gap=50 * MS)
+    comparison.add_ideal(START, 0, 0.0)
+    comparison.add_measured(START + 30 * MS, 0.0)
+    assert comparison.add_ideal(START + 51 * MS, 0, 0.0) == []
+    assert comparison.unmatched == {'gap of the ideal angle': 1}
+    # A gap of exactly `max_gap` is interpolated.
+    comparison.add_measured(START + 60 * MS, 0.0)
+    (sample,) = comparison.add_ideal(START + 101 * MS, 0, 0.0)
+    assert sample.stamp == START + 60 * MS
+    assert comparison.matched == 1
+
+
+def test_unusable_measured_angles_are_counted():
+    comparison = make()
+    comparison.add_ideal(START, 0, 0.0)
+    comparison.add_ideal(START + 10 * MS, 0, 0.0)
+    for stamp, angle in (
+        (START + 5 * MS, math.nan),
+        (START + 5 * MS, math.inf),
+        (START + 5 * MS, -1.5e16),
+        (START + 5 * MS, 0.0),
+        (START + 4 * MS, 0.0),
+        (START + 5 * MS, 0.0),
+    ):
+        comparison.add_measured(stamp, angle)
+    assert comparison.matched == 2
+    assert comparison.unmatched == {'not finite, or too large': 3, 'out of order': 1}
+
+
+@pytest.mark.parametrize('first', ['ideal', 'measured'])
+def test_clock_that_is_set_back_resets_the_comparison(first):
+    comparison = make()
+    comparison.add_ideal(START, 0, 0.0)
+    comparison.add_ideal(START + 10 * MS, 0, 0.0)
+    (before,) = comparison.add_measured(START + 5 * MS, 3.0)
+    assert before.error == pytest.approx(3.0)
+
+    early = START - 2 * SECOND
+    if first == 'measured':
+        assert comparison.add_measured(early - MS, 1.0) == []
+    comparison.add_ideal(early, 0, 0.0)
+    comparison.add_ideal(early + 10 * MS, 0, 0.0)
+    # The new offset is also accepted.
+    (after,) = comparison.add_measured(early + 5 * MS, -3.0)
+    assert after.error == pytest.approx(-3.0)
+
+
+def test_ideal_samples_that_come_twice_or_late_change_nothing():
+    comparison = make()
+    comparison.add_ideal(START, 0, 0.0)
+    comparison.add_ideal(START + 10 * MS, 0, 0.1)
+    comparison.add_ideal(START + 10 * MS, 0, 0.7)
+    comparison.add_ideal(START + 5 * MS, 0, 0.7)
+    (sample,) = comparison.add_measured(START + 5 * MS, 0.05)
+    assert sample.error == pytest.approx(0.0, abs=1e-15)
+
+
+def test_memory_is_bounded_when_one_side_is_silent():
+    comparison = make()
+    for k in range(20_000):
+        comparison.add_measured(START + k * MS, 0.0)
+    assert comparison.unmatched == {'no ideal angle since': 20_000 - 8192}
+    comparison = make()
+    for k in range(20_000):
+        comparison.add_ideal(START + k * MS, 0, 0.0)
+    assert comparison.add_measured(START, 0.0) == []
+    assert comparison.unmatched == {'no ideal angle before': 1}
+
+
+# Direction
+
+
+def test_direction_is_known_once_it_has_travelled_far_enough():
+    direction = Direction(1.0)
+    steps = [0.5, 0.5, 0.25, -0.25, 0.25, -0.5, -0.5, -0.25, 0.125, -0.125, 2.0]
+    assert [direction.move(step) for step in steps] == [0, 1, 1, 0, 1, 0, -1, -1, 0, -1, 1]
+
+
+@given(st.lists(st.integers(-8, 8), max_size=60), st.integers(1, 12))
+def test_direction_is_that_of_the_last_long_enough_travel(steps, travel):
+    direction = Direction(float(travel))
+    found = [direction.move(float(step)) for step in steps]
+    # The position now is the extreme of a motion at least as long as the travel.
+    places = np.concatenate([[0], np.cumsum(steps)])
+    for k, known in enumerate(found, start=1):
+        past = places[: k + 1]
+        up = past[k] - np.minimum.accumulate(past[::-1])[::-1]
+        down = np.maximum.accumulate(past[::-1])[::-1] - past[k]
+        # Since when has no position exceeded the present one?
+        higher, lower = np.flatnonzero(past > past[k]), np.flatnonzero(past < past[k])
+        rising = (up[higher[-1] + 1 if len(higher) else 0 :] >= travel).any()
+        falling = (down[lower[-1] + 1 if len(lower) else 0 :] >= travel).any()
+        assert known == int(rising) - int(falling)
+
+
+def test_gap_makes_the_direction_unknown():
+    comparison = make(travel=0.01)
+    comparison.add_ideal(START, 0, 0.0)
+    comparison.add_ideal(START + MS, 0, 0.02)
+    comparison.add_ideal(START + 2 * MS, 0, 0.03)
+    (sample,) = comparison.add_measured(START + MS + 1, 0.0)
+    assert sample.direction == 1
+    comparison.add_ideal(START + SECOND, 0, 0.04)
+    comparison.add_ideal(START + SECOND + MS, 0, 0.045)
+    (sample,) = comparison.add_measured(START + SECOND + 1, 0.0)
+    assert sample.direction == 0
+
+
+# Window
+
+values = st.floats(-7.0, 7.0) | st.sampled_from([0.0, 1e-17, 1e6, -1e6])
+
+
+@pytest.mark.slow
+@given(st.lists(st.tuples(st.integers(0, 30), values), min_size=1, max_size=40))
+def test_window_is_that_of_the_whole_record(records):
+    window, stamp, past = SlidingStatistics(), START, []
+    for step, value in records:
+        stamp += step
+        past.append((stamp, value))
+        window.add(stamp, value)
+        window.drop(stamp - 50)
+        inside = [v for s, v in past if s >= stamp - 50]
+        assert len(window) == len(inside)
+        assert window.peak_to_peak == max(inside) - min(inside)
+        mean = float(sum(map(Fraction, inside)) / len(inside))
+        assert window.mean == pytest.approx(mean, rel=1e-15, abs=2.0**-52)
+    window.drop(stamp + 1)
+    assert (len(window), window.mean, window.peak_to_peak) == (0, None, None)
+
+
+def test_values_that_leave_the_window_leave_no_trace():
+    window = SlidingStatistics()
+    for k in range(100_000):
+        window.add(k, 1e9 * math.sin(k))
+        window.drop(k - 100)
+    for k in range(100_000, 100_200):
+        window.add(k, 1e-9)
+        window.drop(k - 100)
+    assert window.mean == pytest.approx(1e-9, abs=2.0**-52)
+    assert window.peak_to_peak == 0.0
+
+
+def test_window_separates_lost_motion_from_errors_of_both_directions():
+    play, window, comparison = 0.004, ErrorWindow(10 * SECOND), make(travel=0.05)
+    forward = backward = 0
+    for k in range(4000):
+        stamp = START + k * MS
+        ideal = 0.5 - 0.5 * math.cos(2 * math.pi * k / 1000)
+        follower = ideal if k == 0 else min(max(follower, ideal - play), ideal)  # noqa: F821
+        error = 0.001 * math.sin(20 * ideal)
+        samples = comparison.add_ideal(stamp, 0, ideal)
+        samples += comparison.add_measured(stamp, follower + error)
+        for sample in samples:
+            forward += sample.direction > 0
+            backward += sample.direction < 0
+            window.add(sample)
+    assert min(forward, backward) > 1000
+    assert len(window.forward) == forward
+    assert len(window.backward) == backward
+    assert window.reversals.lost_motion.value == pytest.approx(play, abs=1e-4)
+    assert play < window.both.peak_to_peak <= play + 0.002 + 1e-9
+    assert window.forward.peak_to_peak == pytest.approx(0.002, abs=1e-4)
+
+
+def test_window_without_a_reversal_has_no_lost_motion():
+    window = ErrorWindow(SECOND)
+    assert window.reversals is None
+    window.add(ErrorSample(START, 0.1, 0, 0.0, 1, 0.5))
+    assert window.reversals is None
+    window.add(ErrorSample(START + MS, 0.3, 0, 0.1, -1, -0.5))  # elsewhere
+    assert window.reversals is None
+    window.add(ErrorSample(START + 2 * MS, 0.3, 0, 0.0, -1, -0.5))
+    assert window.reversals.difference.value == pytest.approx(0.2)
+    assert window.reversals.difference.uncertainty is None
+    assert window.reversals.lost_motion is None
+    # A direction that does not occur in the window does not count.
+    window.add(ErrorSample(START + SECOND + 2, 0.3, 0, 0.0, -1, -0.5))
+    assert window.reversals is None
+    assert len(window.both) == 3
+    window.reset()
+    assert (len(window.both), window.both.mean) == (0, None)

@@ -1,0 +1,78 @@
+"""Parameter files for a driver: what the node reads in them, and what is never replaced."""
+
+import re
+import shlex
+
+import pytest
+import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters.files import ConfigError
+from gear_kinematics.parameters.new_config import (
+    new_config,
+    start_command,
+    unused_name,
+    write_new,
+)
+
+
+def test_file_is_the_default_one_with_the_joint_of_the_driver(tmp_path):
+    path = tmp_path / 'actuator.yaml'
+    write_new(path, new_config('/motor/joint_states', 'm1', path.name))
+    assert parameters.load(path) == {**parameters.defaults(), 'rotor_joint': 'm1'}
+    text = path.read_text('utf-8')
+    assert text.count("rotor_joint: 'm1'\n") == 1
+    default = parameters.default_config().read_text('utf-8')
+    assert set(re.findall('(?m)^ +#.*', text)) == set(re.findall('(?m)^ +#.*', default))
+    assert 'only place that defines default values' not in text
+
+
+def test_head_says_how_to_start_the_node():
+    text = new_config('/motor/joint_states', 'm1', 'my actuator.yaml')
+    head = [line for line in text.splitlines() if line.startswith('#')]
+    assert head[0] == '# For the joint m1 on /motor/joint_states. Start the node with'
+    command = shlex.split(head[1].removeprefix('#'))
+    assert command == [
+        'gear_state_publisher', '--ros-args', '--params-file', 'my actuator.yaml',
+        '-r', 'rotor_state:=/motor/joint_states',
+    ]  # fmt: skip
+    assert start_command('/motor/joint_states', 'my actuator.yaml') == shlex.join(command)
+
+
+@settings(max_examples=30)
+@given(st.text(min_size=1))
+def test_every_joint_name_survives(joint):
+    text = new_config('/driver', joint, 'a.yaml')
+    values = yaml.safe_load(text)['/**']['ros__parameters']
+    assert values['rotor_joint'] == joint
+    assert values['ring_teeth'] == 80
+
+
+def test_joint_of_a_driver_without_names_is_a_text():
+    assert "rotor_joint: '0'\n" in new_config('/driver', '0', 'a.yaml')
+
+
+def test_nothing_is_replaced(tmp_path):
+    path = tmp_path / 'actuator.yaml'
+    path.write_text('mine')
+    with pytest.raises(ConfigError, match=r'actuator\.yaml: exists already'):
+        write_new(path, 'theirs')
+    assert path.read_text() == 'mine'
+    with pytest.raises(ConfigError, match='No such file or directory'):
+        write_new(tmp_path / 'nowhere/actuator.yaml', 'theirs')
+
+
+def test_nothing_is_left_of_a_file_that_does_not_fit(tmp_path):
+    path = tmp_path / 'full'
+    with pytest.raises(UnicodeEncodeError):
+        write_new(path, 'half \ud800')
+    assert not path.exists()
+
+
+def test_name_that_is_taken_gets_a_number(tmp_path):
+    assert unused_name(tmp_path, 'a.yaml') == tmp_path / 'a.yaml'
+    (tmp_path / 'a.yaml').touch()
+    (tmp_path / 'a_2.yaml').symlink_to('nowhere')
+    assert unused_name(tmp_path, 'a.yaml') == tmp_path / 'a_3.yaml'

@@ -1,0 +1,449 @@
+"""Parameter tables and files: defaults of the contract, faults that name parameter and bound."""
+
+import math
+from pathlib import Path
+
+import pytest
+import yaml
+
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters.files import ConfigError, calibration_path, require_any
+from gear_kinematics.parameters.node_parameters import (
+    BRANCH_PARAMETERS,
+    PARAMETERS,
+    load,
+)
+
+CONTRACT = {
+    'ring_teeth': 80,
+    'satellite_teeth': 76,
+    'eccentricity': 0.0011,
+    'module': 0.0005,
+    'branches': ['a', 'b'],
+    'a.cam_phase': 0.0,
+    'a.axial_position': 0.04,
+    'b.cam_phase': math.pi,
+    'b.axial_position': -0.04,
+    'gear_ratio': '',
+    'rotor_joint': 'rotor',
+    'output_joint': 'output_shaft',
+    'rotor_direction': 1,
+    'rotor_zero': 0.0,
+    'home_angle': 0.0,
+    'rotor_encoder': 'multi_turn',
+    'max_rotor_speed': 650.0,
+    'input_timeout': 1.0,
+    'frame_prefix': '',
+}
+OUR_OWN = {
+    'calibration': '',
+    'max_rotor_acceleration': 6500.0,
+    'markers_rate': 30.0,
+    'executor': 'auto',
+    'meshes': 'auto',
+    'output_encoder_joint': '',
+    'output_encoder_direction': 1,
+    'output_encoder_zero': 0.0,
+    'transmission_error_window': 10.0,
+    'transmission_error_limit': 0.003,
+    'transmission_error_max_gap': 0.1,
+    'transmission_error_travel': math.radians(1.0),
+}
+READ_ONLY = {
+    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
+    'markers_rate', 'meshes', 'executor',
+}  # fmt: skip
+LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / 'actuator.yaml'
+    path.write_text(text, encoding='utf-8')
+    return path
+
+
+def config(folder: Path, **values) -> Path:
+    """Write a typical parameter file."""
+    return write(folder, yaml.safe_dump({'/**': {'ros__parameters': values}}, allow_unicode=True))
+
+
+def fault(folder: Path, **values) -> str:
+    path = config(folder, **values)
+    with pytest.raises(ConfigError) as caught:
+        load(path)
+    text = str(caught.value)
+    assert text.startswith(f'{path}: ')
+    assert '\n' not in text
+    return text
+
+
+@pytest.mark.parametrize('name', CONTRACT)
+def test_default_is_that_of_the_contract(name):
+    value = parameters.defaults()[name]
+    assert value == CONTRACT[name]
+    assert type(value) is type(CONTRACT[name])
+
+
+def test_every_parameter_has_a_default_and_every_default_a_parameter():
+    branches = {f'{branch}.{field}' for branch in 'ab' for field in BRANCH_PARAMETERS}
+    assert set(parameters.defaults()) == set(PARAMETERS) | branches
+
+
+def test_every_parameter_is_described():
+    tables = PARAMETERS | BRANCH_PARAMETERS
+    assert all(parameter.description for parameter in tables.values())
+
+
+def test_parameters_that_are_fixed_at_the_start_are_read_only():
+    assert {name for name, parameter in PARAMETERS.items() if parameter.read_only} == READ_ONLY
+    assert all(parameter.read_only for parameter in BRANCH_PARAMETERS.values())
+    assert set(PARAMETERS) >= LIVE
+
+
+def test_defaults_have_no_faults():
+    defaults = parameters.defaults()
+    for name, parameter in PARAMETERS.items():
+        assert parameter.fault(name, defaults[name], defaults[name]) is None
+
+
+def test_branches_without_defaults_get_those_of_a_branch():
+    table = parameters.branch_parameters(['a', 'left'])
+    assert {name: default for name, (_, default) in table.items()} == {
+        'a.cam_phase': 0.0,
+        'a.axial_position': 0.04,
+        'left.cam_phase': 0.0,
+        'left.axial_position': 0.0,
+    }
+
+
+REFUSED = [
+    ('ring_teeth', 1, ('2', '100000')),
+    ('ring_teeth', 100_001, ('2', '100000')),
+    ('ring_teeth', 80.0, ('int',)),
+    ('ring_teeth', '80', ('int',)),
+    ('ring_teeth', True, ('int',)),
+    ('ring_teeth', None, ('int',)),
+    ('satellite_teeth', 0, ('1', '99999')),
+    ('eccentricity', 0.0, ('1e-06', '1.0')),
+    ('eccentricity', 1.1, ('1e-06', '1.0')),
+    ('eccentricity', math.nan, ('1e-06', '1.0')),
+    ('eccentricity', 1, ('float',)),
+    ('module', -1.0, ('1e-06', '0.1')),
+    ('branches', 'a', ('list',)),
+    ('branches', [1, 2], ('strings',)),
+    ('branches', [['a']], ('strings',)),
+    ('gear_ratio', -19, ('str',)),
+    ('gear_ratio', '0', ('must not be 0',)),
+    ('gear_ratio', '19:1', ('an integer, a fraction or a decimal, such as -19',)),
+    ('rotor_joint', 5, ('str',)),
+    ('rotor_direction', 0, ('-1', '1', '2')),
+    ('rotor_direction', 2, ('-1', '1')),
+    ('rotor_direction', -3, ('-1', '1')),
+    ('rotor_direction', 1.0, ('int',)),
+    ('rotor_zero', math.inf, ('1e+15',)),
+    ('rotor_zero', -math.inf, ('-1000000000000000.0',)),
+    ('rotor_zero', math.nan, ('1000000000000000.0',)),
+    ('rotor_encoder', 'absolute', ('multi_turn', 'single_turn')),
+    ('rotor_encoder', '', ('multi_turn', 'single_turn')),
+    ('rotor_encoder', 1, ('str',)),
+    ('max_rotor_speed', 0.0, ('0.001', '1000000.0')),
+    ('max_rotor_acceleration', -1.0, ('0.001', '1000000000.0')),
+    ('input_timeout', 0.0, ('0.001', '1000000.0')),
+    ('output_joint', 5, ('str',)),
+    ('home_angle', 1e10, ('-1000000000.0', '1000000000.0')),
+    ('frame_prefix', 1, ('str',)),
+    ('a.cam_phase', 7.0, ('-6.28', '6.28')),
+    ('a.cam_phase', 'x', ('float',)),
+    ('b.axial_position', math.nan, ('-10.0', '10.0')),
+]
+
+
+@pytest.mark.parametrize(('name', 'value', 'bounds'), REFUSED)
+def test_fault_names_parameter_value_and_bound(tmp_path, name, value, bounds):
+    text = fault(tmp_path, **{name: value})
+    assert name in text
+    assert repr(value) in text
+    for bound in bounds:
+        assert bound in text or str(float(bound)) in text
+
+
+@pytest.mark.parametrize(
+    ('name', 'value'),
+    [
+        ('ring_teeth', 2),
+        ('ring_teeth', 100_000),
+        ('eccentricity', 1e-6),
+        ('eccentricity', 1.0),
+        ('rotor_direction', -1),
+        ('rotor_direction', 1),
+        ('rotor_zero', -1e15),
+        ('rotor_encoder', 'single_turn'),
+        ('gear_ratio', '-58/3'),
+        ('rotor_joint', ''),
+        ('frame_prefix', 'links/φ_'),
+        ('a.cam_phase', -2.0 * math.pi),
+        ('branches', ['b']),
+    ],
+)
+def test_value_on_the_bound_is_taken(tmp_path, name, value):
+    assert load(config(tmp_path, **{name: value}))[name] == value
+
+
+def test_every_fault_is_listed_at_once(tmp_path):
+    text = fault(tmp_path, ring_teeth=1, rotor_encoder='x', module='thick')
+    assert all(name in text for name in ('ring_teeth', 'rotor_encoder', 'module'))
+
+
+@pytest.mark.parametrize(
+    ('name', 'hint'),
+    [
+        ('rotor_jiont', '; did you mean `rotor_joint`?'),
+        ('Ring_teeth', '; did you mean `ring_teeth`?'),
+        ('a.cam_fase', '; did you mean `a.cam_phase`?'),
+        ('c.cam_phase', '; `c` is not in `branches`'),
+        ('nothing_like_it', ''),
+    ],
+)
+def test_unknown_parameter_is_refused_with_the_nearest_name(tmp_path, name, hint):
+    text = fault(tmp_path, **{name: 1.0})
+    assert f': unknown parameter `{name}`{hint}; there are: ring_teeth, ' in text
+    assert text.endswith(', a.cam_phase, a.axial_position, b.cam_phase, b.axial_position')
+
+
+def test_parameter_of_a_branch_that_is_left_out_is_refused(tmp_path):
+    text = fault(tmp_path, branches=['a'], **{'a.cam_phase': 0.5, 'b.cam_phase': 0.5})
+    assert ': unknown parameter `b.cam_phase`; `b` is not in `branches`; there are: ' in text
+
+
+def test_every_unknown_parameter_is_listed_at_once(tmp_path):
+    text = fault(tmp_path, ring_tooth=80, rotor_jiont='m1')
+    assert all(f'unknown parameter `{name}`' in text for name in ('ring_tooth', 'rotor_jiont'))
+
+
+def test_shipped_file_loads_as_the_defaults():
+    assert load(parameters.default_config()) == CONTRACT | OUR_OWN
+
+
+def test_parameters_that_a_file_lacks_have_their_defaults(tmp_path):
+    loaded = load(config(tmp_path, ring_teeth=90))
+    assert loaded == CONTRACT | OUR_OWN | {'ring_teeth': 90}
+
+
+@pytest.mark.parametrize('nested', [True, False])
+def test_branch_keys_may_be_nested_or_dotted(tmp_path, nested):
+    phase = {'left': {'cam_phase': 0.5}} if nested else {'left.cam_phase': 0.5}
+    loaded = load(config(tmp_path, branches=['left'], **phase))
+    assert (loaded['left.cam_phase'], loaded['left.axial_position']) == (0.5, 0.0)
+    assert 'a.cam_phase' not in loaded
+    [branch] = Mechanism.from_mapping(loaded).branches
+    assert (branch.name, branch.cam_phase) == ('left', 0.5)
+
+
+@pytest.mark.parametrize(
+    'section',
+    [
+        '/**',
+        'gear_state_publisher',
+        '/gear_state_publisher',
+        '/arm/gear_state_publisher',
+        '/**/gear_state_publisher',
+    ],
+)
+def test_every_name_of_the_node_is_known(tmp_path, section):
+    text = f'{section}:\n  ros__parameters:\n    ring_teeth: 90\n'
+    assert load(write(tmp_path, text))['ring_teeth'] == 90
+
+
+def test_namespace_may_be_a_key_of_its_own(tmp_path):
+    text = 'arm:\n  gear_state_publisher:\n    ros__parameters:\n      ring_teeth: 90\n'
+    assert load(write(tmp_path, text))['ring_teeth'] == 90
+
+
+def test_sections_of_other_nodes_are_ignored(tmp_path):
+    # One file for all nodes of a robot is how ROS users keep their parameters.
+    text = (
+        'gear_state_publisher:\n  ros__parameters:\n    ring_teeth: 90\n'
+        'joint_state_broadcaster:\n  ros__parameters:\n    use_local_topics: true\n'
+    )
+    assert load(write(tmp_path, text))['ring_teeth'] == 90
+
+
+LEFT, RIGHT = (f'/{side}/gear_state_publisher' for side in ('left', 'right'))
+
+
+def blocks(folder: Path, *names: str) -> Path:
+    """Write a file with a block for each name: ring_teeth is 81 in the first, 82 in the next."""
+    text = ''.join(
+        f"'{name}':\n  ros__parameters: {{ring_teeth: {teeth}}}\n"
+        for teeth, name in enumerate(names, start=81)
+    )
+    return write(folder, text)
+
+
+@pytest.mark.parametrize(
+    ('names', 'node', 'expected'),
+    [
+        ([LEFT, RIGHT], LEFT, 81),
+        ([LEFT, RIGHT], RIGHT, 82),
+        ([LEFT, RIGHT], RIGHT[1:], 82),  # as in `ros2 param`
+        ([LEFT, '/left/gear'], 'gear', 82),
+        ([LEFT, '/left/gear'], 'gear_state_publisher', 81),
+        (['/**', '/left/gear'], 'gear', 82),
+        (['/**', '/left/gear'], 'gear_state_publisher', 81),
+        (['/**', LEFT, '/other/**'], 'gear_state_publisher', 82),
+        (['/left/*'], 'gear_state_publisher', 81),
+        (['/*/gear'], 'gear', 81),
+        (['/**', '/left/**'], 'gear_state_publisher', 82),
+    ],
+)
+def test_name_without_namespace_is_that_of_the_only_node_in_the_file(
+    tmp_path, names, node, expected
+):
+    assert load(blocks(tmp_path, *names), node)['ring_teeth'] == expected
+
+
+@pytest.mark.parametrize(
+    'names',
+    [
+        [LEFT, RIGHT],
+        ['gear_state_publisher', LEFT],
+        ['/left/**', '/right/**'],
+        ['/left/*', '/*/*/gear_state_publisher'],
+    ],
+)
+def test_file_that_leaves_open_which_node_is_meant_is_refused(tmp_path, names):
+    path = blocks(tmp_path, '/other_node', *names)
+    with pytest.raises(ConfigError) as caught:
+        load(path)
+    there = ', '.join(name if name.startswith('/') else f'/{name}' for name in names)
+    assert str(caught.value) == (
+        f'{path}: parameters of more than one node: {there}; choose one with --node'
+    )
+
+
+@pytest.mark.parametrize(
+    'node', ['/left', '/gear_state_publisher', '/left/x', 'gear', 'left', '/', 'no name', '']
+)
+def test_file_that_has_nothing_for_the_node_is_refused(tmp_path, node):
+    path = blocks(tmp_path, LEFT, RIGHT)
+    with pytest.raises(ConfigError) as caught:
+        load(path, node)
+    name = node if node.startswith('/') else f'/{node}'
+    text = f'{path}: no parameters of {name} in it, only of {LEFT}, {RIGHT}'
+    hint = f'; did you mean `{LEFT}`?' if node == '/gear_state_publisher' else ''
+    assert str(caught.value) == text + hint
+
+
+def test_one_of_several_files_has_something_for_the_node(tmp_path):
+    files = []
+    for k, names in enumerate([['/other'], [LEFT], ['/**/x', '/y']]):
+        (tmp_path / f'{k}').mkdir()
+        files.append(blocks(tmp_path / f'{k}', *names))
+    require_any((), LEFT)
+    require_any(files, LEFT)
+    with pytest.raises(ConfigError) as caught:
+        require_any(files, RIGHT)
+    assert str(caught.value) == (
+        f'{files[0]}: no parameters of {RIGHT} in it, only of /other; '
+        f'{files[1]}: no parameters of {RIGHT} in it, only of {LEFT}; '
+        f'did you mean `{LEFT}`?; '
+        f'{files[2]}: no parameters of {RIGHT} in it, only of /**/x, /y'
+    )
+
+
+def test_none_of_several_files_is_empty(tmp_path):
+    files = [config(tmp_path, ring_teeth=90), tmp_path / 'empty.yaml']
+    files[1].write_text('')
+    with pytest.raises(ConfigError) as caught:
+        require_any(files, LEFT)
+    assert str(caught.value) == f'{files[1]}: no ros__parameters in it'
+
+
+@pytest.mark.parametrize(
+    'values',
+    [
+        {'use_sim_time': True},
+        {'start_type_description_service': False},
+        {'qos_overrides': {'/rotor_state': {'subscription': {'reliability': 'reliable'}}}},
+        {'qos_overrides./rotor_state.subscription.depth': 5},
+    ],
+    ids=['use_sim_time', 'type description', 'nested', 'dotted'],
+)
+def test_parameters_of_every_ros_node_are_known(tmp_path, values):
+    # gearkin reads the same file as the node.
+    assert load(config(tmp_path, ring_teeth=90, **values))['ring_teeth'] == 90
+
+
+@pytest.mark.parametrize('number', ['1.5e-3', '15e-4', '.0015', '+0.0015', '1.5E-3'])
+def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
+    # YAML 1.1 as PyYAML reads it sees a text in 15e-4; rcl sees a number.
+    text = f'/**:\n  ros__parameters:\n    eccentricity: {number}\n'
+    assert load(write(tmp_path, text))['eccentricity'] == 0.0015
+
+
+def test_missing_file_is_named(tmp_path):
+    path = tmp_path / 'nowhere.yaml'
+    with pytest.raises(ConfigError, match=r'nowhere\.yaml'):
+        load(path)
+
+
+def test_directory_is_no_file(tmp_path):
+    with pytest.raises(ConfigError, match=tmp_path.name):
+        load(tmp_path)
+
+
+@pytest.mark.parametrize(
+    'content',
+    [b'\xff\xfe\x00', 'ratio: "Übersetzung"'.encode('latin-1'), b'a: [1', b'a: b: c', b'\t- x'],
+)
+def test_what_is_not_yaml_is_refused_in_one_line(tmp_path, content):
+    path = tmp_path / 'actuator.yaml'
+    path.write_bytes(content)
+    with pytest.raises(ConfigError) as caught:
+        load(path)
+    assert str(path) in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    'text',
+    [
+        '',
+        '80',
+        '[1, 2]',
+        'ring_teeth: 80',
+        '/**:\n  ros__parameters: 5',
+        '/**: 5',
+        '/**:\n  parameters:\n    ring_teeth: 80',
+    ],
+)
+def test_yaml_without_ros_parameters_is_refused(tmp_path, text):
+    path = write(tmp_path, text)
+    with pytest.raises(ConfigError, match='ros__parameters'):
+        load(path)
+
+
+def test_loaded_values_make_the_mechanism(tmp_path):
+    mechanism = Mechanism.from_mapping(load(config(tmp_path, ring_teeth=61, satellite_teeth=58)))
+    assert (mechanism.gear_ratio.numerator, mechanism.gear_ratio.denominator) == (-58, 3)
+
+
+def test_relative_path_of_a_calibration_is_relative_to_the_file_that_names_it(tmp_path):
+    assert load(config(tmp_path, calibration='mine.yaml'))['calibration'] == str(
+        tmp_path / 'mine.yaml'
+    )
+    assert load(config(tmp_path, calibration='/there/mine.yaml'))['calibration'] == (
+        '/there/mine.yaml'
+    )
+
+
+def test_node_finds_a_calibration_beside_the_file_that_names_it(tmp_path):
+    (tmp_path / 'first').mkdir()
+    files = [config(tmp_path / 'first', calibration='a.yaml'), config(tmp_path, calibration='b')]
+    name = '/gear_state_publisher'
+    assert calibration_path('a.yaml', files, name) == tmp_path / 'first' / 'a.yaml'
+    assert calibration_path('b', files, name) == tmp_path / 'b'
+    # Set in another way.
+    assert calibration_path('c.yaml', files, name) == Path('c.yaml')
+    assert calibration_path('/c.yaml', files, name) == Path('/c.yaml')

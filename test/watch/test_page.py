@@ -1,0 +1,307 @@
+"""The page of `gearkin watch` in Chromium, beside a live node and a driver at 1 kHz."""
+
+import asyncio
+import math
+import re
+import threading
+
+import pytest
+from chromium import chromium
+from live import Listener
+from rclpy.parameter_client import AsyncParameterClient
+from steady_driver import RATIO
+from watching import (
+    MOTOR,
+    NAMESPACE,
+    NODE,
+    WatcherStandIn,
+    assert_is_whole,
+    driving,
+    gearkin,
+    node,
+)
+
+from gear_kinematics.watch.drivers import Driver
+from gear_kinematics.watch.view import Reading, Sentence, View
+
+pytestmark = [pytest.mark.live, pytest.mark.slow]
+
+
+@pytest.fixture(scope='module', autouse=True)
+def driver():
+    with driving():
+        yield
+
+
+@pytest.fixture(scope='module')
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp('watch')
+
+
+@pytest.fixture(scope='module')
+def browser():
+    sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
+    pytest.importorskip('tornado', reason='no tornado is installed')
+    sync_api.expect.set_options(timeout=30_000.0)  # a machine can be busy
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture(scope='module')
+def page(browser, folder):
+    """Give the page as it was opened before there was a node, with all that it asked for."""
+    with gearkin(folder, 'watch', '--node', NODE) as program:
+        address = program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1]
+        page = browser.new_page(viewport={'width': 1280, 'height': 900}, color_scheme='light')
+        page.seen = []
+        page.on('console', lambda message: page.seen.append(message.text))
+        page.on('pageerror', lambda error: page.seen.append(str(error)))
+        page.on('request', lambda request: page.seen.append(request.url))
+        page.goto(address)
+        yield page
+        assert page.seen == [address]
+        listed = program.text()
+    assert f'{MOTOR}: joints: brake, m1' in listed
+    assert re.search(rf'{MOTOR}: rate: \d+ Hz', listed)
+    assert program.process.returncode == 130
+    assert 'Traceback' not in program.text()
+
+
+@pytest.fixture(scope='module')
+def connected(page, folder):
+    """Give the page when it shows the node."""
+    from playwright.sync_api import expect  # noqa: PLC0415, an extra
+
+    with node(folder) as process:
+        expect(page.locator('#state')).to_have_text('connected')
+        expect(page.locator('#sentences')).to_contain_text('Rotor input: healthy.')
+        page.node = process
+        page.expect = expect
+        yield page
+
+
+def reading(page, name):
+    return page.locator('#readings > div').filter(has_text=name)
+
+
+def angles(page) -> tuple[float, float]:
+    """Give the drawn angles of rotor and output at one moment, degrees."""
+    texts = page.locator('#mechanism').evaluate(
+        'e => ["--rotor", "--output"].map(name => e.style.getPropertyValue(name))'
+    )
+    return tuple(float(text.removesuffix('deg')) for text in texts)
+
+
+def test_page_lists_drivers_and_writes_a_config_before_there_is_a_node(page, folder):
+    from playwright.sync_api import expect  # noqa: PLC0415, an extra
+
+    row = page.locator('#drivers tr').filter(has_text=re.compile(f'^m1{MOTOR}'))
+    expect(row).to_be_visible()
+    expect(row.locator('.number')).to_have_text(re.compile(r'^[1-9]\d\d+ Hz$'))
+    expect(page.locator('#words')).to_contain_text(f'{NODE} is not running')
+    expect(page.locator('#home')).to_be_disabled()
+    row.get_by_role('button').click()
+    expect(page.locator('#answer')).to_contain_text(
+        f'gear_state_publisher --ros-args --params-file actuator.yaml -r rotor_state:={MOTOR}'
+    )
+    assert "rotor_joint: 'm1'\n" in (folder / 'actuator.yaml').read_text('utf-8')
+
+
+def test_mechanism_moves_as_the_gear_ratio_says(connected):
+    for branch in ('a', 'b'):
+        assert connected.locator(f'svg[aria-label="branch {branch}"] use').count() == 5
+    seen = []
+    for _ in range(5):
+        before = angles(connected)
+        connected.wait_for_function(
+            'before => document.getElementById("mechanism").style'
+            '.getPropertyValue("--rotor") !== before',
+            arg=f'{before[0]}deg',
+        )
+        seen.append(before)
+    assert len(set(seen)) > 1
+    for rotor, output in seen:
+        assert abs(math.remainder(rotor - RATIO * output, 360.0)) < 1e-6
+    assert (
+        connected.locator('.upright .rotor')
+        .first.evaluate('e => getComputedStyle(e).transform')
+        .startswith('matrix(')
+    )
+
+
+def test_values_of_the_driver_and_of_both_encoders_are_shown(connected):
+    expect = connected.expect
+    expect(reading(connected, 'output angle')).to_contain_text('°')
+    expect(reading(connected, 'input')).to_contain_text(re.compile(r'[1-9]\d\d+ Hz'))
+    expect(reading(connected, 'input')).to_contain_text(re.compile('last message .* ago'))
+    # Twice the amplitude of 1e-4 rad is 41.25″.
+    expect(reading(connected, 'transmission error')).to_contain_text(
+        re.compile(r'peak to peak 4[01]\.\d+″ in 2 s, limit 10′ 18\.794″')
+    )
+    expect(connected.locator('#curve figcaption')).to_have_text(
+        re.compile(r'of the last 2 s: -20\.\d″ to 20\.\d″')
+    )
+
+
+@pytest.mark.usefixtures('connected')
+def test_node_has_to_compute_only_what_is_shown():
+    listener = Listener('/elsewhere', 'counting')
+    count = listener.node.count_subscribers
+    try:
+        # The subscription to diagnostics is the last.
+        listener.wait_until(lambda: count('/diagnostics') == 1, 'the subscriptions of the page')
+        assert count(f'{NAMESPACE}/output_state') == 1
+        for topic in ('body_poses', 'mechanism_joint_states', 'markers', 'robot_description'):
+            assert count(f'{NAMESPACE}/{topic}') == 0
+    finally:
+        listener.close()
+
+
+def test_home_is_called_with_the_keyboard_and_answered(connected):
+    connected.locator('body').click(position={'x': 5, 'y': 5})
+    connected.keyboard.press('Tab')
+    connected.expect(connected.locator('#home')).to_be_focused()
+    connected.keyboard.press('Enter')
+    answer = connected.locator('#answer')
+    connected.expect(answer).to_contain_text('output shaft at 0.0 rad: rotor_zero is')
+    zero = float(re.search(r'rotor_zero is (\S+) rad; it was 0\.0 rad', answer.inner_text())[1])
+    listener = Listener(NAMESPACE, 'asking')
+    try:
+        client = AsyncParameterClient(listener.node, NODE)
+        listener.wait_until(client.services_are_ready, 'the parameter services')
+        future = client.get_parameters(['rotor_zero'])
+        listener.wait_until(future.done, 'the parameter')
+        assert future.result().values[0].double_value == zero
+    finally:
+        listener.close()
+
+
+def test_recording_loses_nothing_and_is_validated(connected, folder):
+    record, expect = connected.locator('#record'), connected.expect
+    record.focus()
+    connected.keyboard.press('Space')
+    expect(connected.locator('#answer')).to_contain_text('Recording 8 topics.')
+    expect(connected.locator('#recording')).to_have_text(
+        re.compile(r'Recording to \S+: (?:[4-9]\d{3}|\d{5,}) messages in [\d.]+ s, 0 lost')
+    )
+    expect(record).to_have_text('Stop recording')
+    expect(connected.locator('#home')).to_be_disabled()
+    connected.keyboard.press('Space')
+    answer = connected.locator('#answer')
+    expect(answer).to_contain_text(', 0 lost: gearkin validate gearkin_')
+    expect(connected.locator('#home')).to_be_enabled()
+    assert_is_whole(folder / answer.inner_text().split()[-1], least=800)
+
+
+def test_phone_shows_everything_within_its_width(connected):
+    connected.set_viewport_size({'width': 390, 'height': 844})
+    try:
+        assert connected.evaluate('document.documentElement.scrollWidth') == 390
+        for part in ('#home', '#record', '#readings > :first-child', '#mechanism'):
+            box = connected.locator(part).bounding_box()
+            assert box['x'] >= 0.0
+            assert box['x'] + box['width'] <= 390.0
+        assert connected.locator('#record').bounding_box()['height'] >= 40.0  # for a finger
+        above = connected.locator('#readings').bounding_box()['y']
+        assert above < connected.locator('#mechanism').bounding_box()['y']
+    finally:
+        connected.set_viewport_size({'width': 1280, 'height': 900})
+
+
+def test_dark_mode_is_dark_and_can_be_read(connected):
+    connected.emulate_media(color_scheme='dark')
+    try:
+        for part in ('body', '#home', '#readings dd', '#readings .detail', '#node'):
+            contrast = connected.locator(part).first.evaluate(CONTRAST)
+            assert contrast >= 4.5, part
+        background = 'e => getComputedStyle(e).backgroundColor'
+        assert connected.locator('body').evaluate(background) == 'rgb(20, 23, 27)'
+    finally:
+        connected.emulate_media(color_scheme='light')
+
+
+CONTRAST = """element => {
+    const light = colour => {
+        const [r, g, b] = colour.match(/[\\d.]+/g).slice(0, 3).map(v => v / 255)
+            .map(v => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    };
+    let ground = element;
+    while (getComputedStyle(ground).backgroundColor === 'rgba(0, 0, 0, 0)') {
+        ground = ground.parentElement;
+    }
+    const colours = [getComputedStyle(element).color, getComputedStyle(ground).backgroundColor];
+    const both = colours.map(light);
+    return (Math.max(...both) + 0.05) / (Math.min(...both) + 0.05);
+}"""
+"""Contrast as WCAG 2 defines it."""
+
+
+def test_other_page_in_the_same_browser_is_refused(connected, browser):
+    other = browser.new_page()
+    address = connected.url.replace('http', 'ws', 1) + 'live'
+    opened = other.evaluate(
+        """address => new Promise(resolve => {
+            const socket = new WebSocket(address);
+            socket.addEventListener('open', () => resolve(true));
+            socket.addEventListener('close', () => resolve(false));
+        })""",
+        address,
+    )
+    assert not opened
+    assert other.goto(connected.url.replace('/127', '/x:y@127')[:-2] + '/').status == 403
+    other.close()
+
+
+def test_names_are_text_on_the_page(connected, browser):
+    hostile = '<img src=x onerror=alert(1)>'
+    view = View(
+        node=hostile,
+        state='connected',
+        words=hostile,
+        readings=(Reading(hostile, hostile, hostile),),
+        sentences=(Sentence(hostile),),
+        drivers=(Driver(hostile, (hostile,), 1.0, 1),),
+        failure=hostile,
+    )
+    from gear_kinematics.watch.server import Server  # noqa: PLC0415, needs an extra
+
+    ended = threading.Event()
+    server = Server(WatcherStandIn(view))
+    thread = threading.Thread(target=lambda: asyncio.run(server.run(ended.is_set)))
+    thread.start()
+    page = browser.new_page()
+    try:
+        page.goto(server.address)
+        for part in (
+            '#node',
+            '#words',
+            '#recording',
+            '#readings dt',
+            '#readings dd',
+            '#sentences',
+        ):
+            connected.expect(page.locator(part).first).to_have_text(hostile)
+        connected.expect(page.locator('#drivers tbody td').first).to_have_text(hostile)
+        assert page.locator('img').count() == 0
+    finally:
+        page.close()
+        ended.set()
+        thread.join()
+
+
+def test_page_connects_again_after_the_node_was_restarted(connected, folder):
+    expect = connected.expect
+    connected.node.terminate()
+    expect(connected.locator('#state')).to_have_text('ended')
+    expect(connected.locator('#words')).to_contain_text('Waiting for it to start again.')
+    expect(connected.locator('#home')).to_be_disabled()
+    with node(folder):
+        expect(connected.locator('#state')).to_have_text('connected')
+        expect(connected.locator('#sentences')).to_contain_text('Rotor input: healthy.')
+        rotor, _ = angles(connected)
+        connected.wait_for_function(
+            'before => document.getElementById("mechanism").style'
+            '.getPropertyValue("--rotor") !== before',
+            arg=f'{rotor}deg',
+        )

@@ -1,0 +1,173 @@
+"""Recordings of `gearkin watch` without ROS: what is counted as lost, and what ends them."""
+
+import struct
+import threading
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from gear_kinematics.bag import Bag, BagError, LiveBagWriter
+from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.watch import recording, watcher
+from gear_kinematics.watch.polled import Taken
+from gear_kinematics.watch.recording import Recording
+from gear_kinematics.watch.watcher import Watcher
+
+JOINT_STATE = 'sensor_msgs/msg/JointState'
+DEADLINE = 20.0
+
+
+class Source:
+    """Stands in for a subscription, with messages that a test puts there."""
+
+    waiting: dict[str, list[Taken]]
+    drivers = 1
+
+    def __init__(self, _node, topic, *_) -> None:
+        self.topic = topic
+
+    def take(self):
+        taken, self.waiting[self.topic] = self.waiting[self.topic], []
+        return iter(taken)
+
+    def publishers(self) -> int:
+        return self.drivers
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.fixture
+def source(monkeypatch):
+    monkeypatch.setattr(recording, 'PolledSubscription', Source)
+    monkeypatch.setattr(Source, 'waiting', {'/a': [], '/b': []}, raising=False)
+    return Source
+
+
+def begin(path: Path, **options) -> Recording:
+    topics = dict.fromkeys(('/a', '/b'), (JOINT_STATE, object))
+    return Recording(None, topics, path, **options)
+
+
+def put(source, topic, *numbers, received=100, stamps=()) -> None:
+    """Put messages there, with their numbers and with stamps, s."""
+    source.waiting[topic] = [
+        Taken(struct.pack('<4xiI12x', stamp, 0), received + k, number)
+        for k, (number, stamp) in enumerate(zip(numbers, stamps or range(1, 9), strict=False))
+    ]
+
+
+def wait_for(condition) -> None:
+    deadline = time.monotonic() + DEADLINE
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.005)
+
+
+def test_messages_of_all_topics_are_written_in_the_order_of_their_reception(source, tmp_path):
+    put(source, '/a', 7, 8, received=200)
+    put(source, '/b', 3, 4, received=199)
+    recorded = begin(tmp_path / 'bag').stop()
+    assert recorded.counts == {'/a': 2, '/b': 2}
+    assert recorded.messages == 4
+    assert (recorded.lost, recorded.error) == (0, '')
+    with Bag(tmp_path / 'bag') as bag:
+        messages = [(topic, received) for topic, received, _ in bag.messages(['/a', '/b'])]
+    assert sorted(messages, key=lambda m: m[1]) == messages
+    assert messages[0] == ('/b', 199)
+    assert messages[-1] == ('/a', 201)
+
+
+@pytest.mark.parametrize(
+    ('numbers', 'drivers', 'lost'),
+    [
+        ((1, 2, 3), 1, 0),
+        ((5, 6, 9, 10), 1, 2),
+        ((5, 6, 1, 2, 4), 1, 1),  # another driver in its place
+        ((5, 900, 6, 901), 2, 0),  # of two, nobody knows
+        ((None, None), 1, None),
+    ],
+)
+def test_messages_between_two_numbers_are_lost(
+    source, tmp_path, monkeypatch, numbers, drivers, lost
+):
+    monkeypatch.setattr(source, 'drivers', drivers)
+    put(source, '/a', *numbers)
+    recorded = begin(tmp_path / 'bag').stop()
+    assert recorded.lost == lost
+    assert recorded.messages == len(numbers)
+
+
+def test_gap_between_two_rounds_is_counted_too(source, tmp_path):
+    ongoing = begin(tmp_path / 'bag')
+    put(source, '/a', 1, 2)
+    wait_for(lambda: ongoing.status().messages == 2)
+    put(source, '/a', 5)
+    wait_for(lambda: ongoing.status().messages == 3)
+    assert ongoing.stop().lost == 2
+
+
+def test_last_inputs_are_answered_before_a_recording_ends(source, tmp_path):
+    ongoing = begin(tmp_path / 'bag', answers={'/b': '/a'})
+    put(source, '/a', 1, 2)
+    put(source, '/b', 1)
+    wait_for(lambda: ongoing.status().messages == 3)
+    stop = threading.Thread(target=ongoing.stop)
+    stop.start()
+    put(source, '/b', 2, stamps=[2])
+    stop.join()
+    assert ongoing.status().counts == {'/a': 2, '/b': 2}
+
+
+def test_full_disk_ends_a_recording_and_what_was_written_stays(source, tmp_path, monkeypatch):
+    path = tmp_path / 'bag'
+    monkeypatch.setattr(recording, '_FLUSH_PERIOD', 0.0)
+    ongoing = begin(path)
+    put(source, '/a', 1, 2)
+    wait_for(lambda: ongoing.status().messages == 2 and (path / 'bag_0.mcap').stat().st_size > 500)
+
+    def full(*_):
+        raise BagError(f'{path}: No space left on device')
+
+    monkeypatch.setattr(LiveBagWriter, 'write_all', full)
+    put(source, '/a', 3)
+    wait_for(lambda: ongoing.status().error)
+    recorded = ongoing.stop()
+    assert recorded.error == f'{path}: No space left on device'
+    assert not (path / 'metadata.yaml').exists()
+    with Bag(path) as bag:
+        assert len(list(bag.messages(['/a']))) == 2
+
+
+@pytest.mark.live
+def test_watcher_tells_what_has_ended_it(monkeypatch):
+    def broken(_):
+        raise RuntimeError('the middleware is gone')
+
+    monkeypatch.setattr(watcher.graph, 'gear_nodes', broken)
+    ended = Watcher()
+    with pytest.raises(RuntimeError, match='the middleware is gone'), ended:
+        wait_for(lambda: ended.ended)
+
+
+def test_watcher_that_cannot_join_says_why(monkeypatch):
+    def broken(_):
+        raise RuntimeError('no shared memory')
+
+    monkeypatch.setattr(watcher, 'replay_node', broken)
+    with pytest.raises(RuntimeError, match='no shared memory'), Watcher():
+        pass
+
+
+@pytest.mark.parametrize('absolute', [True, False])
+def test_parameters_of_the_node_are_kept_beside_the_data(tmp_path, absolute):
+    given = parameters.load(parameters.default_config())
+    calibration = str(tmp_path / 'gear.yaml') if absolute else 'gear.yaml'
+    told = {**given, 'ring_teeth': 61, 'satellite_teeth': 58, 'calibration': calibration}
+    note = Watcher()._keep_parameters(SimpleNamespace(parameters=told), tmp_path)
+    kept = parameters.load(tmp_path / 'actuator.yaml')
+    assert kept == {**told, 'calibration': calibration if absolute else ''}
+    words = ' Give its calibration to gearkin validate: gear.yaml.'
+    assert note == ('' if absolute else words)

@@ -1,0 +1,200 @@
+"""`gearkin watch` and `gearkin init` in a terminal and in a pipe, beside a driver at 1 kHz."""
+
+import contextlib
+import fcntl
+import os
+import re
+import select
+import struct
+import subprocess
+import termios
+import time
+from pathlib import Path
+
+import pytest
+from watching import (
+    DEADLINE,
+    ENCODER,
+    GEARKIN,
+    MOTOR,
+    OTHER,
+    assert_is_whole,
+    driving,
+    gearkin,
+    node,
+)
+
+from gear_kinematics.bag import Bag, BagError, LiveBagWriter
+from gear_kinematics.watch.watcher import Answer, Watcher
+
+pytestmark = pytest.mark.live
+
+
+@pytest.fixture(scope='module', autouse=True)
+def driver():
+    with driving():
+        yield
+
+
+@pytest.fixture(scope='module')
+def running(tmp_path_factory):
+    with node(tmp_path_factory.mktemp('node'), OTHER):
+        yield
+
+
+class Terminal:
+    """A program in a terminal, and a person in front of it."""
+
+    def __init__(self, folder: Path, *arguments: str) -> None:
+        self._master, slave = os.openpty()
+        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 50, 160, 0, 0))
+        self.before = termios.tcgetattr(slave)
+        self.process = subprocess.Popen(
+            [*GEARKIN, *arguments],
+            cwd=folder,
+            stdin=slave,
+            stdout=slave,
+            stderr=slave,
+            env=os.environ | {'TERM': 'xterm'},
+        )
+        self._slave = slave
+        self._text = ''
+
+    def wait_for(self, pattern: str) -> str:
+        """Wait until something new is shown, and give what matches."""
+        deadline = time.monotonic() + DEADLINE
+        while not (found := re.search(pattern, self._text)):
+            ready, _, _ = select.select([self._master], [], [], deadline - time.monotonic())
+            assert ready, self._text
+            read = os.read(self._master, 65536).decode(errors='replace')
+            self._text += re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', read)
+        self._text = self._text[found.end() :]
+        return found[0]
+
+    def type(self, keys: str) -> None:
+        os.write(self._master, keys.encode())
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, kind, *_) -> None:
+        if kind:
+            self.process.kill()
+        self.process.wait()
+        for descriptor in (self._master, self._slave):
+            os.close(descriptor)
+
+    def end(self) -> int:
+        """Wait for the end, and give the exit code."""
+        deadline = time.monotonic() + DEADLINE
+        while self.process.poll() is None:  # it waits for its last output to be read
+            assert time.monotonic() < deadline
+            if select.select([self._master], [], [], 0.05)[0]:
+                os.read(self._master, 65536)
+        assert termios.tcgetattr(self._slave) == self.before
+        return self.process.returncode
+
+
+@pytest.mark.usefixtures('running')
+def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
+    with Terminal(tmp_path, 'watch', '--text', '--node', OTHER) as terminal:
+        terminal.wait_for(f'gearkin watch {OTHER} connected')
+        terminal.wait_for(r'output angle +-?\d+\.\d+° ')
+        terminal.wait_for('Rotor input: healthy')
+        terminal.type('r')
+        terminal.wait_for('● recording to gearkin_')
+        terminal.type('h')
+        terminal.wait_for('Stop the recording first')
+        terminal.type('r')
+        terminal.wait_for(r'Recorded \d+ messages, 0 lost')
+        terminal.type('h')
+        terminal.wait_for('output shaft at 0.0 rad: rotor_zero is')
+        terminal.type('q')
+        assert terminal.end() == 0
+
+
+def until(condition):
+    deadline = time.monotonic() + DEADLINE
+    while not (found := condition()):
+        assert time.monotonic() < deadline
+        time.sleep(0.02)
+    return found
+
+
+@pytest.mark.usefixtures('running')
+def test_commands_that_cannot_be_done_are_answered_with_the_cause(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'there').mkdir()
+    with Watcher(OTHER) as watcher:
+        until(lambda: watcher.view.state == 'connected' and watcher.view.drivers)
+        for asked, cause in (
+            (watcher.stop(), 'Nothing is being recorded.'),
+            (watcher.configure(MOTOR, 'm2'), f'There is no joint m2 on {MOTOR}.'),
+            (watcher.record(Path('there')), 'there: exists already'),
+        ):
+            assert asked.result(DEADLINE) == Answer(cause, done=False)
+        assert watcher.record(Path('full')).result(DEADLINE).done
+        assert watcher.record().result(DEADLINE).text == 'full is being recorded.'
+
+        def full(*_):
+            raise BagError('full: No space left on device')
+
+        monkeypatch.setattr(LiveBagWriter, 'write_all', full)
+        words = until(lambda: watcher.view.failure)
+        assert words == 'The recording has ended: full: No space left on device'
+
+
+def test_drivers_are_recorded_where_there_is_no_node(tmp_path):
+    with Watcher('/nobody/gear_state_publisher') as watcher:
+        until(lambda: watcher.view.drivers)
+        assert watcher.home().result(DEADLINE).text == 'There is no node to home.'
+        path = tmp_path / 'drivers'
+        assert watcher.record(path).result(DEADLINE).done
+        until(lambda: ': 1' in watcher.view.recording.replace(': 0', ''))
+    assert watcher.farewell.endswith(f' 0 lost: gearkin validate {path}')
+    with Bag(path) as bag:
+        # The outputs of another node may be discovered before that node.
+        beside = OTHER.rpartition('/')[0]
+        assert {t for t in bag.topics if not t.startswith(beside)} <= {MOTOR, ENCODER}
+        assert MOTOR in bag.topics
+
+
+def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
+    with Terminal(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
+        terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
+        choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
+        terminal.wait_for('Number of the joint of the rotor: ')
+        terminal.type(f'{choice[0]}\n')
+        terminal.wait_for(f'mine.yaml is for the joint m1 on {MOTOR}')
+        assert terminal.end() == 0
+        assert "rotor_joint: 'm1'\n" in (tmp_path / 'mine.yaml').read_text('utf-8')
+
+
+# The last, as a process that is killed leaves its part of the shared memory behind.
+@pytest.mark.usefixtures('running')
+def test_recordings_in_a_pipe_are_whole_also_after_the_process_was_killed(tmp_path):
+    paths = {name: tmp_path / name for name in ('ended', 'killed')}
+    with contextlib.ExitStack() as stack:
+        programs = {}
+        for name, path in paths.items():
+            path.with_suffix('.folder').mkdir()
+            arguments = ['watch', '--text', '--node', OTHER, '--record', str(path)]
+            programs[name] = stack.enter_context(gearkin(path.with_suffix('.folder'), *arguments))
+        for program in programs.values():
+            program.wait_for(r'recording \S+: (?:[4-9]\d{3}|\d{5,}) messages in .* s, 0 lost')
+        programs['killed'].process.kill()
+        programs['ended'].process.terminate()
+        assert programs['ended'].process.wait(DEADLINE) == 130
+    text = programs['ended'].text()
+    listed, *_ = text.splitlines()
+    assert listed == f'{MOTOR}: joints: brake, m1'
+    assert re.search(
+        rf'^[\d-]+T[\d:]+\S* {OTHER} connected \| output angle \S+° .*; rotor angle .*; '
+        r'input \d+ Hz \(last message .* ago\); transmission error .* \| Rotor input: healthy\. ',
+        text,
+        re.MULTILINE,
+    )
+    assert re.search(r'^Recorded \d+ messages, 0 lost: gearkin validate ', text, re.MULTILINE)
+    assert not (paths['killed'] / 'metadata.yaml').exists()
+    assert_is_whole(paths['ended'], least=600)
+    assert_is_whole(paths['killed'], least=300)

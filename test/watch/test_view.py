@@ -1,0 +1,300 @@
+"""Viewers of the mechanism: launch files, RViz's configuration, Foxglove's layout."""
+
+import ast
+import json
+import math
+import runpy
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+import yaml
+from shown_markers import all_at
+from visualization_msgs.msg import Marker
+
+from gear_kinematics.parameters.files import ConfigError
+from gear_kinematics.ros.node import GearStatePublisher
+
+ROOT = Path(__file__).resolve().parents[2]
+LAUNCH_FILES = sorted((ROOT / 'launch').glob('*.launch.py'))
+
+
+def nodes_of(tree) -> Iterator[dict]:
+    """Yield every mapping in a document."""
+    if isinstance(tree, dict):
+        yield tree
+    for child in tree.values() if isinstance(tree, dict) else tree:
+        if isinstance(child, (dict, list)):
+            yield from nodes_of(child)
+
+
+@pytest.fixture(scope='module')
+def rviz() -> dict:
+    return yaml.safe_load((ROOT / 'config/view.rviz').read_text('utf-8'))
+
+
+@pytest.fixture(scope='module')
+def foxglove() -> dict:
+    return json.loads((ROOT / 'config/foxglove.json').read_text('utf-8'))
+
+
+@pytest.fixture(scope='module')
+def topics(context) -> dict[str, str]:
+    """Return the types of the node's outputs by topic, for a node without a namespace."""
+    node = GearStatePublisher(context=context)
+    found = {publisher.topic_name: publisher.msg_type.__name__ for publisher in node.publishers}
+    node.destroy_node()
+    return found
+
+
+@pytest.mark.live
+def test_rviz_listens_to_topics_of_the_node(rviz, topics):
+    displays = rviz['Visualization Manager']['Displays']
+    kinds = {'MarkerArray': 'MarkerArray', 'RobotModel': 'String'}
+    wanted = {
+        f'/{topic["Value"]}': kinds[display['Class'].partition('/')[2]]
+        for display in displays
+        for name, topic in display.items()
+        if name.endswith('Topic')
+    }
+    assert set(wanted) == {'/markers', '/robot_description'}
+    assert wanted.items() <= topics.items()
+
+
+@pytest.mark.live
+@pytest.mark.parametrize('topic', ['markers', 'robot_description'])
+def test_rviz_gets_what_was_latched(rviz, topic):
+    [qos] = [n for n in nodes_of(rviz) if n.get('Value') == topic]
+    assert qos['Durability Policy'] == 'Transient Local'
+
+
+@pytest.mark.live
+def test_foxglove_listens_to_topics_of_the_node(foxglove, topics):
+    panels = foxglove['configById']
+    shown = {topic for panel in panels.values() for topic in panel.get('topics', {})}
+    shown |= {panel['topicToRender'] for panel in panels.values() if 'topicToRender' in panel}
+    paths = [p['value'] for panel in panels.values() for p in panel.get('paths', [])]
+    plotted = {path.partition('.')[0] for path in paths}
+    assert shown == {'/markers', '/diagnostics'}
+    assert plotted == {'/output_state'}
+    assert {path.partition('.')[2] for path in paths} <= {'position[0]', 'velocity[0]'}
+    assert shown | plotted <= set(topics)
+
+
+def test_every_panel_of_foxglove_has_its_place(foxglove):
+    halves = [n[side] for n in nodes_of(foxglove['layout']) for side in ('first', 'second')]
+    panels = [half for half in halves if isinstance(half, str)]
+    assert sorted(panels) == sorted(foxglove['configById'])
+
+
+def test_both_look_from_the_frame_of_the_stator(rviz, foxglove):
+    assert rviz['Visualization Manager']['Global Options']['Fixed Frame'] == 'stator'
+    assert foxglove['configById']['3D!mechanism']['followTf'] == 'stator'
+
+
+class View(NamedTuple):
+    """A camera, with angles in rad, about a point of the frame of the stator."""
+
+    focus: list[float]
+    distance: float
+    elevation: float
+    azimuth: float
+    field: float
+    """Field of view, from the lower to the upper edge."""
+    near: float
+
+    def seen(self, points: np.ndarray) -> np.ndarray:
+        """Project points to the picture, whose height is from -1 to 1."""
+        across = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
+        flat = np.array([math.cos(self.azimuth), math.sin(self.azimuth), 0.0])
+        back = math.cos(self.elevation) * flat + [0.0, 0.0, math.sin(self.elevation)]
+        relative = points - self.focus
+        depth = self.distance - relative @ back
+        assert depth.min() > self.near
+        axes = np.stack([across, np.cross(back, across)], axis=1)
+        return relative @ axes / depth[:, np.newaxis] / math.tan(0.5 * self.field)
+
+
+@pytest.fixture(scope='module')
+def views(rviz, foxglove) -> dict[str, View]:
+    current = rviz['Visualization Manager']['Views']['Current']
+    camera = foxglove['configById']['3D!mechanism']['cameraState']
+    return {
+        'rviz': View(
+            [current['Focal Point'][axis] for axis in 'XYZ'],
+            current['Distance'],
+            current['Pitch'],
+            current['Yaw'],
+            math.radians(45.0),  # OGRE's
+            current['Near Clip Distance'],
+        ),
+        'foxglove': View(
+            camera['targetOffset'],
+            camera['distance'],
+            math.radians(90.0 - camera['phi']),
+            math.radians(270.0 - camera['thetaOffset']),
+            math.radians(camera['fovy']),
+            camera['near'],
+        ),
+    }
+
+
+def surface(marker: Marker) -> np.ndarray:
+    """Points of a marker; for a body, those of a cylinder around it."""
+    position, scale = marker.pose.position, marker.scale
+    middle = np.array([position.x, position.y, position.z])
+    angle, height = np.meshgrid(np.linspace(0.0, math.tau, 72), [-0.5 * scale.z, 0.5 * scale.z])
+    radius = 0.5 * max(scale.x, scale.y)
+    body = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=-1)
+    outline = [(point.x, point.y, point.z) for point in marker.points]
+    return middle + np.reshape(outline or body, (-1, 3))
+
+
+@pytest.mark.parametrize('viewer', ['rviz', 'foxglove'])
+def test_mechanism_fills_the_view(views, viewer, actuator):
+    places = views[viewer].seen(np.concatenate([*map(surface, all_at(actuator, 0.7))]))
+    low, high = places.min(axis=0), places.max(axis=0)
+    assert np.all(np.maximum(-low, high) < 0.95)
+    assert high[1] - low[1] > 1.5
+    assert abs(high + low) == pytest.approx(0.0, abs=0.1)
+
+
+def test_both_look_from_the_same_direction(views):
+    rviz, foxglove = views['rviz'], views['foxglove']
+    assert rviz.elevation == pytest.approx(foxglove.elevation, abs=0.01)
+    assert rviz.azimuth == pytest.approx(foxglove.azimuth, abs=0.01)
+
+
+def test_foxglove_draws_no_frames_over_the_mechanism(foxglove):
+    """By itself, it draws axes of 0.2 m in every frame."""
+    frames = foxglove['configById']['3D!mechanism']['scene']['transforms']
+    assert frames == {'axisScale': 0, 'lineWidth': 0, 'showLabel': False}
+
+
+def test_plots_are_named_in_foxglove_and_in_lichtblick(foxglove):
+    plots = [panel for panel in foxglove['configById'].values() if 'paths' in panel]
+    titles = [
+        {panel[f'{program}PanelTitle'] for program in ('foxglove', 'lichtblick')}
+        for panel in plots
+    ]
+    assert titles == [{'Output angle, rad'}, {'Output velocity, rad/s'}]
+
+
+def test_rviz_knows_whether_to_hide_its_docks(rviz):
+    """Otherwise it reads an uninitialised variable."""
+    geometry = rviz['Window Geometry']
+    assert geometry['Hide Left Dock'] is geometry['Hide Right Dock'] is False
+
+
+def started_packages(path: Path) -> set[str]:
+    """The packages whose nodes a launch file starts."""
+    return {
+        keyword.value.value
+        for node in ast.walk(ast.parse(path.read_text('utf-8')))
+        if isinstance(node, ast.Call) and getattr(node.func, 'id', '') == 'Node'
+        for keyword in node.keywords
+        if keyword.arg == 'package'
+    }
+
+
+def test_packages_that_launch_files_start_are_dependencies():
+    manifest = ET.parse(ROOT / 'package.xml').getroot()  # noqa: S314, the project's own file
+    declared = {element.text for element in manifest.iterfind('exec_depend')}
+    started = set().union(*map(started_packages, LAUNCH_FILES))
+    assert started == {'gear_kinematics', 'robot_state_publisher', 'rviz2'}
+    assert started - {'gear_kinematics'} <= declared
+
+
+@pytest.mark.parametrize('path', LAUNCH_FILES, ids=lambda path: path.name)
+def test_launch_file_loads(path):
+    """Needs a system ROS: the wheels have no launch."""
+    pytest.importorskip('launch_ros', reason='launch is not installed')
+    description = runpy.run_path(str(path))['generate_launch_description']()
+    assert description.entities
+
+
+TWO_NODES = """
+/left/gear_state_publisher:
+  ros__parameters: {frame_prefix: left_}
+/right/gear_state_publisher:
+  ros__parameters: {frame_prefix: right_}
+"""
+
+
+@pytest.fixture
+def launched(tmp_path):
+    """A context with the launch files' arguments; needs a system ROS."""
+    pytest.importorskip('launch_ros', reason='launch_ros is not installed')
+    context = pytest.importorskip('launch', reason='launch is not installed').LaunchContext()
+    config = tmp_path / 'two.yaml'
+    config.write_text(TWO_NODES)
+    context.launch_configurations.update(
+        config=str(config), frame_prefix='', namespace='left', rotor_state='rotor_state',
+        rviz='false', rviz_config='view.rviz', publish_frequency='100',
+    )  # fmt: skip
+    return context
+
+
+def described(context, file: str, function: str) -> list:
+    """The nodes that a function of a launch file returns."""
+    return runpy.run_path(str(ROOT / 'launch' / file))[function](context)
+
+
+def parameters_of(context, node) -> tuple[dict | Path, ...]:
+    """The parameters and parameter files that a node is started with."""
+    launch_ros = pytest.importorskip('launch_ros')
+    return launch_ros.utilities.evaluate_parameters(context, node._Node__parameters)
+
+
+def fixed_frame(context, rviz) -> str:
+    """The fixed frame of RViz."""
+    launch = pytest.importorskip('launch')
+    words = [launch.utilities.perform_substitutions(context, part) for part in rviz.cmd[1:]]
+    return words[words.index('-f') + 1]
+
+
+@pytest.mark.parametrize('side', ['left', 'right'])
+def test_viewers_show_the_node_of_their_namespace(launched, side):
+    launched.launch_configurations['namespace'] = side
+    publisher, rviz = described(launched, 'view.launch.py', 'start_viewers')
+    [given] = parameters_of(launched, publisher)
+    robot = ET.fromstring(given['robot_description'])  # noqa: S314, our own
+    assert {link.get('name').partition('_')[0] for link in robot.iter('link')} == {side}
+    frequency = given['publish_frequency']
+    assert (frequency, type(frequency)) == (100.0, float)  # it refuses an integer
+    assert fixed_frame(launched, rviz) == f'{side}_stator'
+    assert not rviz.condition.evaluate(launched)
+
+
+def test_prefix_that_was_given_prevails_over_that_of_the_file(launched):
+    launched.launch_configurations['frame_prefix'] = 'my_'
+    _, rviz = described(launched, 'view.launch.py', 'start_viewers')
+    assert fixed_frame(launched, rviz) == 'my_stator'
+    [node] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
+    _, given = parameters_of(launched, node)
+    assert given == {'frame_prefix': 'my_'}
+    # launch writes it to a block of the node's full name, or to /** if it does not know that.
+    node._perform_substitutions(launched)
+    assert node.is_node_name_fully_specified()
+    assert node.node_name == '/left/gear_state_publisher'
+
+
+@pytest.mark.parametrize(
+    ('file', 'function'),
+    [('gear_state_publisher.launch.py', 'start_node'), ('view.launch.py', 'start_viewers')],
+)
+def test_mistyped_parameter_file_is_refused(launched, file, function):
+    launched.launch_configurations['config'] = 'nope.yaml'
+    with pytest.raises(ConfigError, match=r'^nope\.yaml: No such file or directory$'):
+        described(launched, file, function)
+
+
+def test_parameter_file_in_the_home_directory_is_found(launched, tmp_path, monkeypatch):
+    monkeypatch.setenv('HOME', str(tmp_path))
+    launched.launch_configurations['config'] = '~/two.yaml'
+    [node] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
+    [found] = parameters_of(launched, node)
+    assert found == tmp_path / 'two.yaml'
