@@ -20,7 +20,7 @@ from validation import compare, repeated
 
 from gear_kinematics.bag import Bag, BagWriter, in_batches
 from gear_kinematics.bag.compute import compute
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _ROTOR = '/rotor_state'
@@ -74,7 +74,7 @@ def _run(way: Callable[[Path], None], target: Path) -> None:
 
 def _compute(storage: str, source: Path, target: Path) -> None:
     with Bag(source) as bag:
-        compute(bag, target, parameters.load(parameters.default_config()), storage=storage)
+        compute(bag, target, NodeParameters.load(), storage=storage)
 
 
 def _copy(storage: str, source: Path, target: Path) -> None:

@@ -34,13 +34,13 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Mechanism, solve, split_turns
+from gear_kinematics.kinematics import solve, split_turns
 from gear_kinematics.kinematics.motion import closed_form
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 
 Array = NDArray[np.float64]
 
-_MECHANISM = Mechanism.from_mapping(parameters.load(parameters.default_config()))
+_MECHANISM = NodeParameters.load().mechanism
 _LOOPED = 20_000  # samples of what goes through a loop
 _SPEED, _ACCELERATION = 314.0, 6500.0  # rad/s, rad/s²
 _MILLISECOND = 1e-3  # s

@@ -32,8 +32,7 @@ from processes import NODE, Program, private_surroundings, program
 from rotor_driver import counted_number, counted_stamp
 from state_listener import Listener, receive_answers
 
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 
 TOPICS: Mapping[str, type[ExpectedMessages]] = {
     'output_state': ExpectedOutputState,
@@ -119,7 +118,7 @@ def main() -> int:
 
 def soak(minutes: float, rate: float) -> dict[str, Any]:
     """Let the node answer a driver for so many minutes, and say what became of it."""
-    mechanism = Mechanism.from_mapping(parameters.load(parameters.default_config()))
+    mechanism = NodeParameters.load().mechanism
     topics = {name: Topic(expected(mechanism)) for name, expected in TOPICS.items()}
     count = round(60.0 * minutes * rate)
     with ExitStack() as stack:

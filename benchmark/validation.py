@@ -27,9 +27,9 @@ from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
 from gear_kinematics.bag import Bag, BagWriter, Message, in_batches
-from gear_kinematics.parameters import node_parameters as parameters
-from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.share import share_directory
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.wire.topics import RECORDED_TOPICS
@@ -106,8 +106,8 @@ def _ways(storage: str) -> dict[str, Callable[[Path], object]]:
 
 
 def _validate(bag: Path) -> None:
-    config = parameters.default_config()
-    task = Task(bag, parameters.load(config), str(config), Tolerances())
+    config = default_config()
+    task = Task(bag, NodeParameters.load(config), str(config), Tolerances())
     report = validate_bag(task)
     if report.verdict != Verdict.PASS:
         raise RuntimeError(f'the bag does not validate: {report}')

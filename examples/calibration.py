@@ -4,15 +4,16 @@ python calibration.py FIRST SECOND RATIO   # bags or CSV files
 """
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
 from gear_kinematics.measurement.reading import read_encoders
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 
 first, second, ratio = Path(sys.argv[1]), Path(sys.argv[2]), GearRatio.parse(sys.argv[3])
-config = {**parameters.defaults(), 'gear_ratio': str(ratio)}
+config = replace(NodeParameters.load(), gear_ratio=str(ratio))
 result = fit([read_encoders(first, config)], ratio)
 calibration = to_calibration(result)
 Path('calibration.yaml').write_text(calibration.text(), 'utf-8')  # a parameter of the node

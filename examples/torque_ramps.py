@@ -3,14 +3,13 @@
 import math
 from pathlib import Path
 
-from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.measurement.lost_motion import Request, measure
 from gear_kinematics.measurement.reading import read
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 
-config = parameters.load(parameters.default_config())
+config = NodeParameters.load()
 ramps = Path(__file__).parents[1] / 'docs/examples/ramps.csv'
-report = measure(read(ramps, config), gear_from_mapping(config), config, Request(rated_torque=5.0))
+report = measure(read(ramps, config), config.gear, config, Request(rated_torque=5.0))
 figures = report.figures
 
 

@@ -6,7 +6,7 @@ python validate_recording.py [BAG [PARAMETERS]]
 import sys
 from pathlib import Path
 
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 
@@ -14,12 +14,12 @@ ROOT = Path(__file__).parents[1]
 
 
 def test_recording(bag: Path, config: Path) -> None:
-    report = validate_bag(Task(bag, parameters.load(config), str(config), Tolerances()))
+    report = validate_bag(Task(bag, NodeParameters.load(config), str(config), Tolerances()))
     assert report.passed, report.error or '; '.join(report.findings)
 
 
 if __name__ == '__main__':
     given = [*map(Path, sys.argv[1:])]
     bag = given[0] if given else ROOT / 'bags/servo_point_to_point'
-    test_recording(bag, given[1] if len(given) > 1 else parameters.default_config())
+    test_recording(bag, given[1] if len(given) > 1 else default_config())
     print(f'{bag.name}: what was published is right')

@@ -9,6 +9,7 @@ import os
 import struct
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import geometry_msgs.msg
@@ -17,7 +18,8 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.serialization import deserialize_message
 
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
 from gear_kinematics.wire.cdr import (
@@ -225,7 +227,13 @@ def _check_pose_batch(messages: Sequence[bytes], arrays: Sequence[PoseArray | No
 
 def _check_rotor_input(messages: Sequence[bytes], encoder: str) -> None:
     """Take messages one by one and at once, with the same outcome; what is taken has a state."""
-    settings = InputSettings(_JOINT, -1, 0.5, encoder, 650.0, 6500.0)
+    settings = replace(
+        NodeParameters.load(),
+        rotor_joint=_JOINT,
+        rotor_direction=-1,
+        rotor_zero=0.5,
+        rotor_encoder=encoder,
+    )
     one_by_one, at_once = RotorInput(settings), RotorInput(settings)
     samples = []
     for message in messages:

@@ -49,7 +49,7 @@ def gear_state_publisher() -> int:
         if '-h' in own or '--help' in own:
             return lambda: _answer(_NODE_HELP)
         if '--version' in own:
-            from gear_kinematics.parameters.share import version  # noqa: PLC0415, imports pathlib
+            from gear_kinematics.share import version  # noqa: PLC0415, imports pathlib
 
             return lambda: _answer(f'gear_state_publisher {version()}\n')
         if warning := check_shared_memory():

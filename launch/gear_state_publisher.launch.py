@@ -7,7 +7,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from gear_kinematics.parameters.node_parameters import NODE
+from gear_kinematics.parameters import NODE
 from gear_kinematics.ros.launch_arguments import node_arguments
 
 

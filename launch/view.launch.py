@@ -8,7 +8,6 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
-from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.launch_arguments import node_arguments
 from gear_kinematics.shape.urdf import urdf
@@ -17,13 +16,18 @@ from gear_kinematics.shape.urdf import urdf
 def start_viewers(context: LaunchContext) -> list[Node]:
     """Describe the nodes, with the parameters of gear_state_publisher."""
     _, parameters = node_arguments(context.launch_configurations)
-    names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
     # robot_state_publisher needs the URDF as a parameter, and publishes it again. That topic is
     # renamed below, so that it does not collide with the node's.
-    mechanism, module = Mechanism.from_mapping(parameters), parameters['module']
-    meshes = folder_uri(parameters['meshes'], mechanism, module)
-    description = urdf(mechanism, module=module, meshes=meshes, **names)
-    fixed_frame = f'{names["frame_prefix"]}stator'
+    mechanism, module = parameters.mechanism, parameters.module
+    meshes = folder_uri(parameters.meshes, mechanism, module)
+    description = urdf(
+        mechanism,
+        module=module,
+        output_joint=parameters.output_joint,
+        frame_prefix=parameters.frame_prefix,
+        meshes=meshes,
+    )
+    fixed_frame = f'{parameters.frame_prefix}stator'
     return [
         Node(
             package='robot_state_publisher',

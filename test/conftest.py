@@ -38,7 +38,7 @@ import hypothesis  # noqa: E402
 import pytest  # noqa: E402
 
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
-from gear_kinematics.parameters import node_parameters as parameters  # noqa: E402
+from gear_kinematics.parameters import NodeParameters  # noqa: E402
 
 pytest_plugins = ['hanging']
 
@@ -132,7 +132,7 @@ def context():
 @pytest.fixture(scope='module')
 def config() -> dict:
     """Return the default parameters of the node."""
-    return parameters.load(parameters.default_config())
+    return NodeParameters.load()
 
 
 @pytest.fixture(

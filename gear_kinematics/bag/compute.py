@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import repeat
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_bat
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
-from gear_kinematics.kinematics import gear_from_mapping
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import (
     BODY_POSES,
@@ -55,7 +55,7 @@ class ComputeResult:
 def compute(
     source: Bag,
     target: Path,
-    parameters: Mapping[str, Any],
+    parameters: NodeParameters,
     *,
     rotor_topic: str = _TOPICS.rotor,
     output_topic: str = _TOPICS.output,
@@ -75,7 +75,7 @@ def compute(
     Args:
         source: an open bag.
         target: the folder to create.
-        parameters: of the node, as `parameters.load` returns them.
+        parameters: of the node.
         rotor_topic: name of the input in the bag.
         output_topic: name of the node's output_state in the bag.
         poses_topic: name of the node's body_poses in the bag.
@@ -91,10 +91,8 @@ def compute(
             target cannot be written.
         ValueError: if the parameters are invalid, or two topics have the same name.
     """
-    gear = gear_from_mapping(parameters)
-    names = {name: parameters[name] for name in ('output_joint', 'frame_prefix')}
-    messages_of = state_messages(gear, **names)
-    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    messages_of = state_messages(parameters)
+    rotor_input = RotorInput(parameters)
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
     topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
     corrector = None
@@ -130,7 +128,7 @@ def compute(
             encoded_outputs = messages_of.encode_outputs(samples)
             if corrector:
                 correction = corrector.correct_batch(
-                    *samples[:5], samples.stretch, referenced=rotor_input.referenced
+                    *samples[:5], samples.segment, referenced=rotor_input.referenced
                 )
                 encoded_outputs |= messages_of.encode_corrections(samples, correction)
             # A stable sort by these puts each output directly after its rotor message.
@@ -170,5 +168,5 @@ def _check_topics(
 def _nothing_computed(source: Bag, topic: str, rotor_input: RotorInput) -> str:
     if not rotor_input.received:
         return f'{source.path}: no messages on {topic}'
-    joint, why = rotor_input.settings.rotor_joint, rotor_input.why_rejected
+    joint, why = rotor_input.parameters.rotor_joint, rotor_input.why_rejected
     return f'{source.path}: no valid state of the joint {joint!r} on {topic}: {why}'

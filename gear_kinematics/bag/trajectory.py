@@ -1,9 +1,8 @@
 """The rotor's motion over time: recorded, or at a constant speed."""
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,8 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
@@ -136,7 +136,7 @@ class Trajectory(NamedTuple):
 
 def read_trajectory(
     path: Path,
-    parameters: Mapping[str, Any],
+    parameters: NodeParameters,
     rotor_topic: str | None = None,
     progress: ReportProgress | None = None,
 ) -> Trajectory:
@@ -144,7 +144,7 @@ def read_trajectory(
 
     Args:
         path: of the bag.
-        parameters: of the node, as `parameters.load` returns them.
+        parameters: of the node.
         rotor_topic: its name; None: by type and name.
         progress: called after each batch; the total counts all topics of the bag.
 
@@ -156,9 +156,9 @@ def read_trajectory(
     """
     rotor = TopicMessages()
     with Bag(path) as bag:
-        topic = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
+        topic = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)
         bag.read({topic: rotor}, progress)
-    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
+    rotor_input = RotorInput(parameters)
     samples = rotor_input.accept_batch(rotor.data, rotor.received)
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)

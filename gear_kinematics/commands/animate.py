@@ -2,17 +2,15 @@
 
 import argparse
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics import plotting
 from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import progress, warn_if_teeth_cannot_mesh, write_file
 from gear_kinematics.commands.targets import add_force, check_targets
-from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _BOUNDS = {'width': (100, 1920), 'fps': (1, 50)}
@@ -53,7 +51,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     check_targets(options, {'FILE': options.out})
     plotting.check_animation(Path(options.out))
     config = arguments.node_parameters(options)
-    mechanism, module = Mechanism.from_mapping(config), config['module']
+    mechanism, module = config.mechanism, config.module
     for name, (low, high) in _BOUNDS.items():
         if not low <= (given := getattr(options, name)) <= high:
             raise ValueError(f'--{name} must be between {low} and {high}, not {given}')
@@ -84,9 +82,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE
 
 
-def _frames(
-    options: argparse.Namespace, config: Mapping[str, Any], cycle_turns: int
-) -> Trajectory:
+def _frames(options: argparse.Namespace, config: NodeParameters, cycle_turns: int) -> Trajectory:
     closed = not (options.bag or options.duration)
     moved = bags.recording(options, config) or Trajectory.at_constant_speed(
         options.speed, turns=cycle_turns, duration=options.duration

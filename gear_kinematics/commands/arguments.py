@@ -3,8 +3,8 @@
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.commands.paper_size import add_paper
 from gear_kinematics.commands.targets import add_force
@@ -12,7 +12,7 @@ from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.columns import ANGLE_UNITS, Columns
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters, default_config
 from gear_kinematics.wire.nearest import among
 
 
@@ -65,10 +65,10 @@ def add_config(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         '--node',
-        default=parameters.NODE,
+        default=NODE,
         metavar='NAME',
         help='node in a file with several nodes, with or without namespace, such as '
-        f'/left/{parameters.NODE} (default: %(default)s)',
+        f'/left/{NODE} (default: %(default)s)',
     )
 
 
@@ -151,23 +151,23 @@ def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
     """The given parameter file, or the one in the bag's folder, or the default."""
     if options.config:
         return Path(options.config)
-    default = parameters.default_config()
+    default = default_config()
     return (beside(bag, default.name) if bag else None) or default
 
 
-def load_config(options: argparse.Namespace, bag: Path | None = None) -> dict[str, Any]:
+def load_config(options: argparse.Namespace, bag: Path | None = None) -> NodeParameters:
     """Load the parameters from `config_path`; `--ratio`, `--joint`, `--max-gap` replace some.
 
     Raises:
         ValueError: for values that the node would refuse.
     """
-    config = parameters.load(config_path(options, bag), options.node)
+    config = NodeParameters.load(config_path(options, bag), options.node)
     if given := getattr(options, 'ratio', None):
-        config['gear_ratio'] = str(given)
+        config = replace(config, gear_ratio=str(given))
     if (joint := getattr(options, 'joint', None)) is not None:
-        config['rotor_joint'] = joint
+        config = replace(config, rotor_joint=joint)
     if (max_gap := getattr(options, 'max_gap', None)) is not None:
-        config['transmission_error_max_gap'] = max_gap
+        config = replace(config, transmission_error_max_gap=max_gap)
     return config
 
 
@@ -202,10 +202,10 @@ def add_mechanism(parser: argparse.ArgumentParser) -> None:
 
 def mechanism(options: argparse.Namespace) -> Mechanism:
     """The mechanism given by the options."""
-    return Mechanism.from_mapping(node_parameters(options))
+    return node_parameters(options).mechanism
 
 
-def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
+def node_parameters(options: argparse.Namespace) -> NodeParameters:
     """The parameters of the node, some of them replaced by options.
 
     Raises:
@@ -216,11 +216,10 @@ def node_parameters(options: argparse.Namespace) -> dict[str, Any]:
         if (given := getattr(options, name, None)) is None:
             continue
         option = f'--{name.replace("_", "-")}'
-        if fault := parameters.PARAMETERS[name].fault(option, given, config[name]):
+        if fault := PARAMETERS[name].fault(option, given):
             raise ValueError(fault)
-        config[name] = given
-        if name.endswith('_teeth'):
-            config['gear_ratio'] = ''
+        ratio = '' if name.endswith('_teeth') else config.gear_ratio
+        config = replace(config, **{name: given}, gear_ratio=ratio)
     return config
 
 

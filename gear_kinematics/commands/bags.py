@@ -2,15 +2,15 @@
 
 import argparse
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.bag import fleet
 from gear_kinematics.bag.trajectory import Trajectory, read_trajectory
 from gear_kinematics.commands.arguments import positive
 from gear_kinematics.commands.output import message_progress, progress
+from gear_kinematics.parameters import NodeParameters
 
 
 def add_rotor(parser: argparse._ActionsContainer, *, configured: bool = True) -> None:
@@ -63,7 +63,7 @@ def add_recording(
 
 
 def recording(
-    options: argparse.Namespace, config: Mapping[str, Any], *bag_only_options: str
+    options: argparse.Namespace, config: NodeParameters, *bag_only_options: str
 ) -> Trajectory | None:
     """Read the rotor's motion from the bag, from the offset on; None without a bag.
 

@@ -1,18 +1,19 @@
 """`gearkin calibrate`: a calibration file from recordings of both encoders."""
 
 import argparse
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress, write
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
 from gear_kinematics.measurement.calibration.document import check_document, document
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
+from gear_kinematics.parameters import NodeParameters
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -46,7 +47,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     config = arguments.load_config(options, options.recordings[0])
     if options.check:
         return _check(options, config, reporter)
-    gear = gear_from_mapping(config)
+    gear = config.gear
     recordings = list(_read(options, config))
     if len(recordings) < len(options.recordings):
         return ExitCode.UNUSABLE
@@ -64,9 +65,9 @@ def run(options: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE if result.helps else ExitCode.FAILED
 
 
-def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Reporter) -> ExitCode:
+def _check(options: argparse.Namespace, config: NodeParameters, reporter: Reporter) -> ExitCode:
     calibration = Calibration.load(options.check)
-    config['gear_ratio'] = str(calibration.gear_ratio)
+    config = replace(config, gear_ratio=str(calibration.gear_ratio))
     judgements = []
     for recording, encoders in _read(options, config):
         try:
@@ -82,7 +83,7 @@ def _check(options: argparse.Namespace, config: dict[str, Any], reporter: Report
 
 
 def _read(
-    options: argparse.Namespace, config: Mapping[str, Any]
+    options: argparse.Namespace, config: NodeParameters
 ) -> Iterator[tuple[Recording, Encoders]]:
     """Read the recordings, and complain about those that cannot be read."""
     for path in options.recordings:

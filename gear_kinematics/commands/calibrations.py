@@ -1,13 +1,11 @@
 """The option for a calibration, which several commands have in common."""
 
 import argparse
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.commands import arguments
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics import gear_from_mapping
+from gear_kinematics.parameters import NodeParameters
 
 BESIDE = 'calibration.yaml'
 """Name of the file beside a bag."""
@@ -24,20 +22,20 @@ def add_option(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def find(options: argparse.Namespace, config: Mapping[str, Any], bag: Path | None) -> Path | None:
+def find(options: argparse.Namespace, config: NodeParameters, bag: Path | None) -> Path | None:
     """The given calibration, or that of the parameters, or the one in the bag's folder."""
-    if given := options.calibration or config['calibration']:
+    if given := options.calibration or config.calibration:
         return Path(given)
     return arguments.beside(bag, BESIDE) if bag else None
 
 
 def load(
-    options: argparse.Namespace, config: Mapping[str, Any], bag: Path | None
+    options: argparse.Namespace, config: NodeParameters, bag: Path | None
 ) -> Calibration | None:
     """Load the calibration at `find`.
 
     Raises:
-        ValueError: if it cannot be used for the gear.
+        ValueError: if it cannot be used for the gear, or the parameters describe none.
     """
-    path = find(options, config, bag)
-    return Calibration.load(path, gear_from_mapping(config)) if path else None
+    gear, path = config.gear, find(options, config, bag)
+    return Calibration.load(path, gear) if path else None

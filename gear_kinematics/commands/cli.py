@@ -19,7 +19,7 @@ from gear_kinematics.commands.arguments import parsers
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.origin import command_line
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
-from gear_kinematics.parameters.share import version
+from gear_kinematics.share import version
 from gear_kinematics.wire.nearest import among
 
 COMMANDS: dict[str, str] = {

@@ -1,16 +1,15 @@
 """`gearkin compute`: add the outputs to a bag that has only the rotor topic."""
 
 import argparse
-from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.bag import Bag, TopicError
 from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import Topics, find_rotor_topic
 from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import complain, message_progress
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import listed
 
@@ -40,7 +39,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         Bag(options.bag) as bag,
         message_progress(options.bag.name, quiet=options.quiet) as progress,
     ):
-        rotor = options.rotor_topic or find_rotor_topic(bag, joint=config['rotor_joint'])
+        rotor = options.rotor_topic or find_rotor_topic(bag, joint=config.rotor_joint)
         beside = Topics.beside(rotor)
         try:
             result = compute(
@@ -68,13 +67,13 @@ def run(options: argparse.Namespace) -> ExitCode:
     return ExitCode.DONE
 
 
-def _files(options: argparse.Namespace, config: Mapping[str, Any]) -> dict[str, bytes]:
+def _files(options: argparse.Namespace, config: NodeParameters) -> dict[str, bytes]:
     """The files with which the bag was computed, which `gearkin validate` finds beside it."""
     files = {}
     if calibration := calibrations.find(options, config, options.bag):
         files[calibrations.BESIDE] = calibration.read_bytes()
-    used = {**config, 'calibration': calibrations.BESIDE if calibration else ''}
-    return {parameters.default_config().name: parameters.as_file(used).encode(), **files}
+    used = replace(config, calibration=calibrations.BESIDE if calibration else '')
+    return {default_config().name: used.as_file().encode(), **files}
 
 
 def _tell(out: Path, result: ComputeResult) -> None:

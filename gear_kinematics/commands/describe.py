@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Report the facts."""
     reporter = Reporter(options)
     config = arguments.node_parameters(options)
-    described, size = Mechanism.from_mapping(config), config['module']
+    described, size = config.mechanism, config.module
     facts = [*_facts(described), *_tooth_facts(described, size)]
     values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)
     section = Section(

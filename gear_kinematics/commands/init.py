@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.parameters import default_config
 from gear_kinematics.parameters.new_config import new_config, start_command, write_new
-from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import nearest
 

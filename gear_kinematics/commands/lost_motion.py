@@ -4,11 +4,11 @@ import argparse
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress
-from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.measurement.clock import common_times
 from gear_kinematics.measurement.compare import groups as grouping
 from gear_kinematics.measurement.compare.quantities import at_common_torque
@@ -227,7 +227,7 @@ def _compared(
             found.append(over_positions(reports, gears, positions))
             groups = gears if len(gears) > 1 else None
     if options.preloads is not None:
-        gear = gear_from_mapping(arguments.load_config(options, options.recordings[0]))
+        gear = arguments.load_config(options, options.recordings[0]).gear
         settings, scale = settings_of(
             [report.name for report in reports], options.preloads, options.preload_unit, gear
         )
@@ -242,7 +242,7 @@ def _compared(
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, path)
     if options.travel is not None:
-        config['transmission_error_travel'] = math.radians(options.travel)
+        config = replace(config, transmission_error_travel=math.radians(options.travel))
     corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
     return Task(
         number,

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
-from gear_kinematics.parameters.share import version
 from gear_kinematics.report.document import Origin, printable
+from gear_kinematics.share import version
 
 
 def command_line(arguments: Sequence[str] | None) -> str:

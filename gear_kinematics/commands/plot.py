@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +16,10 @@ from gear_kinematics.kinematics import (
     Gear,
     Mechanism,
     RotorPosition,
-    gear_from_mapping,
     split_turns,
 )
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.image import format_of
-
-Config = Mapping[str, Any]
 
 _DEGREES = 40.0  # rotor angle at which all parts of the scheme can be seen
 _SPEED = 100.0 * math.pi  # rad/s: 3000 rpm
@@ -71,22 +69,22 @@ def run(options: argparse.Namespace) -> ExitCode:
     format_of(Path(options.out))  # its errors, before any work
     config = arguments.node_parameters(options)
     # The output needs no more than the ratio.
-    gear = gear_from_mapping(config) if options.draw is _output else Mechanism.from_mapping(config)
+    gear = config.gear if options.draw is _output else config.mechanism
     write_file(options.out, options.draw(options, config, gear, Path(options.out)))
     if options.draw is _scheme and isinstance(gear, Mechanism) and not options.quiet:
-        warn_if_teeth_cannot_mesh(gear, config['module'])
+        warn_if_teeth_cannot_mesh(gear, config.module)
     return ExitCode.DONE
 
 
 def _scheme(
-    options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path
+    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, path: Path
 ) -> bytes:
     branch = arguments.branch(options, mechanism)
     rotor = _rotor(options, config)
-    return plotting.scheme(mechanism, config['module'], path, rotor, branch, paper(options))
+    return plotting.scheme(mechanism, config.module, path, rotor, branch, paper(options))
 
 
-def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
+def _rotor(options: argparse.Namespace, config: NodeParameters) -> RotorPosition:
     if moved := bags.recording(options, config):
         return RotorPosition(int(moved.turns[0]), float(moved.angle[0]))
     degrees = _DEGREES if options.degrees is None else options.degrees
@@ -96,27 +94,29 @@ def _rotor(options: argparse.Namespace, config: Config) -> RotorPosition:
     return split_turns(angle)
 
 
-def _roses(options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path) -> bytes:
+def _roses(
+    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, path: Path
+) -> bytes:
     moved = bags.recording(options, config, 'duration')
     return plotting.roses(mechanism, path, moved, paper(options))
 
 
 def _slides(
-    options: argparse.Namespace, config: Config, mechanism: Mechanism, path: Path
+    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, path: Path
 ) -> bytes:
     moved = _moved(options, config, turns=1)
     by_angle = not options.bag
     return plotting.slides(mechanism, path, moved, paper(options), by_angle=by_angle)
 
 
-def _output(options: argparse.Namespace, config: Config, gear: Gear, path: Path) -> bytes:
+def _output(options: argparse.Namespace, config: NodeParameters, gear: Gear, path: Path) -> bytes:
     calibration = calibrations.load(options, config, options.bag)
     cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
     moved = _moved(options, config, turns=cycle)
     return plotting.output(gear, path, moved, calibration, paper(options))
 
 
-def _moved(options: argparse.Namespace, config: Config, turns: int) -> Trajectory:
+def _moved(options: argparse.Namespace, config: NodeParameters, turns: int) -> Trajectory:
     if moved := bags.recording(options, config):
         return moved
     speed = _SPEED if options.speed is None else options.speed

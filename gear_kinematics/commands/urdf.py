@@ -33,8 +33,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the meshes, and print the URDF."""
     config = arguments.load_config(options)
-    mechanism, module = Mechanism.from_mapping(config), config['module']
-    uri = options.mesh_uri or config['meshes']
+    mechanism, module = config.mechanism, config.module
+    uri = options.mesh_uri or config.meshes
     if options.meshes:
         warn_if_teeth_cannot_mesh(mechanism, module, sys.stderr)
         _write(mechanism, module, options.meshes)
@@ -42,8 +42,8 @@ def run(options: argparse.Namespace) -> ExitCode:
     text = urdf(
         mechanism,
         module=module,
-        output_joint=config['output_joint'],
-        frame_prefix=config['frame_prefix'],
+        output_joint=config.output_joint,
+        frame_prefix=config.frame_prefix,
         meshes=meshes.folder_uri(uri, mechanism, module),
     )
     print(text, end='')

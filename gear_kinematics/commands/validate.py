@@ -13,7 +13,6 @@ from gear_kinematics.commands.output import (
     message_progress,
     warn_of_shared_memory,
 )
-from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.fleet import WORK, Task, unusable, validate_bag
@@ -92,7 +91,6 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, bag)
-    gear_from_mapping(config)  # raises its errors here, not in the report on the bag
     return Task(
         bag,
         config,

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
-from gear_kinematics.state.rotor_input import CLOCK_RESET, RotorInput, RotorSample
+from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[Any]
 
@@ -90,14 +91,12 @@ class CalibratedOutput:
         # Of each compared sample: the error, the error minus the deviation, the half width; rad.
         self._compared = array('d'), array('d'), array('d')
 
-    def correct(self, sample: RotorSample, rotor_input: RotorInput) -> Correction:
-        """Compute the correction at the next sample of an input."""
-        if (referenced := rotor_input.referenced) != self._referenced:  # the turns were homed
+    def correct(self, sample: RotorSample, *, segment: int, referenced: bool) -> Correction:
+        """Compute the correction at the next sample; the arguments are those of `Corrector`."""
+        if referenced != self._referenced:  # the turns were homed
             self.reset()
             self._referenced = referenced
-        correction = self._corrector.correct(
-            sample, stretch=rotor_input.stretch, referenced=referenced
-        )
+        correction = self._corrector.correct(sample, segment=segment, referenced=referenced)
         if self._predicted and sample.stamp <= (last := self._predicted[-1][0]):
             if last - sample.stamp <= CLOCK_RESET:
                 return correction

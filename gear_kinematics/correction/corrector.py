@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
@@ -78,7 +78,7 @@ class Corrector:
         self._unknown_wind_up = (
             0.0 if span is None else 0.5 * abs(self._compliance) * (span[1] - span[0])
         )
-        self._stretch = 0
+        self._segment = 0
         self._stamp = 0
         self.reset()
 
@@ -92,19 +92,19 @@ class Corrector:
         self._mean_speed = _MeanSpeed()
 
     def correct(
-        self, sample: RotorSample, *, stretch: int = 0, referenced: bool = True
+        self, sample: RotorSample, *, segment: int = 0, referenced: bool = True
     ) -> Correction:
         """Compute the correction at the next sample.
 
         Args:
             sample: of the rotor.
-            stretch: as in `RotorSamples`; the plays are unknown after it has changed.
+            segment: as in `RotorSamples`; the plays are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
         stamp, (turns, angle), velocity, effort = sample
-        if stretch != self._stretch or not 0 <= stamp - self._stamp <= MAX_GAP:
+        if segment != self._segment or not 0 <= stamp - self._stamp <= MAX_GAP:
             self.reset()
-        self._stretch, self._stamp = stretch, stamp
+        self._segment, self._stamp = segment, stamp
         file = self._calibration
         deviation, slope, unknown, history = file.constant, 0.0, 0.0, 0.0
 
@@ -158,7 +158,7 @@ class Corrector:
         angle: Array,
         velocity: Array,
         effort: Array,
-        stretch: Array,
+        segment: Array,
         *,
         referenced: bool = True,
     ) -> Correction:
@@ -170,7 +170,7 @@ class Corrector:
             angle: rad.
             velocity: rad/s; NaN where there is none.
             effort: N·m; NaN where there is none.
-            stretch: the plays are unknown after it has changed.
+            segment: the plays are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
         count, file = len(stamp), self._calibration
@@ -188,7 +188,7 @@ class Corrector:
 
         velocity, history = velocity.copy(), np.zeros(count)
         coefficients = np.array([coefficient for _, coefficient in self._stops])
-        for rows in self._segments(stamp, turns, stretch):
+        for rows in self._segments(stamp, turns, segment):
             x = self._output_angle(turns[rows], angle[rows])
             least, most, still = self._drag_all(x)
             deviation[rows] += (x[:, np.newaxis] - 0.5 * (least + most)) @ coefficients
@@ -268,10 +268,10 @@ class Corrector:
         still = np.diff(np.concatenate([before, ends], axis=1), axis=1) == 0.0
         return *ends, 0.5 * still.sum(axis=0)
 
-    def _segments(self, stamp: Array, turns: Array, stretch: Array) -> Iterator[slice]:
+    def _segments(self, stamp: Array, turns: Array, segment: Array) -> Iterator[slice]:
         """Yield parts of a motion after having reset and counted as `correct` does."""
         gap = np.diff(stamp, prepend=self._stamp)
-        anew = np.diff(stretch, prepend=self._stretch) != 0
+        anew = np.diff(segment, prepend=self._segment) != 0
         anew |= (gap < 0) | (gap > MAX_GAP)
         start = 0
         while start < len(stamp):
@@ -282,7 +282,7 @@ class Corrector:
             ends = anew[inner] | (np.abs(turns[inner] - self._reference) > _FAR)
             stop = start + 1 + (int(np.argmax(ends)) if ends.any() else len(ends))
             yield slice(start, stop)
-            self._stamp, self._stretch = int(stamp[stop - 1]), int(stretch[stop - 1])
+            self._stamp, self._segment = int(stamp[stop - 1]), int(segment[stop - 1])
             start = stop
 
 

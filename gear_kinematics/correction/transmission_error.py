@@ -12,8 +12,8 @@ import numpy as np
 
 from gear_kinematics.correction.reversals import Pair, Reversals, separate
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
-from gear_kinematics.state.rotor_input import CLOCK_RESET
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 _DEPTH = 8192
 """Samples of each kind that are kept."""

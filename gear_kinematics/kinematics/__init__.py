@@ -2,9 +2,14 @@
 
 from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.gear_ratio import GearRatio
-from gear_kinematics.kinematics.mechanism import Branch, Gear, Mechanism, gear_from_mapping
+from gear_kinematics.kinematics.mechanism import Branch, Gear, Mechanism
 from gear_kinematics.kinematics.motion import MotionState, solve
-from gear_kinematics.kinematics.rotor_turns import RotorPosition, RotorTurns, split_turns
+from gear_kinematics.kinematics.rotor_turns import (
+    RotorPosition,
+    RotorSample,
+    RotorTurns,
+    split_turns,
+)
 
 __all__ = [
     'Branch',
@@ -14,8 +19,8 @@ __all__ = [
     'MechanismError',
     'MotionState',
     'RotorPosition',
+    'RotorSample',
     'RotorTurns',
-    'gear_from_mapping',
     'solve',
     'split_turns',
 ]

@@ -3,11 +3,9 @@
 import math
 import operator
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from numbers import Real
-from typing import Any, Self
 
 from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.gear_ratio import GearRatio
@@ -69,36 +67,6 @@ class Mechanism:
         ):
             object.__setattr__(self, name, value)
 
-    @classmethod
-    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
-        """Create the mechanism described by the parameters of the node and of its YAML file.
-
-        Args:
-            parameters: `ring_teeth`, `satellite_teeth`, `eccentricity`, `branches` (names) and,
-                for each branch, `<branch>.cam_phase` and `<branch>.axial_position`, which default
-                to those of `Branch`. Other keys are ignored.
-
-        Raises:
-            MechanismError: also if a key is missing, or `gear_ratio` is of another gear.
-        """
-        if ratio := parameters.get('gear_ratio'):
-            raise MechanismError(
-                [f'gear_ratio is {ratio}: only the ratio of this gear is known, not its bodies']
-            )
-        required = ('ring_teeth', 'satellite_teeth', 'eccentricity', 'branches')
-        if missing := [name for name in required if name not in parameters]:
-            raise MechanismError([f'{name} is missing' for name in missing])
-        names = parameters['branches']
-        if isinstance(names, str) or not hasattr(names, '__iter__'):
-            raise MechanismError([f'branches must be a list of names, not {names!r}'])
-        branches = []
-        for name in names:
-            fields = {field: f'{name}.{field}' for field in ('cam_phase', 'axial_position')}
-            given = {field: parameters[key] for field, key in fields.items() if key in parameters}
-            branches.append(Branch(name, **given))
-        numbers = {name: parameters[name] for name in required[:-1]}
-        return cls(**numbers, branches=tuple(branches))
-
     @property
     def gear_ratio(self) -> GearRatio:
         """i = ω2/ω5 = -zs/(zk - zs), signed and exact (eq. 3): the output turns backwards."""
@@ -136,22 +104,6 @@ class Mechanism:
 
 Gear = Mechanism | GearRatio
 """A gear: a mechanism, or one of which only the ratio is known; both have a `gear_ratio`."""
-
-
-def gear_from_mapping(parameters: Mapping[str, Any]) -> Gear:
-    """Create the gear described by the parameters of the node.
-
-    Args:
-        parameters: `gear_ratio` if the gear is not a `Mechanism`; else that is missing or empty,
-            and the others are as in `Mechanism.from_mapping`.
-
-    Raises:
-        MechanismError: if they describe no mechanism.
-        ValueError: if `gear_ratio` is no ratio.
-    """
-    if text := parameters.get('gear_ratio'):
-        return GearRatio.parse(text)
-    return Mechanism.from_mapping(parameters)
 
 
 def _teeth(name: str, value: object, faults: list[str]) -> int | None:

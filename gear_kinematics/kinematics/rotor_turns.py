@@ -37,6 +37,18 @@ class RotorPosition(NamedTuple):
     """rad, within the turn."""
 
 
+class RotorSample(NamedTuple):
+    """A state of the rotor: its angle φ2, its rate and torque at a time."""
+
+    stamp: int
+    """ns."""
+    position: RotorPosition
+    velocity: float | None
+    """rad/s; None if it is not known."""
+    effort: float | None
+    """N·m; None if it is not known."""
+
+
 @overload
 def split_turns(angle: float) -> RotorPosition: ...
 @overload

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.state.rotor_input import CLOCK_RESET
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[Any]
 

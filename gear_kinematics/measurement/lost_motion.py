@@ -1,8 +1,7 @@
 """What a recording tells of a gear: the figures of torque ramps, and the transmission error."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.measurement.figures import GearFigures, Settings, gear_figures, settings_for
@@ -11,6 +10,7 @@ from gear_kinematics.measurement.ratio import RatioEstimate, check_ratio, fit_ra
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.measurement.time_effects import time_remarks
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
+from gear_kinematics.parameters import NodeParameters
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -58,7 +58,7 @@ class Request:
 
 
 def measure(
-    recording: Recording, gear: Gear, parameters: Mapping[str, Any], request: Request
+    recording: Recording, gear: Gear, parameters: NodeParameters, request: Request
 ) -> LostMotion:
     """Measure a recording.
 
@@ -80,7 +80,7 @@ def measure(
         gear = fitted.ratio if fitted.ratio != gear.gear_ratio else gear
     if encoders:
         wrong = check_ratio(encoders, gear.gear_ratio)
-        travel = parameters['transmission_error_travel']
+        travel = parameters.transmission_error_travel
         found = transmission_figures(encoders, gear, travel, request.delay)
     report = LostMotion(recording.name, recording, gear.gear_ratio)
     report = replace(report, transmission=found, fitted=fitted, wrong_ratio=wrong)

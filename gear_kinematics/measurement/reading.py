@@ -1,6 +1,6 @@
 """The one reader of recordings: a bag or a CSV file becomes a `Recording`."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from gear_kinematics.bag import (
     sort_by_topic,
 )
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
-from gear_kinematics.kinematics import GearRatio, gear_from_mapping
+from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.measurement.clock import before_set_back, dates_of, in_order
 from gear_kinematics.measurement.columns import Columns
@@ -31,15 +31,16 @@ from gear_kinematics.measurement.recording import (
     RotorMotion,
     match,
 )
-from gear_kinematics.state.output_encoder import EncoderSettings
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.output_encoder import measured_angle
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 
 
 def read(
     path: Path,
-    parameters: Mapping[str, Any],
+    parameters: NodeParameters,
     columns: Columns | None = None,
     rotor_topic: str | None = None,
     encoder_topic: str | None = None,
@@ -49,7 +50,7 @@ def read(
 
     Args:
         path: of a CSV file or a bag.
-        parameters: of the node, as `parameters.load` returns them.
+        parameters: of the node.
         columns: of a CSV file; the counts per turn of the encoders in a bag.
         rotor_topic: of the rotor's states in a bag; None finds it by type and name.
         encoder_topic: of the output's encoder in a bag; None finds it by type and name.
@@ -60,7 +61,7 @@ def read(
     """
     columns = columns or Columns()
     if is_csv(path):
-        return read_csv(path, columns, gear_from_mapping(parameters).gear_ratio)
+        return read_csv(path, columns, parameters.gear.gear_ratio)
     return _read_bag(path, parameters, columns, rotor_topic, encoder_topic, progress)
 
 
@@ -84,20 +85,19 @@ def read_encoders(path: Path, *arguments: Any) -> tuple[Recording, Encoders]:
 
 def _read_bag(
     path: Path,
-    parameters: Mapping[str, Any],
+    parameters: NodeParameters,
     columns: Columns,
     rotor_topic: str | None,
     encoder_topic: str | None,
     progress: ReportProgress | None,
 ) -> Recording:
-    rotor_input = RotorInput(InputSettings.from_mapping(parameters))
-    settings = EncoderSettings.from_mapping(parameters)
+    rotor_input = RotorInput(parameters)
     inputs: list[Sequence[Array]] = []
     outputs: list[Sequence[Array]] = []
     start, lacking, damage = None, '', None
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, encoder_topic)
-        rotor = find_rotor_topic(bag, rotor_topic, parameters['rotor_joint'])
+        rotor = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)
         topics = [topic for topic in (rotor, encoder) if topic]
         messages = bag.messages(topics)
         try:
@@ -107,12 +107,12 @@ def _read_bag(
                 if start is None and batch:
                     start = min(of.received[0] for of in found.values() if of.received) / SECOND
                 new = rotor_input.accept_batch(found[rotor].data, found[rotor].received)
-                inputs.append((new.stamp, new.turns, new.angle, new.effort, new.stretch))
+                inputs.append((new.stamp, new.turns, new.angle, new.effort, new.segment))
                 if encoder:
                     data, received = found[encoder].data, found[encoder].received
-                    states = decode_joint_states(data, settings.output_encoder_joint)
+                    states = decode_joint_states(data, parameters.output_encoder_joint)
                     lacking = lacking or states.lacking
-                    outputs.append(_measured(states, received, settings))
+                    outputs.append(_measured(states, received, parameters))
         except DamagedBagError as error:
             damage = str(error)
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
@@ -126,13 +126,13 @@ def _read_bag(
     stamp, turns, angle, effort, segment = (column[:kept] for column in rotor_columns)
     has_effort = np.isfinite(effort).any()
     motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
-    described = [f'rotor {rotor}, joint {parameters["rotor_joint"]!r}, rad']
+    described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
     encoders = locked = None
     if encoder:
         stamps, angles = _joined(outputs)
         if lacking and not len(stamps):
             raise BagError(f'{path}: {encoder}: {lacking}')
-        encoders, told = _compared(motion, stamps, angles, settings, columns)
+        encoders, told = _compared(motion, stamps, angles, parameters, columns)
         remarks += [f'{encoder}: {text}' for text in told]
         if not len(encoders.measured):
             raise RecordingError(f'{path}: no output angle was measured between two rotor states')
@@ -140,7 +140,7 @@ def _read_bag(
     elif not has_effort:
         raise missing_encoder(bag, f'{rotor} has no effort, and ')
     else:
-        locked = _locked(motion, effort, columns, gear_from_mapping(parameters).gear_ratio)
+        locked = _locked(motion, effort, columns, parameters.gear.gear_ratio)
     if has_effort:
         described.append(f'torque: effort of {rotor} times the ratio, N·m')
     return Recording(
@@ -150,10 +150,10 @@ def _read_bag(
 
 
 def _measured(
-    states: JointStates, received: Sequence[int], settings: EncoderSettings
+    states: JointStates, received: Sequence[int], parameters: NodeParameters
 ) -> tuple[Array, Array]:
     """Stamps and output angles of messages; a zero stamp is replaced by the time of reception."""
-    angle = settings.output_angle(states.values[:, 0])
+    angle = measured_angle(parameters, states.values[:, 0])
     usable = ~states.malformed & states.present[:, 0] & (np.abs(angle) <= LARGEST_ANGLE)
     stamp = np.where(states.stamp == 0, np.asarray(received, np.int64), states.stamp)
     return stamp[usable], angle[usable]
@@ -182,7 +182,7 @@ def _compared(
     motion: RotorMotion,
     stamps: Array,
     angles: Array,
-    settings: EncoderSettings,
+    parameters: NodeParameters,
     columns: Columns,
 ) -> tuple[Encoders, list[str]]:
     """Interpolate the rotor to the angles of the output; say what is left out."""
@@ -193,7 +193,7 @@ def _compared(
     if rest := len(stamps) - len(kept) - disordered:
         told.append(f'the clock was set back; the last {rest} angles are left out')
     stamps, angles = stamps[kept], angles[kept]
-    gap = round(settings.transmission_error_max_gap * SECOND)
+    gap = round(parameters.transmission_error_max_gap * SECOND)
     before, share, inside = match(motion.stamp, stamps, gap)
     outside = int(np.count_nonzero((stamps < motion.stamp[0]) | (stamps > motion.stamp[-1])))
     unmatched = {

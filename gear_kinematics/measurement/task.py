@@ -1,18 +1,16 @@
 """Measures one recording, or many in processes of this machine or on a Dask cluster."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.bag import ReportProgress, fleet
 from gear_kinematics.bag.errors import unexpected
-from gear_kinematics.kinematics import gear_from_mapping
 from gear_kinematics.measurement.columns import Columns
 from gear_kinematics.measurement.loops import RampError
 from gear_kinematics.measurement.lost_motion import LostMotion, Request, measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
+from gear_kinematics.parameters import NodeParameters
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +22,8 @@ class Task:
     path: Path
     name: str
     """In the report."""
-    parameters: Mapping[str, Any]
-    """Parameters of the node, as `parameters.load` returns them."""
+    parameters: NodeParameters
+    """Parameters of the node."""
     request: Request
     columns: Columns
     rotor_topic: str | None = None
@@ -55,7 +53,7 @@ def measure_recording(task: Task, progress: ReportProgress | None = None) -> Out
             progress,
         )
         recording = replace(recording, name=task.name)
-        gear = gear_from_mapping(task.parameters)
+        gear = task.parameters.gear
         return Outcome(measure(recording, gear, task.parameters, task.request))
     except (ValueError, OSError) as error:
         if isinstance(error, (RampError, RecordingError)) and str(task.path) not in str(error):

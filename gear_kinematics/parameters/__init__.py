@@ -1,1 +1,21 @@
 """The parameters of the node and of `gearkin --config`: types, bounds, defaults and files."""
+
+from gear_kinematics.parameters.files import ConfigError
+from gear_kinematics.parameters.node_parameters import (
+    BRANCH_PARAMETERS,
+    NODE,
+    PARAMETERS,
+    NodeParameters,
+    default_config,
+    default_value,
+)
+
+__all__ = [
+    'BRANCH_PARAMETERS',
+    'NODE',
+    'PARAMETERS',
+    'ConfigError',
+    'NodeParameters',
+    'default_config',
+    'default_value',
+]

@@ -4,7 +4,7 @@ import re
 from typing import Any
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.parameters.share import PACKAGE, share_directory
+from gear_kinematics.share import PACKAGE, share_directory
 
 AUTO = 'auto'
 """The installed meshes, if there are any of this mechanism."""

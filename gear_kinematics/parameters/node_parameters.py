@@ -1,4 +1,4 @@
-"""The parameters of the node and of `gearkin --config`: meaning, bounds and default values.
+"""The parameters of the node and of `gearkin --config`: type, meaning and bounds.
 
 The default values are in config/actuator.yaml alone.
 """
@@ -6,17 +6,18 @@ The default values are in config/actuator.yaml alone.
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 import yaml
 
-from gear_kinematics.kinematics import Branch, GearRatio
+from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import ConfigError, given_parameters
-from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.parameters.yaml_file import Dumper
+from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
 
 NODE = 'gear_state_publisher'
@@ -28,7 +29,7 @@ _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overr
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """Meaning and bounds of a parameter, whose type is that of its default."""
+    """Type, meaning and bounds of a parameter."""
 
     description: str
     minimum: float | None = None
@@ -38,11 +39,12 @@ class Parameter:
     read_only: bool = False
     check: Callable[[Any], object] | None = None
     """Raises ValueError for other faults."""
+    kind: type = float
 
-    def fault(self, name: str, value: object, default: object) -> str | None:
+    def fault(self, name: str, value: object) -> str | None:
         """Return the fault of a value, or None."""
-        if type(value) is not type(default):
-            return f'{name} must be of type {type(default).__name__}, not {value!r}'
+        if type(value) is not self.kind:
+            return f'{name} must be of type {self.kind.__name__}, not {value!r}'
         if isinstance(value, list) and not all(isinstance(item, str) for item in value):
             return f'{name} must be a list of strings, not {value!r}'
         if (
@@ -70,75 +72,182 @@ class Parameter:
         return None
 
 
-PARAMETERS: Mapping[str, Parameter] = {
-    'ring_teeth': Parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True),
-    'satellite_teeth': Parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True),
-    'eccentricity': Parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True),
-    'module': Parameter('Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True),
-    'branches': Parameter('Names of the branches', read_only=True),
-    'gear_ratio': Parameter(
+def _parameter(*arguments: Any, **named: Any) -> Any:
+    """Declare a field as a parameter; the arguments are those of `Parameter`."""
+    return field(metadata={'parameter': Parameter(*arguments, **named)})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NodeParameters:
+    """The parameters of the node, under their names in ROS; `dataclasses.replace` changes some.
+
+    In ROS, `branches` has the names of the branches, and their values have names such as
+    `a.cam_phase`. Values in the bounds can still describe no mechanism: see `gear`.
+    """
+
+    ring_teeth: int = _parameter('Teeth of the ring gears, zk', 2, 100_000, read_only=True)
+    satellite_teeth: int = _parameter('Teeth of the satellites, zs', 1, 99_999, read_only=True)
+    eccentricity: float = _parameter('Eccentricity of the cams, m', 1e-6, 1.0, read_only=True)
+    module: float = _parameter(
+        'Module of the teeth, m; for their shape', 1e-6, 0.1, read_only=True
+    )
+    branches: tuple[Branch, ...] = _parameter('Names of the branches', read_only=True)
+    gear_ratio: str = _parameter(
         "Exact ratio of a gear that is not ours, such as '-19' or '1457/26'; '': from the teeth",
         read_only=True,
         check=lambda text: text and GearRatio.parse(text),
-    ),
-    'rotor_joint': Parameter(
+    )
+    rotor_joint: str = _parameter(
         "Joint to look up in rotor_state, or its index if joints have no names; '' takes the "
         'only joint'
-    ),
-    'rotor_direction': Parameter('1, or -1 if the encoder counts backwards', -1, 1, step=2),
-    'rotor_zero': Parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15),
-    'rotor_encoder': Parameter(
+    )
+    rotor_direction: int = _parameter('1, or -1 if the encoder counts backwards', -1, 1, step=2)
+    rotor_zero: float = _parameter('Encoder position at rotor angle 0, rad', -1e15, 1e15)
+    rotor_encoder: str = _parameter(
         'Whether the position wraps once a turn', choices=('multi_turn', 'single_turn')
-    ),
-    'max_rotor_speed': Parameter('Greatest speed of the rotor, rad/s', 1e-3, 1e6),
-    'max_rotor_acceleration': Parameter(
+    )
+    max_rotor_speed: float = _parameter('Greatest speed of the rotor, rad/s', 1e-3, 1e6)
+    max_rotor_acceleration: float = _parameter(
         'Greatest acceleration of the rotor, rad/s²; with the velocities of the messages, it '
         'bounds the turn of a single-turn encoder in a gap',
         1e-3,
         1e9,
-    ),
-    'input_timeout': Parameter('Time without input that is an ERROR, s', 1e-3, 1e6),
-    'output_joint': Parameter('Name of the output shaft in output_state and the URDF'),
-    'output_encoder_joint': Parameter(
+    )
+    input_timeout: float = _parameter('Time without input that is an ERROR, s', 1e-3, 1e6)
+    output_joint: str = _parameter('Name of the output shaft in output_state and the URDF')
+    output_encoder_joint: str = _parameter(
         "Joint to look up in output_encoder, or its index if joints have no names; '' takes the "
         'only joint'
-    ),
-    'output_encoder_direction': Parameter(
+    )
+    output_encoder_direction: int = _parameter(
         '1, or -1 if the encoder at the output counts backwards', -1, 1, step=2
-    ),
-    'output_encoder_zero': Parameter(
+    )
+    output_encoder_zero: float = _parameter(
         "Position of the output's encoder at output angle 0, rad", -1e15, 1e15
-    ),
-    'transmission_error_window': Parameter(
+    )
+    transmission_error_window: float = _parameter(
         'Sliding window of the transmission error in diagnostics, s', 0.1, 60.0
-    ),
-    'transmission_error_limit': Parameter(
+    )
+    transmission_error_limit: float = _parameter(
         'Peak-to-peak transmission error above which diagnostics report WARN, rad', 1e-9, 10.0
-    ),
-    'transmission_error_max_gap': Parameter(
+    )
+    transmission_error_max_gap: float = _parameter(
         'Gap between rotor states beyond which nothing is interpolated, s', 1e-6, 10.0
-    ),
-    'transmission_error_travel': Parameter(
+    )
+    transmission_error_travel: float = _parameter(
         'Travel of the output after a reversal until its direction counts, rad', 1e-9, 10.0
-    ),
-    'calibration': Parameter(
+    )
+    calibration: str = _parameter(
         "Path of a calibration file, from which corrected_state is computed; '' takes none"
-    ),
-    'home_angle': Parameter('Output angle that ~/home sets, rad', -1e9, 1e9),
-    'frame_prefix': Parameter('Prefix of every frame id and joint name'),
-    'markers_rate': Parameter('Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True),
-    'meshes': Parameter(
+    )
+    home_angle: float = _parameter('Output angle that ~/home sets, rad', -1e9, 1e9)
+    frame_prefix: str = _parameter('Prefix of every frame id and joint name')
+    markers_rate: float = _parameter(
+        'Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True
+    )
+    meshes: str = _parameter(
         'URI of the folder with the meshes of the URDF; auto: the installed ones, if they are of '
         'this mechanism; none: simple shapes',
         read_only=True,
         check=meshes.check,
-    ),
-    'executor': Parameter(
+    )
+    executor: str = _parameter(
         'rclpy executor; auto: events if this ROS has it',
         choices=('auto', 'events', 'single_threaded'),
         read_only=True,
-    ),
+    )
+
+    @classmethod
+    def load(cls, path: Path | None = None, node: str = NODE) -> Self:
+        """Read a node's parameters from a file as the node would; others have their defaults.
+
+        A relative path of a calibration is relative to the file.
+
+        Args:
+            path: a parameter file of ROS: blocks of parameters below names of nodes. None: the
+                default one.
+            node: the node's fully qualified name. Without a namespace, it is the only node of that
+                name in the file; if the file names none, the one that all its wildcards apply to.
+
+        Raises:
+            ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
+                meant, or naming every value and every name that is refused.
+        """
+        path = path or default_config()
+        given = given_parameters(path, node)
+        faults = _faults(given, PARAMETERS)
+        if not faults:
+            branches = given.get('branches', default_value('branches'))
+            faults = _faults(given, branch_parameters(branches))
+            faults += unknown_parameters(given, branches)
+        if faults:
+            raise ConfigError(f'{path}: {"; ".join(faults)}')
+        if calibration := given.get('calibration'):
+            given['calibration'] = str(path.parent / calibration)
+        return cls.of(given)
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any]) -> Self:
+        """Create them from valid values by names in ROS; others have their defaults."""
+
+        def value(name: str) -> Any:
+            return values[name] if name in values else default_value(name)
+
+        given = {name: value(name) for name in PARAMETERS}
+        given['branches'] = tuple(
+            Branch(name, value(f'{name}.cam_phase'), value(f'{name}.axial_position'))
+            for name in given['branches']
+        )
+        return cls(**given)
+
+    def values(self) -> dict[str, Any]:
+        """The values by their names in ROS."""
+        values = {name: getattr(self, name) for name in PARAMETERS}
+        values['branches'] = [branch.name for branch in self.branches]
+        for branch in self.branches:
+            values |= {f'{branch.name}.{key}': getattr(branch, key) for key in BRANCH_PARAMETERS}
+        return values
+
+    def as_file(self) -> str:
+        """Write a parameter file for every node, from which `load` reads the same parameters."""
+        document = {'/**': {'ros__parameters': self.values()}}
+        return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
+
+    @property
+    def gear(self) -> Gear:
+        """The gear: only its ratio if `gear_ratio` is given, else the mechanism.
+
+        Raises:
+            MechanismError: if there is no such mechanism.
+        """
+        return GearRatio.parse(self.gear_ratio) if self.gear_ratio else self.mechanism
+
+    @property
+    def mechanism(self) -> Mechanism:
+        """The mechanism.
+
+        Raises:
+            MechanismError: if there is none, or `gear_ratio` is of another gear.
+        """
+        if self.gear_ratio:
+            known = f'gear_ratio is {self.gear_ratio}: only the ratio of this gear is known'
+            raise MechanismError([f'{known}, not its bodies'])
+        return Mechanism(self.ring_teeth, self.satellite_teeth, self.eccentricity, self.branches)
+
+    @property
+    def single_turn(self) -> bool:
+        """Whether the position of the rotor wraps once a turn."""
+        return self.rotor_encoder == 'single_turn'
+
+
+PARAMETERS: Mapping[str, Parameter] = {
+    each.name: replace(
+        each.metadata['parameter'],
+        kind=list if each.name == 'branches' else each.type,  # of their names
+    )
+    for each in fields(NodeParameters)
 }
+"""All parameters but those of the branches, by name."""
 BRANCH_PARAMETERS: Mapping[str, Parameter] = {
     'cam_phase': Parameter(
         'Angle of the cam on the rotor, rad', -2.0 * math.pi, 2.0 * math.pi, read_only=True
@@ -153,20 +262,21 @@ def default_config() -> Path:
 
 
 @cache
-def defaults() -> Mapping[str, Any]:
-    """Every parameter's default value by its full name, from config/actuator.yaml."""
+def _default_values() -> Mapping[str, Any]:
     return given_parameters(default_config(), NODE)
 
 
-def branch_parameters(branches: Iterable[str]) -> dict[str, tuple[Parameter, Any]]:
-    """The parameters of the named branches by full name, each with its default value."""
+def default_value(name: str) -> Any:
+    """A parameter's default, from config/actuator.yaml; 0 for a branch that is not there."""
+    return _default_values().get(name, 0.0)
+
+
+def branch_parameters(branches: Iterable[str]) -> dict[str, Parameter]:
+    """The parameters of the named branches, by name in ROS."""
     return {
-        f'{branch}.{field}': (
-            parameter,
-            defaults().get(f'{branch}.{field}', getattr(Branch(branch), field)),
-        )
+        f'{branch}.{key}': parameter
         for branch in branches
-        for field, parameter in BRANCH_PARAMETERS.items()
+        for key, parameter in BRANCH_PARAMETERS.items()
     }
 
 
@@ -191,45 +301,8 @@ def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[st
     return faults
 
 
-def load(path: Path, node: str = NODE) -> dict[str, Any]:
-    """Read a node's parameters from a file as the node would; missing ones have their defaults.
-
-    A relative path of a calibration is relative to the file.
-
-    Args:
-        path: a parameter file of ROS: blocks of parameters below names of nodes.
-        node: the node's fully qualified name. Without a namespace, it is the only node of that
-            name in the file; if the file names none, the one that all its wildcards apply to.
-
-    Raises:
-        ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
-            meant, or naming every value and every name that is refused.
-    """
-    given = given_parameters(path, node)
-    known = {name: (parameter, defaults()[name]) for name, parameter in PARAMETERS.items()}
-    faults = _faults(given, known)
-    branches = given.get('branches', known['branches'][1])
-    if not faults:
-        of_branches = branch_parameters(branches)
-        faults += _faults(given, of_branches)
-        known |= of_branches
-        faults += unknown_parameters(given, branches)
-    if faults:
-        raise ConfigError(f'{path}: {"; ".join(faults)}')
-    if calibration := given.get('calibration'):
-        given['calibration'] = str(path.parent / calibration)
-    return {name: given.get(name, default) for name, (_, default) in known.items()}
-
-
-def as_file(parameters: Mapping[str, Any]) -> str:
-    """Write a parameter file for every node, from which `load` reads the same parameters."""
-    return yaml.safe_dump({'/**': {'ros__parameters': dict(parameters)}}, sort_keys=False)
-
-
-def _faults(given: Mapping[str, Any], known: Mapping[str, tuple[Parameter, Any]]) -> list[str]:
+def _faults(given: Mapping[str, Any], known: Mapping[str, Parameter]) -> list[str]:
     checked = (
-        parameter.fault(name, given[name], default)
-        for name, (parameter, default) in known.items()
-        if name in given
+        parameter.fault(name, given[name]) for name, parameter in known.items() if name in given
     )
     return [fault for fault in checked if fault]

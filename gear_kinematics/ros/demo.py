@@ -3,8 +3,8 @@
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -14,10 +14,10 @@ from rich.table import Table
 from gear_kinematics.bag import Bag, Message
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics import gear_from_mapping, matrix_method
-from gear_kinematics.parameters import node_parameters as parameters
-from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.kinematics import matrix_method
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.live import live_messages, outputs_of
+from gear_kinematics.share import share_directory
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.validator import Validator
@@ -43,11 +43,11 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     Raises:
         ValueError: if the calibration cannot be used.
     """
-    config = parameters.load(parameters.default_config())
+    config = NodeParameters.load()
     calibration = None
-    if file := calibration_file or config['calibration']:
-        calibration = Calibration.load(Path(file), gear_from_mapping(config))
-        config['calibration'] = str(file)
+    if file := calibration_file or config.calibration:
+        calibration = Calibration.load(Path(file), config.gear)
+        config = replace(config, calibration=str(file))
     with Bag(share_directory() / 'bags' / BAG) as bag:
         count = sum(1 for _ in bag.messages([_TOPICS.rotor]))
         console.print(
@@ -55,7 +55,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
             soft_wrap=not console.is_terminal,
         )
         published = _play(console, bag, config, count)
-    eccentricity = config['eccentricity']
+    eccentricity = config.eccentricity
     validator = Validator(
         config,
         tolerances=Tolerances(TOLERANCE, TOLERANCE * eccentricity),
@@ -68,7 +68,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     return validator.report(BAG)
 
 
-def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> list[Message]:
+def _play(console: Console, bag: Bag, config: NodeParameters, count: int) -> list[Message]:
     if not console.is_terminal:
         return list(live_messages(bag, config))
     progress = Progress(
@@ -79,7 +79,7 @@ def _play(console: Console, bag: Bag, config: Mapping[str, Any], count: int) -> 
         console=console,
     )
     task = progress.add_task('', total=count)
-    bodies = 2 * len(config['branches'])
+    bodies = 2 * len(config.branches)
     received: list[Message] = []
     answers = Answers({_TOPICS.rotor, *outputs_of(config)})
     with Live(progress, console=console, auto_refresh=False, transient=True) as live:

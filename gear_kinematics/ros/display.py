@@ -12,7 +12,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import urdf
@@ -25,25 +25,24 @@ class Display:
     def __init__(
         self,
         node: Node,
-        mechanism: Mechanism,
+        parameters: NodeParameters,
         create_output: Callable[..., Publisher],
         publish: Callable[[Publisher, Any], None],
     ) -> None:
         """Open the topics.
 
         Args:
-            node: with the parameters `module`, `meshes` and `markers_rate`.
-            mechanism: the mechanism to show.
+            node: the node.
+            parameters: of the node, which knows the mechanism.
             create_output: creates a publisher of the node, from type, topic and QoS.
             publish: publishes a message.
         """
-        self._mechanism = mechanism
-        self._module = node.get_parameter('module').value
+        self._mechanism, self._module = parameters.mechanism, parameters.module
         self._publish = publish
-        self._meshes = folder_uri(node.get_parameter('meshes').value, mechanism, self._module)
+        self._meshes = folder_uri(parameters.meshes, self._mechanism, self._module)
         self._description = String()
         self._description_publisher = create_output(String, topics.ROBOT_DESCRIPTION, _latched())
-        if rate := node.get_parameter('markers_rate').value:
+        if rate := parameters.markers_rate:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self._timer = node.create_timer(
                 1.0 / rate, self._publish_markers, clock=steady, autostart=False
@@ -52,21 +51,26 @@ class Display:
                 MarkerArray, topics.MARKERS, _latched(), matched=self._on_viewers
             )
 
-    def update(self, *, output_joint: str, frame_prefix: str) -> None:
+    def update(self, parameters: NodeParameters) -> None:
         """Use names of joints and links; publishes the URDF if it has changed.
 
         Raises:
             ValueError: if `output_joint` is empty or the name of another joint.
         """
-        names = {'output_joint': output_joint, 'frame_prefix': frame_prefix}
-        description = String(
-            data=urdf(self._mechanism, module=self._module, meshes=self._meshes, **names)
+        prefix = parameters.frame_prefix
+        text = urdf(
+            self._mechanism,
+            module=self._module,
+            output_joint=parameters.output_joint,
+            frame_prefix=prefix,
+            meshes=self._meshes,
         )
+        description = String(data=text)
         if description == self._description:
             return
         self._description = description
         self._publish(self._description_publisher, description)
-        self._markers = Markers(self._mechanism, module=self._module, frame_prefix=frame_prefix)
+        self._markers = Markers(self._mechanism, module=self._module, frame_prefix=prefix)
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Run the timer of the markers while there are subscribers; resend for a new one."""

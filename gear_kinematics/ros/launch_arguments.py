@@ -2,10 +2,11 @@
 
 import posixpath
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NODE, NodeParameters
 
 
 class NodeArguments(NamedTuple):
@@ -13,7 +14,7 @@ class NodeArguments(NamedTuple):
 
     config: Path
     """The parameter file."""
-    parameters: dict[str, Any]
+    parameters: NodeParameters
     """The parameters of the node, with the values that it will have."""
 
 
@@ -28,14 +29,14 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
             `ros_namespace` if the launch file is included below a namespace.
 
     Raises:
-        ConfigError: as `parameters.load` does.
+        ConfigError: as `NodeParameters.load` does.
     """
     config = Path(configurations['config']).expanduser()
     # An absolute namespace replaces the one above it, as in launch_ros.
     name = posixpath.join(
-        '/', configurations.get('ros_namespace', ''), configurations['namespace'], parameters.NODE
+        '/', configurations.get('ros_namespace', ''), configurations['namespace'], NODE
     )
-    loaded = parameters.load(config, name)
+    loaded = NodeParameters.load(config, name)
     if prefix := configurations['frame_prefix']:
-        loaded['frame_prefix'] = prefix
+        loaded = replace(loaded, frame_prefix=prefix)
     return NodeArguments(config, loaded)

@@ -9,8 +9,9 @@ import subprocess
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,12 +29,12 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.bag.schedule import due_messages, throttled
-from gear_kinematics.kinematics import Mechanism, gear_from_mapping
-from gear_kinematics.parameters.node_parameters import as_file
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.process import make_executor
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE
@@ -74,7 +75,7 @@ def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subp
 
 def live_messages(
     source: Bag,
-    parameters: Mapping[str, Any],
+    parameters: NodeParameters,
     *,
     rotor_topic: str = _TOPICS.rotor,
     rate: float = 1.0,
@@ -89,7 +90,7 @@ def live_messages(
 
     Args:
         source: an open bag.
-        parameters: of the node, as `parameters.load` returns them.
+        parameters: of the node.
         rotor_topic: name of the rotor topic in the bag.
         rate: bag time / real time.
         progress: called with the number of rotor messages sent, at most ten times a second and at
@@ -104,7 +105,7 @@ def live_messages(
             the readable messages.
         ReplayError: if the node ends or never answers.
     """
-    expected = RotorInput(InputSettings.from_mapping(parameters))
+    expected = RotorInput(parameters)
     outputs = outputs_of(parameters)
     source.type_of(rotor_topic, JOINT_STATE)
     schedule = due_messages(source, [rotor_topic], rate)
@@ -297,7 +298,7 @@ def replay_node(namespace: str) -> Iterator[Node]:
 
 
 @contextmanager
-def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
+def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
     """Run a node process that is isolated from all others, and connect to it."""
     # The middleware reads these when a context is created, here and in the node's process.
     os.environ['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
@@ -305,10 +306,9 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
     namespace = f'/gear_kinematics_{os.getpid()}'
     with TemporaryDirectory() as folder:
         config, log = Path(folder, 'parameters.yaml'), Path(folder, 'log')
-        given = dict(parameters)
-        if given['calibration']:  # a relative path would be relative to the file of the parameters
-            given['calibration'] = str(Path(given['calibration']).absolute())
-        config.write_text(as_file(given), 'utf-8')
+        if path := parameters.calibration:  # a relative one would be relative to `config`
+            parameters = replace(parameters, calibration=str(Path(path).absolute()))
+        config.write_text(parameters.as_file(), 'utf-8')
         # The topic of diagnostics has an absolute name.
         arguments = ['--ros-args', '-r', f'__ns:={namespace}', '--params-file', str(config),
                      '-r', '/diagnostics:=diagnostics']  # fmt: skip
@@ -325,17 +325,17 @@ def _private_node(parameters: Mapping[str, Any]) -> Iterator[Replay]:
             ) as replay,
         ):
             try:
-                replay.wait_for_node(parameters['rotor_joint'])
+                replay.wait_for_node(parameters.rotor_joint)
                 yield replay
             except ReplayError as error:
                 words = log.read_text(encoding='utf-8').splitlines()[-1:]
                 raise ReplayError(': '.join([str(error), *words])) from error
 
 
-def outputs_of(parameters: Mapping[str, Any]) -> Collection[str]:
+def outputs_of(parameters: NodeParameters) -> Collection[str]:
     """The recorded topics on which the node answers."""
-    known = isinstance(gear_from_mapping(parameters), Mechanism)
-    corrected = corrected_beside().values() if parameters['calibration'] else ()
+    known = isinstance(parameters.gear, Mechanism)
+    corrected = corrected_beside().values() if parameters.calibration else ()
     return *_TOPICS[1 : 3 if known else 2], *corrected
 
 

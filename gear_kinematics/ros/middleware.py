@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rclpy.utilities import get_rmw_implementation_identifier
 
-from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.share import share_directory
 
 _SWITCH = 'GEAR_KINEMATICS_FASTDDS_PROFILE'
 _FILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,19 +23,19 @@ from std_srvs.srv import Trigger
 from gear_kinematics.correction.calibrated_output import CalibratedOutput
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.transmission_error import ErrorSample
-from gear_kinematics.kinematics import Mechanism, gear_from_mapping
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
 from gear_kinematics.parameters.files import calibration_path, require_any
+from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.ros.unheard import UnheardTopic
-from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
-from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -59,35 +60,33 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             ValueError: if the parameters describe no gear, one is unknown, the files have none
                 for this node, or the calibration cannot be used.
         """
-        super().__init__(parameters.NODE, **options)
+        super().__init__(NODE, **options)
         require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
-        for name, parameter in parameters.PARAMETERS.items():
-            declare(self, name, parameter, parameters.defaults()[name])
-        branches = self._value('branches')
-        for name, (parameter, default) in parameters.branch_parameters(branches).items():
-            declare(self, name, parameter, default)
+        declare(self, PARAMETERS)
+        branches = self.get_parameter('branches').value
+        declare(self, branch_parameters(branches))
         # rclpy ignores undeclared parameters, and has no public access to them.
         given = getattr(self, '_parameter_overrides', ())
-        if faults := parameters.unknown_parameters(given, branches):
+        if faults := unknown_parameters(given, branches):
             raise ValueError('; '.join(faults))
-        self._gear = gear_from_mapping(self._values())
-        rotor, encoder = self._settings = self._settings_of_inputs()
-        self._input = RotorInput(rotor)
-        self._encoder = OutputEncoder(self._gear, encoder)
+        self._settings = parameters = self._read_settings()
+        self._gear = parameters.gear
+        self._input = RotorInput(parameters)
+        self._encoder = OutputEncoder(parameters)
         self._parameter_files = parameter_files
-        self._calibrated = self._calibrated_output(self._value('calibration'))
+        self._calibrated = self._calibrated_output(parameters.calibration)
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
 
         self._all_outputs: list[Publisher] = []
         self._display = (
-            Display(self, self._gear, self._create_output, self._publish)
+            Display(self, parameters, self._create_output, self._publish)
             if isinstance(self._gear, Mechanism)
             else None
         )
-        self._messages = state_messages(self._gear, **self._names())
+        self._messages = state_messages(parameters)
         outputs = *self._messages.topics, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
         publishers = {
             topic: self._create_output(
@@ -114,7 +113,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             ),
         )
         self._unheard = UnheardTopic(self, topics.ROTOR_STATE, 'rotor_joint')
-        joint = self._value('rotor_joint')
+        joint = parameters.rotor_joint
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
             f'gear ratio {self._gear.gear_ratio} ({self._known()}), listening for {listening_for} '
@@ -169,18 +168,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             driver.losses.destroy_when_not_in_use()
         super().destroy_node()
 
-    def _value(self, name: str) -> Any:
-        return self.get_parameter(name).value
-
-    def _values(self) -> dict[str, Any]:
-        return {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
-
-    def _names(self) -> dict[str, str]:
-        return {name: self._value(name) for name in ('output_joint', 'frame_prefix')}
-
-    def _settings_of_inputs(self) -> tuple[InputSettings, EncoderSettings]:
-        values = self._values()
-        return InputSettings.from_mapping(values), EncoderSettings.from_mapping(values)
+    def _read_settings(self) -> NodeParameters:
+        values = {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
+        return NodeParameters.of(values)
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
@@ -191,7 +181,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 continue
             try:
                 if parameter.name in {'output_joint', 'frame_prefix'}:
-                    joint_names(self._gear, **self._names() | {parameter.name: parameter.value})
+                    state_messages(replace(self._settings, **{parameter.name: parameter.value}))
                 elif parameter.name == 'calibration':
                     self._next_calibrated = self._calibrated_output(parameter.value)
             except ValueError as error:
@@ -210,16 +200,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         """Apply the parameters, at the start and after every change."""
         if any(parameter.name == 'calibration' for parameter in changed):
             self._calibrated = self._next_calibrated
-        if (settings := self._settings_of_inputs()) != self._settings:
-            self._settings = settings
-            self._input.settings, encoder = settings
-            self._encoder = OutputEncoder(self._gear, encoder)  # discards earlier errors
+        self._settings = self._input.parameters = parameters = self._read_settings()
+        if not self._encoder.fits(parameters):
+            self._encoder = OutputEncoder(parameters)  # discards earlier errors
             if self._calibrated:
                 self._calibrated.reset()
-        names = self._names()
-        self._messages = state_messages(self._gear, **names)
+        self._messages = state_messages(parameters)
         if self._display:
-            self._display.update(**names)
+            self._display.update(parameters)
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
@@ -232,7 +220,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             return
         self._outputs.send(self._messages.encode(sample, self._listened_to))
         if self._calibrated:  # also without a listener, to follow the motion
-            correction = self._calibrated.correct(sample, self._input)
+            correction = self._calibrated.correct(
+                sample, segment=self._input.segment, referenced=self._input.referenced
+            )
             wanted = self._corrected_listened_to
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
         self._monitor.published += 1
@@ -283,7 +273,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._outputs.wait_for_delivery(timeout)
 
     def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        home_angle = self._value('home_angle')
+        home_angle = self._settings.home_angle
         try:
             zero = self._input.home(self._gear.gear_ratio.rotor_angle(home_angle))
         except RuntimeError:
@@ -302,13 +292,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
         self._unheard.look(self._monitor.drivers, time.monotonic())
         self._look_at_graph()
-        timeout, now = self._value('input_timeout'), time.monotonic()
-        window, limit = (self._value(f'transmission_error_{name}') for name in ('window', 'limit'))
+        now, window = time.monotonic(), self._settings.transmission_error_window
         fit = self._calibrated.fit(window) if self._calibrated else None
         reports = {
-            'rotor input': self._monitor.report(self._input, self._gear, timeout, now),
+            'rotor input': self._monitor.report(self._input, now),
             'transmission error': self._encoder_monitor.report(
-                self._encoder, limit, timeout, now, fit
+                self._encoder, self._settings, now, fit
             ),
         }
         self._publish(self._diagnostics, diagnostic_array(self, reports))

@@ -9,8 +9,9 @@ from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.correction.reversals import Reversals
 from gear_kinematics.correction.transmission_error import ErrorWindow
 from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.kinematics import Gear, Mechanism, loop_closure, solve
+from gear_kinematics.kinematics import Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 
@@ -54,13 +55,11 @@ class InputMonitor:
     _counts: Counter[str] = field(default_factory=Counter)
     _rejected: Counter[str] = field(default_factory=Counter)
 
-    def report(self, rotor_input: RotorInput, gear: Gear, timeout: float, now: float) -> Report:
+    def report(self, rotor_input: RotorInput, now: float) -> Report:
         """Report on the time since the last report.
 
         Args:
             rotor_input: the input to report on.
-            gear: gives the loop-closure residual at the last sample, if it is a mechanism.
-            timeout: s without input after which it is an error.
             now: s.
         """
         elapsed = now - max(self._reported, self.started)
@@ -73,7 +72,7 @@ class InputMonitor:
 
         age = now - (self.started if self.last_input is None else self.last_input)
         errors, warnings = [], []
-        if age > timeout:
+        if age > rotor_input.parameters.input_timeout:
             errors.append(f'no input for {age:.1f} s')
         if not rotor_input.referenced:
             errors.append('not referenced')
@@ -102,7 +101,7 @@ class InputMonitor:
             'clock resets': str(rotor_input.resets),
             'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
             'referenced': str(rotor_input.referenced).lower(),
-            'loop-closure residual (m)': _residual(rotor_input, gear),
+            'loop-closure residual (m)': _residual(rotor_input),
         }
         return Report(level, '; '.join(errors + warnings) or 'ok', values)
 
@@ -122,8 +121,7 @@ class EncoderMonitor:
     def report(
         self,
         encoder: OutputEncoder,
-        limit: float,
-        timeout: float,
+        parameters: NodeParameters,
         now: float,
         fit: CalibrationFit | None = None,
     ) -> Report | None:
@@ -131,8 +129,7 @@ class EncoderMonitor:
 
         Args:
             encoder: the encoder to report on.
-            limit: peak-to-peak transmission error above which there is a warning, rad.
-            timeout: s without input after which there is a warning.
+            parameters: of the node, for the limits.
             now: s.
             fit: how well the calibration, if any, fits the transmission error.
         """
@@ -140,7 +137,7 @@ class EncoderMonitor:
             return None
         age = now - self.last_input
         matched = encoder.comparison.matched
-        silent, compared = age > timeout, matched != self._compared
+        silent, compared = age > parameters.input_timeout, matched != self._compared
         newly_rejected = encoder.rejected - self._rejected
         newly_lost, self._lost = self.lost - self._lost, self.lost
         self._compared, self._rejected = matched, Counter(encoder.rejected)
@@ -157,7 +154,7 @@ class EncoderMonitor:
         # Without new samples, the statistics are out of date.
         window = encoder.window if compared and not silent else ErrorWindow(0)
         peak_to_peak = window.both.peak_to_peak
-        if peak_to_peak is not None and peak_to_peak > limit:
+        if peak_to_peak is not None and peak_to_peak > parameters.transmission_error_limit:
             warnings.append(f'peak to peak {peak_to_peak:.3g} rad')
         values = {
             'received': str(encoder.received),
@@ -213,7 +210,9 @@ def _percent(share: float | None) -> str:
     return 'none' if share is None else f'{100.0 * share:.1f}'
 
 
-def _residual(rotor_input: RotorInput, gear: Gear) -> str:
+def _residual(rotor_input: RotorInput) -> str:
+    """The residual of the closed loops at the last sample of a mechanism."""
+    gear = rotor_input.parameters.gear
     if rotor_input.last is None or not isinstance(gear, Mechanism):
         return 'none'
     turns, angle = rotor_input.last.position

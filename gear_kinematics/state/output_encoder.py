@@ -3,7 +3,7 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
 from gear_kinematics.correction.transmission_error import (
@@ -11,48 +11,58 @@ from gear_kinematics.correction.transmission_error import (
     ErrorWindow,
     TransmissionError,
 )
-from gear_kinematics.kinematics import Gear
-from gear_kinematics.state.rotor_input import RotorSample
+from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.cdr import SECOND
-from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError, Settings
+from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
+
+_DISCARDING = attrgetter(
+    'rotor_joint',
+    'rotor_direction',
+    'rotor_zero',
+    'rotor_encoder',
+    'max_rotor_speed',
+    'max_rotor_acceleration',
+    'output_encoder_joint',
+    'output_encoder_direction',
+    'output_encoder_zero',
+    'transmission_error_window',
+    'transmission_error_max_gap',
+    'transmission_error_travel',
+)
+"""The parameters whose change makes earlier errors useless."""
 
 
-@dataclass(frozen=True, slots=True)
-class EncoderSettings(Settings):
-    """Settings of the encoder and of the comparison."""
+def measured_angle(parameters: NodeParameters, position: Any) -> Any:
+    """The measured output angle at a position of its encoder, rad; floats or arrays."""
+    return parameters.output_encoder_direction * (position - parameters.output_encoder_zero)
 
-    output_encoder_joint: str
-    output_encoder_direction: int
-    output_encoder_zero: float
-    transmission_error_window: float
-    transmission_error_max_gap: float
-    transmission_error_travel: float
 
-    def output_angle(self, position: Any) -> Any:
-        """The measured output angle at a position of the encoder, rad; floats or arrays."""
-        return self.output_encoder_direction * (position - self.output_encoder_zero)
-
-    def comparison(self) -> TransmissionError:
-        """Create a comparison with these settings, without samples."""
-        return TransmissionError(
-            max_gap=round(self.transmission_error_max_gap * SECOND),
-            travel=self.transmission_error_travel,
-        )
+def comparison(parameters: NodeParameters) -> TransmissionError:
+    """Create a comparison of measured with ideal output angles, without samples."""
+    return TransmissionError(
+        max_gap=round(parameters.transmission_error_max_gap * SECOND),
+        travel=parameters.transmission_error_travel,
+    )
 
 
 class OutputEncoder:
     """Compares the angles of output_encoder messages with the ideal output angle."""
 
-    def __init__(self, gear: Gear, settings: EncoderSettings) -> None:
+    def __init__(self, parameters: NodeParameters) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
-        self.window = ErrorWindow(round(settings.transmission_error_window * SECOND))
-        self._settings = settings
-        self._reader = JointReader(settings.output_encoder_joint)
-        self._ratio = gear.gear_ratio
-        self.comparison = settings.comparison()
+        self.window = ErrorWindow(round(parameters.transmission_error_window * SECOND))
+        self._parameters = parameters
+        self._reader = JointReader(parameters.output_encoder_joint)
+        self._ratio = parameters.gear.gear_ratio
+        self.comparison = comparison(parameters)
         """Counts the measured angles that were compared, and those that were not by cause."""
         self._last = 0
+
+    def fits(self, parameters: NodeParameters) -> bool:
+        """Whether the errors so far are also those with other parameters."""
+        return bool(_DISCARDING(parameters) == _DISCARDING(self._parameters))
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message.
@@ -73,7 +83,7 @@ class OutputEncoder:
         except RejectedInputError as rejection:
             self.rejected[str(rejection)] += 1
             raise
-        angle = self._settings.output_angle(position)
+        angle = measured_angle(self._parameters, position)
         return self._note(self.comparison.add_measured(stamp or now(), angle))
 
     def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:

@@ -3,18 +3,19 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import RotorPosition, RotorTurns, split_turns
+from gear_kinematics.kinematics import RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import LATEST
 from gear_kinematics.wire.joint_reader import (
+    CLOCK_RESET,
     GREATEST,
     JOINT_MISSING,
     MALFORMED,
@@ -25,46 +26,9 @@ from gear_kinematics.wire.joint_reader import (
     STAMP_OUT_OF_RANGE,
     JointReader,
     RejectedInputError,
-    Settings,
 )
 
 Array = NDArray[Any]
-
-CLOCK_RESET = 1_000_000_000  # ns: a stamp that is older by more resets the state
-
-
-@dataclass(frozen=True, slots=True)
-class InputSettings(Settings):
-    """Settings of the rotor's encoder."""
-
-    rotor_joint: str
-    rotor_direction: int
-    rotor_zero: float
-    rotor_encoder: str
-    max_rotor_speed: float
-    max_rotor_acceleration: float
-
-    @property
-    def encoder(self) -> tuple[str, str]:
-        """Identifies the encoder: its joint and its kind."""
-        return self.rotor_joint, self.rotor_encoder
-
-    @property
-    def single_turn(self) -> bool:
-        """Whether the position wraps once a turn."""
-        return self.rotor_encoder == 'single_turn'
-
-
-class RotorSample(NamedTuple):
-    """A valid rotor state: the rotor angle φ2, its rate and torque."""
-
-    stamp: int
-    """ns."""
-    position: RotorPosition
-    velocity: float | None
-    """rad/s; None if the message has none."""
-    effort: float | None
-    """N·m; None if the message has none."""
 
 
 class RotorSamples(NamedTuple):
@@ -83,7 +47,7 @@ class RotorSamples(NamedTuple):
     """Index of the message."""
     received: Array
     """Time of reception, ns."""
-    stretch: Array
+    segment: Array
     """Number that rises where the turn count of a single-turn encoder restarts or is uncertain."""
     rejected: Array
     """(m,), ns: the stamps of rejected messages that have one."""
@@ -96,7 +60,7 @@ _COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8')
 class RotorInput:
     """Processes rotor_state messages and counts what is wrong with them."""
 
-    def __init__(self, settings: InputSettings) -> None:
+    def __init__(self, parameters: NodeParameters) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.duplicates = 0
@@ -107,29 +71,29 @@ class RotorInput:
         self.missing_joint = ''
         """Joints of the first message that lacks the rotor's, if any: see `wire.joint_reader`."""
         self.last: RotorSample | None = None
-        self._settings = settings
-        self._reader = JointReader(settings.rotor_joint)
+        self._parameters = parameters
+        self._reader = JointReader(parameters.rotor_joint)
         self._turns = RotorTurns(
-            single_turn=settings.single_turn,
-            max_speed=settings.max_rotor_speed,
-            max_acceleration=settings.max_rotor_acceleration,
+            single_turn=parameters.single_turn,
+            max_speed=parameters.max_rotor_speed,
+            max_acceleration=parameters.max_rotor_acceleration,
         )
 
     @property
-    def settings(self) -> InputSettings:
-        """Settings of the encoder, which can change any time; another encoder resets the state."""
-        return self._settings
+    def parameters(self) -> NodeParameters:
+        """Those of the node, which can change any time; another encoder resets the state."""
+        return self._parameters
 
-    @settings.setter
-    def settings(self, settings: InputSettings) -> None:
-        self._turns.max_speed = settings.max_rotor_speed
-        self._turns.max_acceleration = settings.max_rotor_acceleration
-        if settings.encoder != self._settings.encoder:
-            self._turns.single_turn = settings.single_turn
+    @parameters.setter
+    def parameters(self, parameters: NodeParameters) -> None:
+        self._turns.max_speed = parameters.max_rotor_speed
+        self._turns.max_acceleration = parameters.max_rotor_acceleration
+        if _encoder(parameters) != _encoder(self._parameters):
+            self._turns.single_turn = parameters.single_turn
             self._turns.reset()
-            self._reader = JointReader(settings.rotor_joint)
+            self._reader = JointReader(parameters.rotor_joint)
             self.missing_joint = ''
-        self._settings = settings
+        self._parameters = parameters
 
     @property
     def referenced(self) -> bool:
@@ -153,7 +117,7 @@ class RotorInput:
         return f'{causes}: {self.missing_joint}' if self.missing_joint else causes
 
     @property
-    def stretch(self) -> int:
+    def segment(self) -> int:
         """Number that rises where the turn count restarts or is uncertain."""
         return self._turns.unknown_gaps + self.resets
 
@@ -184,7 +148,7 @@ class RotorInput:
         Raises:
             RuntimeError: before the first valid message.
         """
-        return self._turns.home(rotor_angle, self._settings.rotor_direction)
+        return self._turns.home(rotor_angle, self._parameters.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
         """Process many messages at once, with the same result as one by one.
@@ -194,7 +158,7 @@ class RotorInput:
             received: times of reception, ns; they replace missing stamps.
         """
         self.received += len(messages)
-        states = decode_joint_states(messages, self._settings.rotor_joint)
+        states = decode_joint_states(messages, self._parameters.rotor_joint)
         usable = np.ones(len(messages), bool)
         # In the order of the checks in `accept`.
         for faulty, cause in (
@@ -215,7 +179,7 @@ class RotorInput:
         values[~(np.abs(values) <= GREATEST)] = np.nan
         clock = np.asarray(received, np.int64)[rows]
         rejected = states.stamp[~(usable | states.malformed)]
-        if self._settings.single_turn or not self._in_order(stamps):
+        if self._parameters.single_turn or not self._in_order(stamps):
             return self._one_by_one(rows, stamps, values, clock, rejected)
         return self._all_at_once(rows, stamps, values, clock, rejected)
 
@@ -228,8 +192,8 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        zero_turns, zero_angle = split_turns(self._settings.rotor_zero)
-        direction = self._settings.rotor_direction
+        zero_turns, zero_angle = split_turns(self._parameters.rotor_zero)
+        direction = self._parameters.rotor_direction
         samples = RotorSamples(
             stamps,
             direction * (turns - zero_turns) + 0.0,  # turns that are int have no -0.0
@@ -238,7 +202,7 @@ class RotorInput:
             direction * values[:, 2],
             rows,
             received,
-            np.full(len(stamps), self.stretch),
+            np.full(len(stamps), self.segment),
             rejected,
         )
         if len(stamps):
@@ -264,7 +228,7 @@ class RotorInput:
                 disordered.append(stamp)
                 continue
             motion = *sample.position, sample.velocity, sample.effort
-            taken.append((sample.stamp, *motion, row, now, self.stretch))
+            taken.append((sample.stamp, *motion, row, now, self.segment))
         table = np.array(taken, _COLUMNS)  # None becomes NaN
         columns = [table[name].copy() for name in table.dtype.names or ()]
         rejected = np.append(rejected, np.array(disordered, np.int64))
@@ -288,10 +252,10 @@ class RotorInput:
         if self.last is not None and stamp <= self.last.stamp:
             self._check_order(stamp, self.last.stamp)
         self._turns.update(position, stamp, velocity)
-        direction = self._settings.rotor_direction
+        direction = self._parameters.rotor_direction
         self.last = RotorSample(
             stamp,
-            self._turns.relative_to(self._settings.rotor_zero, direction),
+            self._turns.relative_to(self._parameters.rotor_zero, direction),
             None if velocity is None else direction * velocity,
             None if effort is None else direction * effort,
         )
@@ -309,3 +273,7 @@ class RotorInput:
 
 def _number_or_none(value: float) -> float | None:
     return None if math.isnan(value) else value
+
+
+def _encoder(parameters: NodeParameters) -> tuple[str, str]:
+    return parameters.rotor_joint, parameters.rotor_encoder

@@ -10,11 +10,12 @@ from numpy.typing import NDArray
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.correction.transmission_error import ErrorSample
-from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
+from gear_kinematics.kinematics import GearRatio, Mechanism, RotorSample
 from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.urdf import joint_names
-from gear_kinematics.state.rotor_input import RotorSample, RotorSamples
+from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.wire.batches import encode
 from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
 from gear_kinematics.wire.topics import (
@@ -202,14 +203,15 @@ class StateMessages(OutputMessages):
         return self._joint_states[True].encode(sample.stamp, positions, velocities)
 
 
-def state_messages(gear: Gear, *, output_joint: str, frame_prefix: str) -> OutputMessages:
+def state_messages(parameters: NodeParameters) -> OutputMessages:
     """The messages of a gear: those of its bodies too, unless only the ratio is known.
 
     Raises:
         ValueError: if `output_joint` is empty or the name of another joint, or a name is not
             printable.
     """
-    names = {'output_joint': output_joint, 'frame_prefix': frame_prefix}
+    gear, joint, prefix = parameters.gear, parameters.output_joint, parameters.frame_prefix
+    names = {'output_joint': joint, 'frame_prefix': prefix}
     if isinstance(gear, Mechanism):
         return StateMessages(gear, **names)
     joint_names(gear, **names)  # to check them

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import NDArray
 
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.report import InputReport
 
 Columns = Mapping[str, NDArray[Any]]
@@ -24,11 +25,11 @@ class Judgement(NamedTuple):
 class Check:
     """Looks at a recording batch by batch and judges it at the end."""
 
-    def __init__(self, parameters: Mapping[str, Any]) -> None:
+    def __init__(self, parameters: NodeParameters) -> None:
         """Start with a recording.
 
         Args:
-            parameters: of the node, as `parameters.load` returns them.
+            parameters: of the node.
         """
         self.parameters = parameters
 
@@ -83,4 +84,4 @@ _SENTENCES = {
 }
 """Sentences by the names of the counts in `InputReport`."""
 
-CHECKS: Sequence[Callable[[Mapping[str, Any]], Check]] = (MostlyRejected, InputCounts)
+CHECKS: Sequence[Callable[[NodeParameters], Check]] = (MostlyRejected, InputCounts)

@@ -39,7 +39,7 @@ class RecomputedCorrection:
         holes = self._holes + np.cumsum(after_hole)
         if len(stamp):
             self._last, self._holes = int(stamp[-1]), int(holes[-1])
-        correction = self._corrector.correct_batch(*samples[:5], samples.stretch + holes)
+        correction = self._corrector.correct_batch(*samples[:5], samples.segment + holes)
         return correction._asdict()
 
 

@@ -233,7 +233,7 @@ class UnseenTurns:
     """The turns by which recorded outputs differ from recomputed ones, stretch by stretch.
 
     Within a stretch of the recording the turns are certain, so the difference is constant; see
-    `RotorSamples.stretch`. It is taken from the first output that differs by whole turns, and is
+    `RotorSamples.segment`. It is taken from the first output that differs by whole turns, and is
     0 in a stretch without one.
     """
 

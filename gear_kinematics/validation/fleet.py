@@ -3,7 +3,6 @@
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet
 from gear_kinematics.bag.errors import unexpected
@@ -15,7 +14,8 @@ from gear_kinematics.bag.roles import (
 )
 from gear_kinematics.bag.schedule import count_due
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics import Mechanism, gear_from_mapping
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
@@ -29,8 +29,8 @@ class Task:
     """A bag, and how to validate it."""
 
     bag: Path
-    parameters: Mapping[str, Any]
-    """Parameters of the node, as `parameters.load` returns them."""
+    parameters: NodeParameters
+    """Parameters of the node."""
     config: str
     """Their file."""
     tolerances: Tolerances
@@ -64,7 +64,7 @@ def validate_bag(
     Raises:
         MechanismError: if the parameters describe no mechanism.
     """
-    poses = isinstance(gear_from_mapping(task.parameters), Mechanism)
+    poses = isinstance(task.parameters.gear, Mechanism)
     try:
         with Bag(task.bag) as bag:
             given = {
@@ -72,13 +72,13 @@ def validate_bag(
                 'output': task.output_topic,
                 'poses': task.poses_topic,
             }
-            joint = task.parameters['rotor_joint']
+            joint = task.parameters.rotor_joint
             topics = find_topics(bag, given, outputs=not play, poses=poses, joint=joint)
             if play:
                 total = count_due(bag, [topics.rotor]) if progress else None
                 messages = play(
                     bag,
-                    {**task.parameters, 'calibration': task.calibration_file},
+                    replace(task.parameters, calibration=task.calibration_file),
                     rotor_topic=topics.rotor,
                     progress=lambda sent, _: progress and progress(sent, total),
                 )

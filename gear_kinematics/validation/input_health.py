@@ -65,7 +65,7 @@ class InputHealth:
         self._find_gaps()
         return InputReport(
             topic=topic,
-            joint=rotor_input.settings.rotor_joint,
+            joint=rotor_input.parameters.rotor_joint,
             messages=rotor_input.received,
             valid=rotor_input.received - rotor_input.rejected.total(),
             rejected=dict(rotor_input.rejected),

@@ -12,13 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.report.document import counted
-from gear_kinematics.state.rotor_input import CLOCK_RESET
 from gear_kinematics.validation.diagnosis import UnseenTurns
 from gear_kinematics.validation.field_errors import FieldErrors
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.recorder import NO_INPUT, Completeness, Missing, RecordedInputs
 from gear_kinematics.validation.report import TopicReport
 from gear_kinematics.validation.series import RecordedField, SeriesRecorder
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[Any]
 Columns = dict[str, Array]

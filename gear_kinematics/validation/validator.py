@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from gear_kinematics.bag import Message, ReportProgress, TopicMessages, in_batches, sort_by_topic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.kinematics import Mechanism, gear_from_mapping, solve
+from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation import checks
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
@@ -46,7 +47,7 @@ class Validator:
 
     def __init__(
         self,
-        parameters: Mapping[str, Any],
+        parameters: NodeParameters,
         *,
         topics: Topics = _TOPICS,
         tolerances: Tolerances = _TOLERANCES,
@@ -59,7 +60,7 @@ class Validator:
         """Prepare for a recording.
 
         Args:
-            parameters: of the node, as `parameters.load` returns them.
+            parameters: of the node.
             topics: names of the topics; that of poses that are not recorded is empty.
             tolerances: greatest accepted errors.
             allow_offset: whether to accept a constant offset of the output angle, as after homing.
@@ -72,26 +73,26 @@ class Validator:
         Raises:
             ValueError: if the parameters describe no gear.
         """
-        self._parameters = dict(parameters)
-        self._prefix_open = not parameters['frame_prefix']
+        self._parameters = parameters
+        self._prefix_open = not parameters.frame_prefix
         self._topics = topics
         self._names = *topics, *corrected.values()
         self._tolerances = tolerances
         self._offset_open = allow_offset
         self._solver = solver
         self._strict = strict
-        self._gear = gear = gear_from_mapping(parameters)
-        self._input = RotorInput(InputSettings.from_mapping(parameters))
-        self._health = InputHealth(parameters['max_rotor_speed'])
+        self._gear = gear = parameters.gear
+        self._input = RotorInput(parameters)
+        self._health = InputHealth(parameters.max_rotor_speed)
         self._rejected = Occurrences()
         self._window = Window()
         self._inputs = RecordedInputs(strict=strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
-        single_turn = self._input.settings.single_turn
+        single_turn = parameters.single_turn
         self._unseen = UnseenTurns(gear.gear_ratio, tolerances.angle) if single_turn else None
-        prefix = parameters['frame_prefix']
+        prefix = parameters.frame_prefix
         common = tolerances, solver, self._unseen
-        joint = prefix + parameters['output_joint']
+        joint = prefix + parameters.output_joint
         self.output = OutputState(joint, gear, *common)
         self.poses = None
         outputs: tuple[OutputTopic, ...] = (self.output,)
@@ -170,7 +171,7 @@ class Validator:
             series=tuple(found for found in series if found),
             lanes=tuple(lanes(inputs, self._judged(), rotor.first_stamp)),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
-            module=self._parameters['module'],
+            module=self._parameters.module,
         )
 
     @np.errstate(all='ignore')
@@ -213,7 +214,7 @@ class Validator:
             angle=samples.angle,
             velocity=samples.velocity,
             effort=samples.effort,
-            stretch=samples.stretch,
+            stretch=samples.segment,
             **(self._correction.columns(samples) if self._correction else {}),
         )
         for _, output, _ in self._judged():
@@ -238,7 +239,7 @@ class Validator:
 
     def _settle_prefix(self, batch: _Batch) -> None:
         """Adopt the frame prefix of the first output, if any."""
-        joint = self._parameters['output_joint']
+        joint = self._parameters.output_joint
         _, output, poses, *_ = batch
         for (data, *_), layout_of, name in (
             (poses.data or [b''], pose_array_layout, _FRAME),
@@ -250,7 +251,7 @@ class Validator:
                     continue
                 self._prefix_open = False
                 if prefix := recorded.removesuffix(name):
-                    self._parameters['frame_prefix'] = prefix
+                    self._parameters = replace(self._parameters, frame_prefix=prefix)
                     if self.poses:
                         self.poses.frame_id = prefix + _FRAME
                     for topic in self._of_joint():
@@ -264,19 +265,20 @@ class Validator:
         Homing moves the rotor's zero and therefore the poses; if there are some, and they agree
         better without that, only the output angle has an offset.
         """
-        trial = self._trial(batch, {})
+        trial = self._trial(batch, self._parameters)
         if not trial.output.fit.count:
             return
         self._offset_open = False
         offset = trial.output.fit.offset(self._tolerances.angle)
         if offset is None:
             return
-        direction, zero = self._parameters['rotor_direction'], self._parameters['rotor_zero']
-        moved = {'rotor_zero': zero - direction * self._gear.gear_ratio.rotor_angle(offset)}
-        if abs(moved['rotor_zero']) > LARGEST_ANGLE:  # garbage, not homing
+        direction, zero = self._parameters.rotor_direction, self._parameters.rotor_zero
+        zero -= direction * self._gear.gear_ratio.rotor_angle(offset)
+        moved = replace(self._parameters, rotor_zero=zero)
+        if abs(zero) > LARGEST_ANGLE:  # garbage, not homing
             return
         if self._trial(batch, moved).worst_position <= trial.worst_position:
-            self._input.settings = replace(self._input.settings, **moved)
+            self._input.parameters = moved
         else:
             for topic in self._of_joint():
                 topic.offset = offset
@@ -297,9 +299,9 @@ class Validator:
         """The greatest error of a body's position, m; 0 without poses."""
         return self.poses.worst_error if self.poses else 0.0
 
-    def _trial(self, batch: _Batch, changes: Mapping[str, Any]) -> 'Validator':
+    def _trial(self, batch: _Batch, parameters: NodeParameters) -> 'Validator':
         trial = Validator(
-            {**self._parameters, **changes},
+            parameters,
             topics=self._topics,
             tolerances=self._tolerances,
             solver=self._solver,

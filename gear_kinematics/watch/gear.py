@@ -14,8 +14,8 @@ from rclpy.task import Future
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from gear_kinematics.kinematics import Gear, gear_from_mapping
-from gear_kinematics.parameters.node_parameters import BRANCH_PARAMETERS, PARAMETERS, defaults
+from gear_kinematics.kinematics import Gear
+from gear_kinematics.parameters import BRANCH_PARAMETERS, PARAMETERS, NodeParameters
 from gear_kinematics.watch import graph
 from gear_kinematics.watch.polled import Latest, PolledSubscription
 from gear_kinematics.wire import topics
@@ -65,8 +65,8 @@ class GearNode:
         self._node = node
         self.name = name
         self.running = False
-        self.parameters: dict[str, Any] = {}
-        """Of the node; empty until it has told them."""
+        self.parameters: NodeParameters | None = None
+        """Of the node; None until it has told them."""
         self.gear: Gear | None = None
         self.known = False
         """Whether the node has told its parameters since it started."""
@@ -176,9 +176,9 @@ class GearNode:
             )
 
     def _take_parameters(self, values: Any) -> None:
-        known = {name: defaults()[name] for name in PARAMETERS}  # where it is an older version
-        self.parameters = known | dict(zip(self._names, values, strict=True))
-        self.gear = gear_from_mapping(self.parameters)
+        # An older version of the node can lack some.
+        self.parameters = NodeParameters.of(dict(zip(self._names, values, strict=True)))
+        self.gear = self.parameters.gear
         self.known, self._deadline = True, math.inf
 
 

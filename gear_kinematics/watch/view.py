@@ -107,7 +107,8 @@ def motion_of(gear: GearNode) -> dict[str, Any]:
     """Give the numbers for the drawing and the curve."""
     output = gear.joint(topics.OUTPUT_STATE)
     error = gear.joint(topics.TRANSMISSION_ERROR)
-    numbers: dict[str, Any] = {'window': gear.parameters.get('transmission_error_window', 0.0)}
+    window = gear.parameters.transmission_error_window if gear.parameters else 0.0
+    numbers: dict[str, Any] = {'window': window}
     if output and gear.gear:
         rotor = gear.gear.gear_ratio.rotor_angle(output.position)
         numbers['rotor'] = math.degrees(math.remainder(rotor, TURN))
@@ -129,9 +130,8 @@ def readings_of(gear: GearNode, rotor: Latest | None) -> Iterator[Reading]:
         yield from _angles(output, gear.gear)
     if rotor:
         age = rotor.age
-        tone: Tone = (
-            'bad' if age is None or age > gear.parameters.get('input_timeout', 1.0) else ''
-        )
+        timeout = gear.parameters.input_timeout if gear.parameters else 1.0
+        tone: Tone = 'bad' if age is None or age > timeout else ''
         detail = 'no message yet' if age is None else f'last message {_duration(age)} ago'
         yield Reading('input', f'{rotor.rate:.0f} Hz', detail, tone)
     corrected = gear.joint(topics.CORRECTED_STATE)
@@ -191,12 +191,12 @@ def _angles(output: Joint, gear: Gear) -> Iterator[Reading]:
 
 def _window(gear: GearNode) -> str:
     """The peak-to-peak value in the window of the diagnostics, and its limit."""
-    length = gear.parameters.get('transmission_error_window')
     status = gear.statuses.get('transmission error')
     text = status.values.get('peak to peak (rad)', '') if status else ''
-    if length is None or not _NUMBER.fullmatch(text):
+    if not gear.parameters or not _NUMBER.fullmatch(text):
         return ''
-    limit = arc(gear.parameters['transmission_error_limit'])
+    limit = arc(gear.parameters.transmission_error_limit)
+    length = gear.parameters.transmission_error_window
     return f'peak to peak {arc(float(text))} in {length:g} s, limit {limit}'
 
 

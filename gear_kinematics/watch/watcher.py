@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import Future
 from contextlib import suppress
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from queue import Empty, SimpleQueue
@@ -11,7 +12,6 @@ from threading import Event, Thread
 from types import MappingProxyType
 from typing import Any, NamedTuple, Self
 
-import yaml
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
 from rclpy.executors import SingleThreadedExecutor
@@ -21,10 +21,9 @@ from std_srvs.srv import Trigger
 
 from gear_kinematics.bag import BagError
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.new_config import new_config, start_command, unused_name, write_new
-from gear_kinematics.parameters.node_parameters import default_config
-from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch import graph
 from gear_kinematics.watch.drivers import Driver, Drivers
@@ -74,8 +73,8 @@ class _Homing(NamedTuple):
     def settled(self) -> bool:
         """Pass on the answer, or that there is none; returns whether this is done."""
         if self.asked.done():
-            result, before = self.asked.result(), self.gear.parameters.get('rotor_zero')
-            was = f'; it was {before} rad' if result.success and before is not None else ''
+            result, before = self.asked.result(), self.gear.parameters
+            was = f'; it was {before.rotor_zero} rad' if result.success and before else ''
             self.answer.set_result(Answer(f'{result.message}{was}.', result.success))
             self.gear.reread()
         elif time.monotonic() > self.deadline:
@@ -261,7 +260,7 @@ class Watcher:
     def _draw(self, gear: GearNode) -> None:
         """Note which mechanism there is to draw."""
         drawn = gear.gear if isinstance(gear.gear, Mechanism) else None
-        module = gear.parameters.get('module', 0.0)
+        module = gear.parameters.module if gear.parameters else 0.0
         if (drawn, module) != (self.drawn, self.module):
             self.drawn, self.module = drawn, module
             self._drawing += 1
@@ -278,8 +277,8 @@ class Watcher:
         self._recording = Recording(self._node, types, path, self._answers(found))
         self._failed = ''
         words = f'Recording {len(found)} topics.'
-        if self._gear and self._gear.running and self._gear.known:
-            words += self._keep_parameters(self._gear, path)
+        if self._gear and self._gear.running and self._gear.known and self._gear.parameters:
+            words += _keep_parameters(self._gear.parameters, path)
         return Answer(words, done=True)
 
     def _record_from_start(self, path: Path) -> str:
@@ -309,16 +308,6 @@ class Watcher:
         states = {self._gear.outputs.get(name, '') for name in topics.STATE_TOPICS}
         return dict.fromkeys(states & found.keys(), self._gear.inputs[topics.ROTOR_STATE])
 
-    def _keep_parameters(self, gear: GearNode, folder: Path) -> str:
-        """Write the parameters beside the data, where `gearkin validate` looks for them."""
-        given, note = dict(gear.parameters), ''
-        if given['calibration'] and not Path(given['calibration']).is_absolute():
-            note = f' Give its calibration to gearkin validate: {given["calibration"]}.'
-            given['calibration'] = ''
-        text = yaml.dump({'/**': {'ros__parameters': given}}, Dumper=Dumper, sort_keys=False)
-        write_new(folder / default_config().name, text)
-        return note
-
     def _stop(self) -> Answer:
         if not self._recording:
             return Answer('Nothing is being recorded.', done=False)
@@ -339,3 +328,13 @@ class Watcher:
         path = unused_name(Path(), default_config().name)
         write_new(path, new_config(topic, joint, path.name))
         return Answer(f'{path} is written. Start: {start_command(topic, path.name)}', done=True)
+
+
+def _keep_parameters(parameters: NodeParameters, folder: Path) -> str:
+    """Write the parameters beside the data, where `gearkin validate` looks for them."""
+    note, calibration = '', parameters.calibration
+    if calibration and not Path(calibration).is_absolute():
+        note = f' Give its calibration to gearkin validate: {calibration}.'
+        parameters = replace(parameters, calibration='')
+    write_new(folder / default_config().name, parameters.as_file())
+    return note

@@ -2,11 +2,10 @@
 
 import math
 import struct
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterable
 from functools import partial
 from operator import itemgetter
-from typing import Any, Self
+from typing import Any
 
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.wire.cdr import (
@@ -28,6 +27,8 @@ POSITION_MISSING = 'position missing'
 POSITION_NOT_FINITE = 'position not finite'
 POSITION_TOO_LARGE = 'position too large'
 OUT_OF_ORDER = 'out of order'
+CLOCK_RESET = 1_000_000_000
+"""ns: a stamp that is older than the last by more is in order; the clock has been set back."""
 
 GREATEST = 1e300
 """Greatest velocity or effort; beyond, results could be infinite, so it counts as not finite."""
@@ -78,16 +79,6 @@ def joints_of(data: bytes) -> list[str]:
         name.decode(errors='backslashreplace') for name in joint_names(joint_state_layout(data))
     )
     return [name if name.isprintable() else ascii(name)[1:-1] for name in names]
-
-
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """Parameters of the node on how to read an input, under the same names."""
-
-    @classmethod
-    def from_mapping(cls, parameters: Mapping[str, Any]) -> Self:
-        """Pick them from the parameters of the node."""
-        return cls(**{field.name: parameters[field.name] for field in fields(cls)})
 
 
 class JointReader:

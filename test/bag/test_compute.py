@@ -2,6 +2,7 @@
 
 import hashlib
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.compute import ComputeResult, compute
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 
 OUTPUTS = ('/output_state', '/body_poses')
 SHIPPED = {
@@ -26,11 +27,11 @@ SHIPPED = {
 UNKNOWN = b'\x00\x01\x00\x00nobody knows'
 
 
-def config(name: str = 'actuator', **changed) -> dict:
-    return parameters.load(CONFIGS / f'{name}.yaml') | changed
+def config(name: str = 'actuator', **changed) -> NodeParameters:
+    return replace(NodeParameters.load(CONFIGS / f'{name}.yaml'), **changed)
 
 
-def config_of(bag: str) -> dict:
+def config_of(bag: str) -> NodeParameters:
     return config('single_turn' if bag == 'single_turn_encoder' else 'actuator')
 
 

@@ -1,6 +1,7 @@
 """The rotor's motion over time: read from bags, or at a constant speed."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,16 +10,16 @@ from gear_recordings import Samples, write_recording
 from gear_kinematics.bag import BagError, BagWriter
 from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory, read_trajectory
 from gear_kinematics.kinematics import matrix_method, split_turns
-from gear_kinematics.parameters import node_parameters as parameters
-from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.share import share_directory
 from gear_kinematics.wire.cdr import JointStateTemplate
 
 MS = 1_000_000  # ns
 TURN = 2.0 * math.pi
 
 
-def config(**changes) -> dict:
-    return {**parameters.load(parameters.default_config()), **changes}
+def config(**changes) -> NodeParameters:
+    return replace(NodeParameters.load(), **changes)
 
 
 def positions(trajectory: Trajectory) -> np.ndarray:

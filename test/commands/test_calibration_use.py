@@ -10,7 +10,7 @@ from calibrations import calibration
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.commands.cli import main
-from gear_kinematics.parameters.node_parameters import load
+from gear_kinematics.parameters import NodeParameters
 
 SERVO = BAGS / 'servo_point_to_point'
 CORRECTED = ('/corrected_state', '/corrected_interval')
@@ -70,7 +70,9 @@ def test_calibration_that_the_config_names_is_used(computed, file, tmp_path, cap
 
 def test_computed_bag_has_its_config_and_calibration_beside_it(computed, file, capsys):
     assert (computed / 'calibration.yaml').read_bytes() == file.read_bytes()
-    assert load(computed / 'actuator.yaml')['calibration'] == str(computed / 'calibration.yaml')
+    assert NodeParameters.load(computed / 'actuator.yaml').calibration == str(
+        computed / 'calibration.yaml'
+    )
     capsys.readouterr()
     assert set(CORRECTED) < set(topics_of(computed, capsys))
 

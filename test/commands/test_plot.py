@@ -13,7 +13,7 @@ from gear_recordings import Samples, write_recording
 
 from gear_kinematics.bag import BagWriter
 from gear_kinematics.commands.cli import main
-from gear_kinematics.parameters.share import share_directory
+from gear_kinematics.share import share_directory
 
 pytest.importorskip('matplotlib', reason='matplotlib is not installed')
 

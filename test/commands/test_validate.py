@@ -39,7 +39,7 @@ from terminals import ENVIRONMENT, Terminal
 
 from gear_kinematics.bag import Bag, BagWriter
 from gear_kinematics.commands.cli import main
-from gear_kinematics.parameters.node_parameters import load
+from gear_kinematics.parameters import NodeParameters
 
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
 CONFIG = CONFIGS / 'actuator.yaml'
@@ -650,7 +650,9 @@ def test_compute_uses_the_config_beside_the_bag(tmp_path):
     assert gearkin_here('compute', SINGLE_TURN, out).returncode == 0
     assert gearkin_here('validate', out).returncode == 0
     assert gearkin_here('validate', out, '--config', CONFIG).returncode == 1
-    assert load(out / 'actuator.yaml') == load(SINGLE_TURN / 'actuator.yaml')
+    assert NodeParameters.load(out / 'actuator.yaml') == NodeParameters.load(
+        SINGLE_TURN / 'actuator.yaml'
+    )
 
 
 @pytest.mark.slow

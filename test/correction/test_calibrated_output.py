@@ -1,7 +1,6 @@
 """The calibrated output beside a measured angle: what is explained, and when it no longer fits."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,14 +10,13 @@ from live import SECOND, START
 from gear_kinematics.correction.calibrated_output import CalibratedOutput, independent_samples
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
-from gear_kinematics.kinematics import split_turns
-from gear_kinematics.state.rotor_input import RotorSample
+from gear_kinematics.kinematics import RotorSample, split_turns
 
 PERIOD = 5 * SECOND // 1000  # 200 Hz
 COUNT = 2000  # 10 s
 WINDOW = 10.0
 ZERO = 0.3  # of the encoder, rad
-INPUT = SimpleNamespace(stretch=0, referenced=True)
+INPUT = {'segment': 0, 'referenced': True}
 MADE = single_order()
 
 
@@ -35,7 +33,7 @@ def run(errors, made=MADE, speed=10.0, start=0) -> CalibratedOutput:
 
 def follow(output, errors, speed=10.0, start=0) -> None:
     for k, error in enumerate(errors, start):
-        output.correct(sample(k, speed * k * PERIOD / SECOND), INPUT)
+        output.correct(sample(k, speed * k * PERIOD / SECOND), **INPUT)
         if k > start:
             stamp = START + k * PERIOD - PERIOD // 2
             output.compare([ErrorSample(stamp, float(error), 0, 0.0, 1, 0.0)])
@@ -51,7 +49,7 @@ def test_correction_is_that_of_the_corrector():
     output, corrector = CalibratedOutput(calibration()), Corrector(calibration())
     for k in range(100):
         one = sample(k, 0.01 * k)
-        assert output.correct(one, INPUT) == corrector.correct(one)
+        assert output.correct(one, **INPUT) == corrector.correct(one)
 
 
 def test_calibration_explains_what_it_predicts_apart_from_the_encoders_zero():
@@ -125,8 +123,8 @@ def test_nothing_is_said_without_a_comparison():
     output = CalibratedOutput(MADE)
     assert output.fit(WINDOW) is None
     output.compare([ErrorSample(START, 0.0, 0, 0.0, 1, 0.0)])  # before any sample of the rotor
-    output.correct(sample(1, 0.0), INPUT)
-    output.correct(sample(2, 0.0), INPUT)
+    output.correct(sample(1, 0.0), **INPUT)
+    output.correct(sample(2, 0.0), **INPUT)
     output.compare([ErrorSample(START, 0.0, 0, 0.0, 1, 0.0)])
     assert output.fit(WINDOW) is None
 
@@ -149,7 +147,7 @@ def test_clock_that_is_set_back_begins_anew():
 def test_same_stamp_is_corrected_and_compared_once():
     output = CalibratedOutput(MADE)
     for k in (0, 1, 1, 2):
-        output.correct(sample(k, 10.0 * k), INPUT)
+        output.correct(sample(k, 10.0 * k), **INPUT)
     output.compare([ErrorSample(START + PERIOD, AMPLITUDE, 0, 0.0, 1, 0.0)])
     assert output.fit(WINDOW).samples == 1
 
@@ -159,8 +157,8 @@ def test_homing_makes_the_play_unknown():
     output = CalibratedOutput(made)
     widths = []
     for k, referenced in enumerate([False, False, True, True]):
-        state = SimpleNamespace(stretch=0, referenced=referenced)
-        widths.append(output.correct(sample(k, float(k)), state).half_width)
+        correction = output.correct(sample(k, float(k)), segment=0, referenced=referenced)
+        widths.append(correction.half_width)
     unknown = 0.6 * 4e-4 + 0.2 * 2e-3
     assert widths == pytest.approx([1e-4 + unknown, 1e-4, 1e-4 + unknown, 1e-4])
 

@@ -13,8 +13,7 @@ from hypothesis import strategies as st
 
 from gear_kinematics.correction.calibration_file import Order, Stop
 from gear_kinematics.correction.corrector import MAX_GAP, Correction, Corrector, play_bounds
-from gear_kinematics.kinematics import RotorPosition
-from gear_kinematics.state.rotor_input import RotorSample
+from gear_kinematics.kinematics import RotorPosition, RotorSample
 
 MS = 10**6
 START = 1_700_000_000 * 10**9
@@ -37,12 +36,12 @@ def correct_all(corrector: Corrector, motion, **options) -> list[Correction]:
     return [corrector.correct(sample, **options) for sample in motion]
 
 
-def columns(motion, stretch=0) -> list[np.ndarray]:
+def columns(motion, segment=0) -> list[np.ndarray]:
     """Convert samples to the arrays that `correct_batch` takes."""
     stamps = np.array([sample.stamp for sample in motion], np.int64)
     numbers = [(*s.position, s.velocity, s.effort) for s in motion]
     table = np.array(numbers, np.float64).reshape(-1, 4)  # None becomes NaN
-    return [stamps, *table.T, np.full(len(motion), stretch)]
+    return [stamps, *table.T, np.full(len(motion), segment)]
 
 
 @st.composite
@@ -159,7 +158,7 @@ def test_interval_is_wide_until_the_output_has_travelled_twice_the_radii():
     assert widths[4:] == [1e-4, 1e-4, 1e-4]
 
 
-@pytest.mark.parametrize('cause', ['gap', 'clock', 'stretch', 'reset'])
+@pytest.mark.parametrize('cause', ['gap', 'clock', 'segment', 'reset'])
 def test_plays_are_unknown_again_after_motion_was_missed(cause):
     corrector = Corrector(calibration(compliance=None))
     first = at_angles(0.0, 0.5)
@@ -167,7 +166,7 @@ def test_plays_are_unknown_again_after_motion_was_missed(cause):
     stamp = {'gap': MAX_GAP + 1, 'clock': -2 * 10**9}.get(cause, MS) + first[-1].stamp
     if cause == 'reset':
         corrector.reset()
-    again = corrector.correct(first[-1]._replace(stamp=stamp), stretch=int(cause == 'stretch'))
+    again = corrector.correct(first[-1]._replace(stamp=stamp), segment=int(cause == 'segment'))
     assert again.half_width == pytest.approx(1e-4 + 0.6 * 4e-4 + 0.2 * 2e-3)
 
 

@@ -138,55 +138,6 @@ def test_mechanism_cannot_be_changed(actuator):
         actuator.branches[0].cam_phase = 1.0
 
 
-def test_mapping_makes_the_same_mechanism(actuator):
-    parameters = {
-        'ring_teeth': 80,
-        'satellite_teeth': 76,
-        'eccentricity': 0.0011,
-        'branches': ['a', 'b'],
-        'a.axial_position': 0.04,
-        'b.cam_phase': math.pi,
-        'b.axial_position': -0.04,
-        'rotor_joint': 'passed over',
-        'c.cam_phase': 'of no branch',
-    }
-    assert Mechanism.from_mapping(parameters) == actuator
-
-
-def test_mapping_lists_everything_that_is_missing():
-    with pytest.raises(MechanismError) as caught:
-        Mechanism.from_mapping({'satellite_teeth': 76})
-    missing = ('ring_teeth is missing', 'eccentricity is missing', 'branches is missing')
-    assert caught.value.faults == missing
-
-
-@pytest.mark.parametrize('names', ['ab', 2, None])
-def test_mapping_refuses_branches_that_are_no_list(names):
-    parameters = {'ring_teeth': 80, 'satellite_teeth': 76, 'eccentricity': 1e-3}
-    with pytest.raises(MechanismError) as caught:
-        Mechanism.from_mapping({**parameters, 'branches': names})
-    assert caught.value.faults == (f'branches must be a list of names, not {names!r}',)
-
-
-def test_mapping_reports_every_fault():
-    with pytest.raises(MechanismError) as caught:
-        Mechanism.from_mapping(
-            {
-                'ring_teeth': 80,
-                'satellite_teeth': 81,
-                'eccentricity': 'e',
-                'branches': [1, 'a'],
-                'a.cam_phase': math.inf,
-            }
-        )
-    assert caught.value.faults == (
-        'satellite_teeth (81) must be less than ring_teeth (80)',
-        "eccentricity must be a number, not 'e'",
-        NAMES + '1',
-        'a.cam_phase must be finite, not inf',
-    )
-
-
 @pytest.mark.parametrize(
     ('ring_teeth', 'satellite_teeth', 'ratio', 'petals'),
     [

@@ -18,10 +18,10 @@ from calibrating import (
 from simulated_gear import GearSet, gears, simulate, slow_strokes, strokes, wandering
 
 from gear_kinematics.correction.corrector import Corrector
+from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
 from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm
 from gear_kinematics.measurement.recording import RecordingError
-from gear_kinematics.state.rotor_input import RotorSample
 
 RATIO = Fraction(-19)
 USUAL = GearSet(1)

@@ -1,6 +1,7 @@
 """Reading recordings: columns, units, stamps, steps, and unusable files."""
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -79,7 +80,7 @@ def test_names_of_real_files_tell_both_encoders(tmp_path, config, names, scale, 
 def test_real_recordings_need_no_renaming(shared_path, config):
     """Spans that their authors state, of the joint and of the printed gear."""
     joint = shared_path('data/dual_encoders/neura_jogging_final_joint1.csv')
-    config = config | {'gear_ratio': '121'}
+    config = replace(config, gear_ratio='121')
     counts = Columns(rotor_counts=2**24, output_counts=2**24)
     _, both = read_encoders(joint, config, counts)
     assert both.timed
@@ -94,7 +95,7 @@ def test_real_recordings_need_no_renaming(shared_path, config):
     )
     assert both.output_step.size == pytest.approx(TURN / 2**14, rel=1e-3)
     stiffness = shared_path('data/dual_encoders/transmission_stiffness_sspg.csv')
-    recording = read(stiffness, config | {'gear_ratio': '7.2'}, Columns(on_rotor=True))
+    recording = read(stiffness, replace(config, gear_ratio='7.2'), Columns(on_rotor=True))
     assert recording.columns[0] == 'angle of the rotor from encoder_pos_rad in rad'
     assert recording.columns[1].startswith('torque at the output from output_torque_Nm')
 
@@ -279,7 +280,7 @@ def test_efforts_of_the_rotor_are_torque_at_the_output(tmp_path, config, measure
 def test_turns_of_a_single_turn_rotor_encoder_are_counted(tmp_path, config, angle):
     many = 2.0 * np.sin(np.arange(len(angle)) / 300.0)  # 6 turns of the rotor either way
     path = ramps_on_rotor(tmp_path / 'wrapped', angle, positions=(-19.0 * many) % TURN)
-    single = {**config, 'rotor_encoder': 'single_turn'}
+    single = replace(config, rotor_encoder='single_turn')
     recording = read(path, single)
     found = recording.locked.angle
     np.testing.assert_allclose(found - found[0], many - many[0], rtol=0, atol=1e-9)

@@ -2,14 +2,14 @@
 
 import re
 import shlex
+from dataclasses import replace
 
 import pytest
 import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gear_kinematics.parameters import node_parameters as parameters
-from gear_kinematics.parameters.files import ConfigError
+from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
 from gear_kinematics.parameters.new_config import (
     new_config,
     start_command,
@@ -21,10 +21,10 @@ from gear_kinematics.parameters.new_config import (
 def test_file_is_the_default_one_with_the_joint_of_the_driver(tmp_path):
     path = tmp_path / 'actuator.yaml'
     write_new(path, new_config('/motor/joint_states', 'm1', path.name))
-    assert parameters.load(path) == {**parameters.defaults(), 'rotor_joint': 'm1'}
+    assert NodeParameters.load(path) == replace(NodeParameters.load(), rotor_joint='m1')
     text = path.read_text('utf-8')
     assert text.count("rotor_joint: 'm1'\n") == 1
-    default = parameters.default_config().read_text('utf-8')
+    default = default_config().read_text('utf-8')
     assert set(re.findall('(?m)^ +#.*', text)) == set(re.findall('(?m)^ +#.*', default))
     assert 'only place that defines default values' not in text
 

@@ -6,14 +6,19 @@ from pathlib import Path
 import pytest
 import yaml
 
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.parameters import node_parameters as parameters
-from gear_kinematics.parameters.files import ConfigError, calibration_path, require_any
-from gear_kinematics.parameters.node_parameters import (
+from gear_kinematics.kinematics import Branch
+from gear_kinematics.parameters import (
     BRANCH_PARAMETERS,
+    NODE,
     PARAMETERS,
-    load,
+    ConfigError,
+    NodeParameters,
+    default_config,
+    default_value,
 )
+from gear_kinematics.parameters.files import calibration_path, given_parameters, require_any
+
+load = NodeParameters.load
 
 CONTRACT = {
     'ring_teeth': 80,
@@ -80,14 +85,14 @@ def fault(folder: Path, **values) -> str:
 
 @pytest.mark.parametrize('name', CONTRACT)
 def test_default_is_that_of_the_contract(name):
-    value = parameters.defaults()[name]
+    value = default_value(name)
     assert value == CONTRACT[name]
     assert type(value) is type(CONTRACT[name])
 
 
 def test_every_parameter_has_a_default_and_every_default_a_parameter():
     branches = {f'{branch}.{field}' for branch in 'ab' for field in BRANCH_PARAMETERS}
-    assert set(parameters.defaults()) == set(PARAMETERS) | branches
+    assert set(given_parameters(default_config(), NODE)) == set(PARAMETERS) | branches
 
 
 def test_every_parameter_is_described():
@@ -102,19 +107,13 @@ def test_parameters_that_are_fixed_at_the_start_are_read_only():
 
 
 def test_defaults_have_no_faults():
-    defaults = parameters.defaults()
     for name, parameter in PARAMETERS.items():
-        assert parameter.fault(name, defaults[name], defaults[name]) is None
+        assert parameter.fault(name, default_value(name)) is None
 
 
 def test_branches_without_defaults_get_those_of_a_branch():
-    table = parameters.branch_parameters(['a', 'left'])
-    assert {name: default for name, (_, default) in table.items()} == {
-        'a.cam_phase': 0.0,
-        'a.axial_position': 0.04,
-        'left.cam_phase': 0.0,
-        'left.axial_position': 0.0,
-    }
+    given = NodeParameters.of({'branches': ['a', 'left']})
+    assert given.branches == (Branch('a', 0.0, 0.04), Branch('left'))
 
 
 REFUSED = [
@@ -187,7 +186,7 @@ def test_fault_names_parameter_value_and_bound(tmp_path, name, value, bounds):
     ],
 )
 def test_value_on_the_bound_is_taken(tmp_path, name, value):
-    assert load(config(tmp_path, **{name: value}))[name] == value
+    assert load(config(tmp_path, **{name: value})).values()[name] == value
 
 
 def test_every_fault_is_listed_at_once(tmp_path):
@@ -222,22 +221,19 @@ def test_every_unknown_parameter_is_listed_at_once(tmp_path):
 
 
 def test_shipped_file_loads_as_the_defaults():
-    assert load(parameters.default_config()) == CONTRACT | OUR_OWN
+    assert NodeParameters.load().values() == CONTRACT | OUR_OWN
 
 
 def test_parameters_that_a_file_lacks_have_their_defaults(tmp_path):
     loaded = load(config(tmp_path, ring_teeth=90))
-    assert loaded == CONTRACT | OUR_OWN | {'ring_teeth': 90}
+    assert loaded.values() == CONTRACT | OUR_OWN | {'ring_teeth': 90}
 
 
 @pytest.mark.parametrize('nested', [True, False])
 def test_branch_keys_may_be_nested_or_dotted(tmp_path, nested):
     phase = {'left': {'cam_phase': 0.5}} if nested else {'left.cam_phase': 0.5}
     loaded = load(config(tmp_path, branches=['left'], **phase))
-    assert (loaded['left.cam_phase'], loaded['left.axial_position']) == (0.5, 0.0)
-    assert 'a.cam_phase' not in loaded
-    [branch] = Mechanism.from_mapping(loaded).branches
-    assert (branch.name, branch.cam_phase) == ('left', 0.5)
+    assert loaded.branches == loaded.mechanism.branches == (Branch('left', 0.5),)
 
 
 @pytest.mark.parametrize(
@@ -252,12 +248,12 @@ def test_branch_keys_may_be_nested_or_dotted(tmp_path, nested):
 )
 def test_every_name_of_the_node_is_known(tmp_path, section):
     text = f'{section}:\n  ros__parameters:\n    ring_teeth: 90\n'
-    assert load(write(tmp_path, text))['ring_teeth'] == 90
+    assert load(write(tmp_path, text)).ring_teeth == 90
 
 
 def test_namespace_may_be_a_key_of_its_own(tmp_path):
     text = 'arm:\n  gear_state_publisher:\n    ros__parameters:\n      ring_teeth: 90\n'
-    assert load(write(tmp_path, text))['ring_teeth'] == 90
+    assert load(write(tmp_path, text)).ring_teeth == 90
 
 
 def test_sections_of_other_nodes_are_ignored(tmp_path):
@@ -266,7 +262,7 @@ def test_sections_of_other_nodes_are_ignored(tmp_path):
         'gear_state_publisher:\n  ros__parameters:\n    ring_teeth: 90\n'
         'joint_state_broadcaster:\n  ros__parameters:\n    use_local_topics: true\n'
     )
-    assert load(write(tmp_path, text))['ring_teeth'] == 90
+    assert load(write(tmp_path, text)).ring_teeth == 90
 
 
 LEFT, RIGHT = (f'/{side}/gear_state_publisher' for side in ('left', 'right'))
@@ -300,7 +296,7 @@ def blocks(folder: Path, *names: str) -> Path:
 def test_name_without_namespace_is_that_of_the_only_node_in_the_file(
     tmp_path, names, node, expected
 ):
-    assert load(blocks(tmp_path, *names), node)['ring_teeth'] == expected
+    assert load(blocks(tmp_path, *names), node).ring_teeth == expected
 
 
 @pytest.mark.parametrize(
@@ -372,14 +368,14 @@ def test_none_of_several_files_is_empty(tmp_path):
 )
 def test_parameters_of_every_ros_node_are_known(tmp_path, values):
     # gearkin reads the same file as the node.
-    assert load(config(tmp_path, ring_teeth=90, **values))['ring_teeth'] == 90
+    assert load(config(tmp_path, ring_teeth=90, **values)).ring_teeth == 90
 
 
 @pytest.mark.parametrize('number', ['1.5e-3', '15e-4', '.0015', '+0.0015', '1.5E-3'])
 def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
     # YAML 1.1 as PyYAML reads it sees a text in 15e-4; rcl sees a number.
     text = f'/**:\n  ros__parameters:\n    eccentricity: {number}\n'
-    assert load(write(tmp_path, text))['eccentricity'] == 0.0015
+    assert load(write(tmp_path, text)).eccentricity == 0.0015
 
 
 def test_missing_file_is_named(tmp_path):
@@ -425,15 +421,15 @@ def test_yaml_without_ros_parameters_is_refused(tmp_path, text):
 
 
 def test_loaded_values_make_the_mechanism(tmp_path):
-    mechanism = Mechanism.from_mapping(load(config(tmp_path, ring_teeth=61, satellite_teeth=58)))
+    mechanism = load(config(tmp_path, ring_teeth=61, satellite_teeth=58)).mechanism
     assert (mechanism.gear_ratio.numerator, mechanism.gear_ratio.denominator) == (-58, 3)
 
 
 def test_relative_path_of_a_calibration_is_relative_to_the_file_that_names_it(tmp_path):
-    assert load(config(tmp_path, calibration='mine.yaml'))['calibration'] == str(
+    assert load(config(tmp_path, calibration='mine.yaml')).calibration == str(
         tmp_path / 'mine.yaml'
     )
-    assert load(config(tmp_path, calibration='/there/mine.yaml'))['calibration'] == (
+    assert load(config(tmp_path, calibration='/there/mine.yaml')).calibration == (
         '/there/mine.yaml'
     )
 

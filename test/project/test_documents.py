@@ -11,7 +11,7 @@ import yaml
 from gear_recordings import record_both_encoders
 
 from gear_kinematics.commands.cli import COMMANDS, main, make_parser
-from gear_kinematics.parameters.node_parameters import BRANCH_PARAMETERS, PARAMETERS, defaults
+from gear_kinematics.parameters import BRANCH_PARAMETERS, PARAMETERS, default_value
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text('utf-8')
@@ -103,4 +103,4 @@ def test_every_parameter_is_in_the_reference_with_its_default():
         name: yaml.safe_load(documented[name].removesuffix(' (1°)').strip('`'))
         for name in PARAMETERS
     }
-    assert shown == {name: defaults()[name] for name in PARAMETERS}
+    assert shown == {name: default_value(name) for name in PARAMETERS}

@@ -132,10 +132,19 @@ ROOMS = {
     'shape': ('kinematics',),
     'parameters': ('kinematics', 'wire'),
     'correction': ('kinematics', 'parameters', 'wire'),
-    'state': ('correction', 'kinematics', 'shape', 'wire'),
-    'bag': ('correction', 'kinematics', 'state', 'wire'),
+    'state': ('correction', 'kinematics', 'parameters', 'shape', 'wire'),
+    'bag': ('correction', 'kinematics', 'parameters', 'state', 'wire'),
     'report': (),
-    'validation': ('bag', 'correction', 'kinematics', 'report', 'shape', 'state', 'wire'),
+    'validation': (
+        'bag',
+        'correction',
+        'kinematics',
+        'parameters',
+        'report',
+        'shape',
+        'state',
+        'wire',
+    ),
     'measurement': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
     'plotting': ('bag', 'correction', 'kinematics', 'report', 'shape'),
     'ros': (
@@ -182,7 +191,7 @@ MEASUREMENT = {
 }
 """Rooms within `measurement`, and what of its modules they import."""
 TENANTS = {
-    'rclpy': ['ros'],
+    'rclpy': ['ros', 'watch'],
     'rosbags': ['bag'],
     'matplotlib': ['plotting', 'report'],
     'plotly': ['report'],
@@ -195,7 +204,7 @@ TENANTS = {
 
 def test_a_listing_of_the_package_shows_the_rooms():
     names = {path.name for path in PACKAGE.iterdir()} - {'__pycache__'}
-    assert names == {*ROOMS, '__init__.py', '__main__.py', 'py.typed'}
+    assert names == {*ROOMS, '__init__.py', '__main__.py', 'py.typed', 'share.py'}
     assert len(names) <= 18
 
 

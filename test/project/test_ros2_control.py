@@ -14,11 +14,10 @@ from rclpy.qos import QoSCompatibility, QoSProfile, qos_check_compatible, qos_pr
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.kinematics import split_turns
-from gear_kinematics.parameters.node_parameters import defaults
+from gear_kinematics.kinematics import RotorSample, split_turns
+from gear_kinematics.parameters import default_value
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.wire.topics import CORRECTED_STATE, JOINT_STATE, OUTPUT_STATE, TOPICS
 
@@ -26,7 +25,7 @@ pytestmark = pytest.mark.live  # imports ROS
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / 'config/ros2_control'
-NAMES = {name: defaults()[name] for name in ('output_joint', 'frame_prefix')}
+NAMES = {name: default_value(name) for name in ('output_joint', 'frame_prefix')}
 PLUGIN = 'joint_state_topic_hardware_interface/JointStateTopicSystem'
 HARDWARE_PARAMETERS = {
     'joint_commands_topic', 'joint_states_topic', 'trigger_joint_command_threshold',

@@ -26,7 +26,7 @@ from rosbags.typesys import Stores, get_typestore
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import cli, output
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import ConfigError, NodeParameters
 from gear_kinematics.ros.live import ReplayError
 from gear_kinematics.ros.replay import play
 from gear_kinematics.wire.topics import TOPICS
@@ -186,8 +186,8 @@ def bag_with_metadata(path: Path, text: str) -> Path:
 def test_yaml_makes_no_objects(tmp_path):
     trace = tmp_path / 'trace'
     call = f"!!python/object/apply:os.mkdir ['{trace}']"
-    with pytest.raises(parameters.ConfigError, match='could not determine a constructor'):
-        parameters.load(node_file(tmp_path / 'config.yaml', f'rotor_joint: {call}'))
+    with pytest.raises(ConfigError, match='could not determine a constructor'):
+        NodeParameters.load(node_file(tmp_path / 'config.yaml', f'rotor_joint: {call}'))
     with pytest.raises(BagError, match='could not determine a constructor'):
         Bag(bag_with_metadata(tmp_path / 'bag', f'more: {call}'))
     assert not trace.exists()
@@ -205,8 +205,8 @@ def test_yaml_makes_no_objects(tmp_path):
 )
 def test_configs_cannot_say_endlessly_much(text, cause, tmp_path):
     path = node_file(tmp_path / 'config.yaml', text)
-    with pytest.raises(parameters.ConfigError, match=cause) as caught:
-        parameters.load(path)
+    with pytest.raises(ConfigError, match=cause) as caught:
+        NodeParameters.load(path)
     assert str(caught.value).startswith(f'{path}: not YAML: ')
 
 

@@ -4,8 +4,7 @@ import re
 
 import pytest
 
-from gear_kinematics.parameters.files import ConfigError
-from gear_kinematics.parameters.node_parameters import default_config, load
+from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
 from gear_kinematics.ros.launch_arguments import node_arguments
 
 NODES = {
@@ -37,7 +36,7 @@ def arguments(config, namespace='', frame_prefix='', **above):
 def test_defaults_start_the_default_actuator():
     config, parameters = arguments(default_config())
     assert config == default_config()
-    assert parameters == load(default_config())
+    assert parameters == NodeParameters.load()
 
 
 @pytest.mark.parametrize(
@@ -61,19 +60,19 @@ def test_defaults_start_the_default_actuator():
 def test_parameters_are_those_of_the_node_in_its_namespace(config, above, namespace, node):
     ros_namespace = {} if above is None else {'ros_namespace': above}
     parameters = arguments(config, namespace, **ros_namespace).parameters
-    assert parameters['ring_teeth'] == NODES[node]
+    assert parameters.ring_teeth == NODES[node]
 
 
 def test_given_prefix_replaces_that_of_the_file(config):
-    assert arguments(config, 'left').parameters['frame_prefix'] == 'own_'
-    assert arguments(config, 'left', 'my_').parameters['frame_prefix'] == 'my_'
+    assert arguments(config, 'left').parameters.frame_prefix == 'own_'
+    assert arguments(config, 'left', 'my_').parameters.frame_prefix == 'my_'
 
 
 def test_home_directory_may_be_written_as_in_a_shell(config, tmp_path, monkeypatch):
     monkeypatch.setenv('HOME', str(tmp_path))
     found = arguments('~/nodes.yaml', 'left')
     assert str(found.config) == config
-    assert found.parameters['ring_teeth'] == NODES['/left/gear_state_publisher']
+    assert found.parameters.ring_teeth == NODES['/left/gear_state_publisher']
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.kinematics import MechanismError
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import ConfigError, NodeParameters
 from gear_kinematics.ros.node import GearStatePublisher
 from gear_kinematics.ros.process import make_executor
 from gear_kinematics.state.output_encoder import OutputEncoder
@@ -232,12 +232,10 @@ def test_gearkin_reads_of_a_parameter_file_what_the_node_does(
     node.destroy_node()
     assert taken == (expected or (80, 0.0))
     if expected:
-        assert tuple(parameters.load(path, name)[parameter] for parameter in names) == expected
+        assert tuple(NodeParameters.load(path, name)[parameter] for parameter in names) == expected
     else:
-        with pytest.raises(
-            parameters.ConfigError, match=f'no parameters of {name} in it, only of'
-        ):
-            parameters.load(path, name)
+        with pytest.raises(ConfigError, match=f'no parameters of {name} in it, only of'):
+            NodeParameters.load(path, name)
 
 
 @pytest.mark.parametrize('name', ['left//gear', '/left*', '/left.gear', '/1st', '/'])
@@ -247,8 +245,8 @@ def test_name_of_no_node_is_refused_by_both_readers_of_a_file(context, tmp_path,
     arguments = ['--ros-args', '--params-file', str(path)]
     with pytest.raises(rclpy_implementation.RCLInvalidROSArgsError):
         GearStatePublisher(context=context, cli_args=arguments)
-    with pytest.raises(parameters.ConfigError, match='is not a valid node name'):
-        parameters.load(path)
+    with pytest.raises(ConfigError, match='is not a valid node name'):
+        NodeParameters.load(path)
 
 
 def test_every_fault_of_the_mechanism_is_told(context):

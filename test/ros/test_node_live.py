@@ -23,7 +23,7 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from wire import micro_ros_bytes
 
-from gear_kinematics.parameters.node_parameters import default_config
+from gear_kinematics.parameters import default_config
 from gear_kinematics.ros.live import running_node
 
 pytestmark = pytest.mark.live

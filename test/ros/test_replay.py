@@ -9,6 +9,7 @@ import sys
 import time
 from collections import Counter
 from contextlib import contextmanager
+from dataclasses import replace
 from itertools import count, islice, pairwise
 from pathlib import Path
 
@@ -22,7 +23,7 @@ from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.schedule import due_messages
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros import live
 from gear_kinematics.ros.live import ReplayError, live_messages, replay_node
 from gear_kinematics.ros.replay import play
@@ -354,8 +355,8 @@ def test_messages_before_damage_are_played(listener):
 # Into a live node.
 
 
-def config(name: str = 'actuator', **changed) -> dict:
-    return parameters.load(CONFIGS / f'{name}.yaml') | changed
+def config(name: str = 'actuator', **changed) -> NodeParameters:
+    return replace(NodeParameters.load(CONFIGS / f'{name}.yaml'), **changed)
 
 
 def by_topic(messages) -> dict[str, list[bytes]]:

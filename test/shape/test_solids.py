@@ -12,13 +12,12 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from shapely import affinity
 
-from gear_kinematics.kinematics import Branch, Mechanism, split_turns
+from gear_kinematics.kinematics import Branch, Mechanism, RotorSample, split_turns
 from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.shape import teeth
 from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.shape.solids import solids, to_stl
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.wire.topics import JOINT_STATES
 

@@ -14,9 +14,8 @@ from properties import mechanisms
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.kinematics import Branch, Mechanism, split_turns
+from gear_kinematics.kinematics import Branch, Mechanism, RotorSample, split_turns
 from gear_kinematics.shape.urdf import joint_names, urdf
-from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.state_messages import StateMessages
 
 MODULE = 0.0005

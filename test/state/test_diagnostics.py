@@ -9,28 +9,20 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from live import SECOND, rotor_bytes
 
 from gear_kinematics.kinematics import solve
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state import diagnostics
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN, GraphFaults, InputMonitor
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
-SETTINGS = InputSettings(
-    rotor_joint='rotor',
-    rotor_direction=1,
-    rotor_zero=0.0,
-    rotor_encoder='multi_turn',
-    max_rotor_speed=650.0,
-    max_rotor_acceleration=6500.0,
-)
-TIMEOUT = 1.0
+SETTINGS = NodeParameters.load()
 START = 1000.0
 
 
 class Bench:
-    """An input, its monitor and a mechanism, with a clock that the test sets."""
+    """An input and its monitor, with a clock that the test sets."""
 
-    def __init__(self, mechanism, settings=SETTINGS) -> None:
-        self.mechanism = mechanism
+    def __init__(self, settings=SETTINGS) -> None:
         self.input = RotorInput(settings)
         self.monitor = InputMonitor(started=START)
 
@@ -44,7 +36,7 @@ class Bench:
             self.monitor.published += 1
 
     def report(self, at):
-        return self.monitor.report(self.input, self.mechanism, TIMEOUT, at)
+        return self.monitor.report(self.input, at)
 
 
 def good(stamp=1, position=1.0) -> bytes:
@@ -60,8 +52,8 @@ NO_JOINT = rotor_bytes(1, ['wheel'], [1.0])
 
 
 @pytest.fixture
-def bench(actuator) -> Bench:
-    return Bench(actuator)
+def bench() -> Bench:
+    return Bench()
 
 
 def test_levels_are_those_of_diagnostic_status():
@@ -143,8 +135,8 @@ def test_rejected_input_is_no_silence(bench):
     assert 'no input' not in report.message
 
 
-def test_unreferenced_encoder_is_an_error_until_home(actuator):
-    bench = Bench(actuator, replace(SETTINGS, rotor_encoder='single_turn'))
+def test_unreferenced_encoder_is_an_error_until_home():
+    bench = Bench(replace(SETTINGS, rotor_encoder='single_turn'))
     bench.feed(START + 0.5, good())
     report = bench.report(START + 1.0)
     assert report.level == ERROR
@@ -236,7 +228,9 @@ def test_two_reports_at_the_same_time_do_not_divide_by_zero(bench):
 
 @pytest.mark.parametrize('position', [0.0, 1.0, -3e5, 1e9, 1e16])
 def test_residual_is_that_of_a_closed_loop(mechanism, position):
-    bench = Bench(mechanism)
+    ring, satellite, size = mechanism.ring_teeth, mechanism.satellite_teeth, mechanism.eccentricity
+    teeth = replace(SETTINGS, ring_teeth=ring, satellite_teeth=satellite, eccentricity=size)
+    bench = Bench(replace(teeth, branches=mechanism.branches))
     assert bench.report(START + 0.5).values['loop-closure residual (m)'] == 'none'
     bench.feed(START + 0.5, good(1, position))
     residual = float(bench.report(START + 1.0).values['loop-closure residual (m)'])

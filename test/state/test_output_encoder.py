@@ -7,25 +7,25 @@ import numpy as np
 import pytest
 from live import SECOND, START, rotor_bytes
 
-from gear_kinematics.kinematics import GearRatio, RotorPosition
+from gear_kinematics.kinematics import RotorPosition, RotorSample
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor
-from gear_kinematics.state.output_encoder import EncoderSettings, OutputEncoder
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 MS = SECOND // 1000
-ROTOR = InputSettings('rotor', 1, 0.0, 'multi_turn', 650.0, 6500.0)
-SETTINGS = EncoderSettings('', 1, 0.0, 10.0, 0.1, 0.01)
-TIMEOUT, LIMIT = 1.0, 0.003
+SETTINGS = replace(NodeParameters.load(), transmission_error_travel=0.01)
 NOW = 50.0
 
 
 class Bench:
     """Both encoders and the monitor."""
 
-    def __init__(self, actuator, settings=SETTINGS) -> None:
-        self.rotor = RotorInput(ROTOR)
-        self.encoder = OutputEncoder(actuator, settings)
+    def __init__(self, settings=SETTINGS) -> None:
+        self.settings = settings
+        self.rotor = RotorInput(settings)
+        self.encoder = OutputEncoder(settings)
         self.monitor = EncoderMonitor()
 
     def turn(self, stamp, position):
@@ -37,17 +37,17 @@ class Bench:
         data = rotor_bytes(stamp, [joint], [position])
         return self.encoder.accept(data, lambda: now)
 
-    def report(self, at=NOW, limit=LIMIT):
-        return self.monitor.report(self.encoder, limit, TIMEOUT, at)
+    def report(self, at=NOW, **changes):
+        return self.monitor.report(self.encoder, replace(self.settings, **changes), at)
 
 
 @pytest.fixture
-def bench(actuator) -> Bench:
-    return Bench(actuator)
+def bench() -> Bench:
+    return Bench()
 
 
 def test_error_of_a_gear_with_only_a_ratio_does_not_drift():
-    bench = Bench(GearRatio(1457, 26))
+    bench = Bench(replace(SETTINGS, gear_ratio='1457/26'))
     whole = 1457 * 10**6  # turns of the rotor, in which the output makes whole turns too
     bench.encoder.follow(RotorSample(START, RotorPosition(whole, 0.0), None, None))
     bench.encoder.follow(RotorSample(START + 2 * MS, RotorPosition(whole, 0.2), None, None))
@@ -56,9 +56,9 @@ def test_error_of_a_gear_with_only_a_ratio_does_not_drift():
 
 
 @pytest.mark.parametrize(('direction', 'zero'), [(1, 0.0), (-1, 0.0), (1, 2.5), (-1, -40.0)])
-def test_error_is_the_measured_minus_the_ideal_angle(actuator, direction, zero):
+def test_error_is_the_measured_minus_the_ideal_angle(direction, zero):
     settings = replace(SETTINGS, output_encoder_direction=direction, output_encoder_zero=zero)
-    bench = Bench(actuator, settings)
+    bench = Bench(settings)
     found, put_in = [], []
     bench.measure(START - MS, 0.0)  # an encoder, but no rotor yet
     for k in range(2000):
@@ -92,8 +92,8 @@ def test_nothing_is_compared_across_a_gap(bench):
     assert bench.encoder.comparison.unmatched['gap of the ideal angle'] == 1
 
 
-def test_joint_is_looked_up_by_its_name(actuator):
-    bench = Bench(actuator, replace(SETTINGS, output_encoder_joint='shaft'))
+def test_joint_is_looked_up_by_its_name():
+    bench = Bench(replace(SETTINGS, output_encoder_joint='shaft'))
     with pytest.raises(RejectedInputError, match='joint missing'):
         bench.measure(START, 0.0, joint='wheel')
     bench.turn(START, 0.0)

@@ -12,17 +12,11 @@ from hypothesis import strategies as st
 from live import SECOND, rotor_bytes
 from wire import micro_ros_bytes
 
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
-SETTINGS = InputSettings(
-    rotor_joint='rotor',
-    rotor_direction=1,
-    rotor_zero=0.0,
-    rotor_encoder='multi_turn',
-    max_rotor_speed=650.0,
-    max_rotor_acceleration=6500.0,
-)
+SETTINGS = NodeParameters.load()
 SINGLE_TURN = replace(SETTINGS, rotor_encoder='single_turn')
 NOW = 77 * SECOND + 7
 START = 100 * SECOND
@@ -290,9 +284,9 @@ def test_rotor_angle_is_exact(position, zero, direction):
 
 def test_changed_settings_hold_for_the_next_message(rotor_input):
     accept(rotor_input, START, 1.0)
-    rotor_input.settings = replace(SETTINGS, rotor_direction=-1, rotor_zero=0.25)
+    rotor_input.parameters = replace(SETTINGS, rotor_direction=-1, rotor_zero=0.25)
     assert accept(rotor_input, START + 1, 1.0).position == (0, -0.75)
-    rotor_input.settings = replace(SETTINGS, rotor_joint='other')
+    rotor_input.parameters = replace(SETTINGS, rotor_joint='other')
     with pytest.raises(RejectedInputError, match=r'^joint missing$'):
         accept(rotor_input, START + 2, 1.0)
 
@@ -310,7 +304,7 @@ def test_home_gives_the_zero_for_the_declared_angle(settings, direction, declare
     rotor_input = RotorInput(settings)
     accept(rotor_input, START, 2.25)
     zero = rotor_input.home(declared)
-    rotor_input.settings = replace(settings, rotor_zero=zero)
+    rotor_input.parameters = replace(settings, rotor_zero=zero)
     assert rotor_input.referenced
     sample = accept(rotor_input, START + SECOND // 1000, 2.25)
     assert angle_error(sample, oracle.mp.mpf(declared)) < 1e-13
@@ -324,7 +318,7 @@ def test_home_after_many_turns_of_a_single_turn_encoder():
         stamp += step
         accept(rotor_input, stamp, math.remainder(1.0 + number * QUARTER, TURN))
     zero = rotor_input.home(5.0)
-    rotor_input.settings = replace(SINGLE_TURN, rotor_zero=zero)
+    rotor_input.parameters = replace(SINGLE_TURN, rotor_zero=zero)
     assert angle_error(accept(rotor_input, stamp + step, 1.0), oracle.mp.mpf(5)) < 1e-13
     onward = accept(rotor_input, stamp + 2 * step, 1.0 + QUARTER)
     assert angle_error(onward, 5 + oracle.mp.pi / 2) < 1e-13
@@ -415,25 +409,25 @@ def test_rejected_messages_do_not_turn_the_rotor():
 
 def test_change_of_encoder_resets_the_state(rotor_input):
     accept(rotor_input, START, 20.0)
-    rotor_input.settings = SINGLE_TURN
+    rotor_input.parameters = SINGLE_TURN
     assert not rotor_input.referenced
     with pytest.raises(RuntimeError):
         rotor_input.home(0.0)
-    rotor_input.settings = SETTINGS
+    rotor_input.parameters = SETTINGS
     assert rotor_input.referenced
 
 
 def test_other_changes_keep_the_turns():
     rotor_input = homed(3.0)
     accept(rotor_input, START + 1_000_000, -3.0)
-    rotor_input.settings = replace(SINGLE_TURN, rotor_zero=0.25, max_rotor_speed=1.0)
+    rotor_input.parameters = replace(SINGLE_TURN, rotor_zero=0.25, max_rotor_speed=1.0)
     assert rotor_input.referenced
     assert accept(rotor_input, START + 2_000_000, -3.0).position == (1, -3.25)
 
 
 def test_changed_maximum_speed_holds_from_now_on():
     rotor_input = homed(1.0)
-    rotor_input.settings = replace(SINGLE_TURN, max_rotor_speed=1.0)
+    rotor_input.parameters = replace(SINGLE_TURN, max_rotor_speed=1.0)
     accept(rotor_input, START + 3 * SECOND, 1.0)
     assert rotor_input.referenced  # 3 rad at most
     accept(rotor_input, START + 7 * SECOND, 1.0)

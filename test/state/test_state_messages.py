@@ -1,6 +1,7 @@
 """The published messages against the motion at 50 digits, and their layout."""
 
 import math
+from dataclasses import replace
 from itertools import combinations
 from operator import itemgetter
 
@@ -18,17 +19,19 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import (
     Branch,
-    GearRatio,
     Mechanism,
     RotorPosition,
+    RotorSample,
     solve,
     split_turns,
 )
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput, RotorSample, RotorSamples
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput, RotorSamples
 from gear_kinematics.state.state_messages import StateMessages, state_messages
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
+PARAMETERS = replace(NodeParameters.load(), rotor_joint='')
 TYPES = {
     'output_state': JointState,
     'body_poses': PoseArray,
@@ -236,7 +239,7 @@ rates = st.none() | st.floats(-1e300, 1e300)
 @example(Mechanism(2, 1, 1.0, (Branch('a'),)), [(1, 0.0, None, None), (1, -0.0, None, None)], -1)
 def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction):
     """To the last bit, from samples of `RotorInput`, which have NaN instead of None."""
-    settings = InputSettings('', direction, 0.0, 'multi_turn', 650.0, 6500.0)
+    settings = replace(PARAMETERS, rotor_direction=direction)
     messages = [
         rotor_bytes(stamp, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both))
         for stamp, angle, *both in sorted(inputs, key=itemgetter(0))
@@ -252,7 +255,7 @@ def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction)
 @pytest.mark.parametrize(('velocity', 'effort'), [(3.0, -0.5), (None, 0.25), (2.0, None)])
 def test_of_a_gear_with_only_a_ratio_there_is_the_output_alone(velocity, effort):
     """4 × 58 turns and an angle: the output makes 12 turns backwards, and 3/58 of the angle."""
-    messages = state_messages(GearRatio(-58, 3), **NAMES)
+    messages = state_messages(replace(PARAMETERS, gear_ratio='-58/3'))
     sample = RotorSample(7, RotorPosition(4 * 58, 0.5), velocity, effort)
     ((topic, data),) = messages.encode(sample)
     assert topic == 'output_state'
@@ -272,10 +275,10 @@ def test_of_a_gear_with_only_a_ratio_there_is_the_output_alone(velocity, effort)
 
 
 @pytest.mark.parametrize('name', ['', 'a\nb'])
-def test_name_that_is_no_joint_is_refused_for_every_gear(actuator, name):
-    for gear in (actuator, GearRatio(5)):
-        with pytest.raises(ValueError, match='output_joint'):
-            state_messages(gear, output_joint=name, frame_prefix='')
+@pytest.mark.parametrize('ratio', ['', '5'])
+def test_name_that_is_no_joint_is_refused_for_every_gear(name, ratio):
+    with pytest.raises(ValueError, match='output_joint'):
+        state_messages(replace(PARAMETERS, output_joint=name, gear_ratio=ratio))
 
 
 CORRECTIONS = st.tuples(
@@ -325,8 +328,7 @@ def test_corrections_of_many_samples_are_those_of_each(actuator, inputs):
         )
         for k, (angle, *both, _) in enumerate(inputs)
     ]
-    settings = InputSettings('', 1, 0.0, 'multi_turn', 650.0, 6500.0)
-    one_by_one, at_once = RotorInput(settings), RotorInput(settings)
+    one_by_one, at_once = RotorInput(PARAMETERS), RotorInput(PARAMETERS)
     states = StateMessages(actuator, **NAMES)
     corrections = [Correction(*correction) for *_, correction in inputs]
     expected = [

@@ -9,10 +9,9 @@ from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import Marker, MarkerArray
 
-from gear_kinematics.kinematics import Mechanism, split_turns
+from gear_kinematics.kinematics import Mechanism, RotorSample, split_turns
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.shape.urdf import urdf
-from gear_kinematics.state.rotor_input import RotorSample
 from gear_kinematics.state.state_messages import StateMessages
 from gear_kinematics.wire.topics import JOINT_STATES
 

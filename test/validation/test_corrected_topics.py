@@ -14,11 +14,10 @@ from shipped_bags import BAGS, JOINT_STATE, TYPES, read_bag, write_bag
 from gear_kinematics.bag import Message
 from gear_kinematics.correction.calibration_file import Order, Stop
 from gear_kinematics.correction.corrector import Corrector
-from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
-from gear_kinematics.state.state_messages import StateMessages
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.validation.fleet import Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.validator import Validator
@@ -37,9 +36,8 @@ WITHIN_TURN = replace(
 
 def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
     """Add what the node publishes, one message after the other."""
-    names = {name: config[name] for name in ('output_joint', 'frame_prefix')}
-    states = StateMessages(Mechanism.from_mapping(config), **names)
-    rotor, corrector = RotorInput(InputSettings.from_mapping(config)), Corrector(made)
+    states = state_messages(config)
+    rotor, corrector = RotorInput(config), Corrector(made)
     added = []
     for topic, received, data in messages:
         added.append((topic, received, data))
@@ -49,7 +47,7 @@ def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
             sample = rotor.accept(data, lambda received=received: received)
         except RejectedInputError:
             continue
-        correction = corrector.correct(sample, stretch=rotor.stretch, referenced=referenced)
+        correction = corrector.correct(sample, segment=rotor.segment, referenced=referenced)
         added += (
             (NAMES[name], received, message)
             for name, message in states.encode_corrected(sample, correction)
@@ -193,11 +191,10 @@ def swings(config) -> list[Message]:
     return answered(messages, config)
 
 
-def answered(rotor_states, config, **names) -> list[Message]:
+def answered(rotor_states, config, **changes) -> list[Message]:
     """Add the ideal outputs."""
-    named = {name: config[name] for name in ('output_joint', 'frame_prefix')} | names
-    states = StateMessages(Mechanism.from_mapping(config), **named)
-    rotor, messages = RotorInput(InputSettings.from_mapping(config)), []
+    states = state_messages(replace(config, **changes))
+    rotor, messages = RotorInput(config), []
     for message in rotor_states:
         sample = rotor.accept(message[2], lambda: 0)
         messages += [message]
@@ -242,13 +239,13 @@ def test_missing_velocities_are_those_of_the_travel_wherever_the_recording_begin
 def test_prefix_is_that_of_the_other_outputs(config):
     rotor_states = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
     messages = answered(rotor_states, config, frame_prefix='left_')
-    messages = corrected(messages, config | {'frame_prefix': 'left_'})
+    messages = corrected(messages, replace(config, frame_prefix='left_'))
     assert validate(messages, config).verdict == Verdict.PASS
 
 
 def test_zero_of_the_rotor_moves_the_orders_with_the_ideal_output(config):
     rotor_states = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
-    homed = config | {'rotor_zero': 0.5}
+    homed = replace(config, rotor_zero=0.5)
     messages = corrected(answered(rotor_states, homed), homed)
     assert validate(messages, config).verdict == Verdict.FAIL
     report = validate(messages, config, allow_offset=True)
@@ -257,7 +254,7 @@ def test_zero_of_the_rotor_moves_the_orders_with_the_ideal_output(config):
 
 def test_gear_of_which_only_the_ratio_is_known_is_corrected_too(config, servo):
     messages = [message for message in servo if message[0] != '/body_poses']
-    other = config | {'gear_ratio': '-19'}
+    other = replace(config, gear_ratio='-19')
     report = validate(messages, other)
     assert report.verdict == Verdict.PASS, report.findings
     assert [topic.compared for topic in report.topics] == [3000, 3000, 3000]
@@ -274,7 +271,7 @@ def test_messages_without_a_calibration_are_named(config, servo):
 
 
 def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
-    config = parameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
+    config = NodeParameters.load(BAGS / 'single_turn_encoder' / 'actuator.yaml')
     bag = read_bag(BAGS / 'single_turn_encoder')
     report = validate(corrected(bag, config, WITHIN_TURN), config, WITHIN_TURN)
     assert report.verdict == Verdict.PASS, report.findings

@@ -26,7 +26,7 @@ from shipped_bags import ROTOR, TYPES, write_bag
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.fleet import on_this_machine
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.fleet import WORK, Task, validate_bag
 from gear_kinematics.validation.output_topics import Tolerances
@@ -48,8 +48,8 @@ COMPARED = {
 def task(path: Path, **options) -> Task:
     folder = BAGS / path.name
     beside = folder / 'actuator.yaml'
-    config = beside if beside.exists() else parameters.default_config()
-    return Task(path, parameters.load(config), str(config), Tolerances(), **options)
+    config = beside if beside.exists() else default_config()
+    return Task(path, NodeParameters.load(config), str(config), Tolerances(), **options)
 
 
 # One bag.
@@ -62,7 +62,7 @@ def test_a_shipped_bag_is_reported():
     )
     assert report.verdict == Verdict.PASS
     assert report.bag == str(BAGS / 'driver_faults')
-    assert report.config == str(parameters.default_config())
+    assert report.config == str(default_config())
     assert report.error is None
     assert [topic.compared for topic in report.topics] == [1265, 1265]
     assert told[-1][0] == report.messages == 1314 + 2 * 1265

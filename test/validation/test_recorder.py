@@ -11,7 +11,7 @@ from replaying import SECOND
 from rosbag2_recorder import Message, record
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation import wording
 from gear_kinematics.validation.fleet import Task, validate_bag
@@ -239,7 +239,7 @@ def test_a_driver_slower_than_a_hertz_may_be_recorded_too(traffic, config):
 @pytest.fixture(scope='module')
 def single_turn() -> tuple[dict, list[Message]]:
     messages = [Message(*message) for message in read_bag(BAGS / 'single_turn_encoder')]
-    return parameters.load(CONFIGS / 'single_turn.yaml'), messages
+    return NodeParameters.load(CONFIGS / 'single_turn.yaml'), messages
 
 
 def output_turns(message: Message) -> float:

@@ -4,6 +4,7 @@ import math
 import struct
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES
 from gear_kinematics.bag import Message
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import matrix_method
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.output_topics import Tolerances
@@ -89,7 +90,7 @@ def set_stamp(message, stamp: int) -> None:
 @pytest.mark.parametrize('tolerance', [1e-9, 1e-12])
 def test_shipped_recordings_pass(name, single_turn, messages, compared, tolerance, config):
     if single_turn:
-        config = parameters.load(CONFIGS / 'single_turn.yaml')
+        config = NodeParameters.load(CONFIGS / 'single_turn.yaml')
     tolerances = Tolerances(tolerance, tolerance * 0.0011)
     for solver in ({}, {'solver': matrix_method.solve}):
         report = validate(read_bag(BAGS / name), config, tolerances=tolerances, **solver)
@@ -220,7 +221,7 @@ def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topi
 @pytest.mark.parametrize('value', [1e17, 1e100])
 def test_garbage_in_the_first_output_gives_no_turns(value):
     """The turns of the single-turn encoder are then taken from the next output."""
-    config = parameters.load(CONFIGS / 'single_turn.yaml')
+    config = NodeParameters.load(CONFIGS / 'single_turn.yaml')
     messages = read_bag(BAGS / 'single_turn_encoder')
     index = index_of(messages, OUTPUT, 1)
     topic, received, data = messages[index]
@@ -322,7 +323,7 @@ def test_a_flipped_sign_is_named(recorded, config):
 
 
 def test_another_direction_of_the_encoder_is_named(recorded, config):
-    report = validate(recorded, {**config, 'rotor_direction': -1})
+    report = validate(recorded, replace(config, rotor_direction=-1))
     assert any('sign is flipped' in finding for finding in report.findings)
 
 
@@ -335,7 +336,7 @@ def test_another_direction_of_the_encoder_is_named(recorded, config):
     ],
 )
 def test_another_tooth_pair_is_named(recorded, config, assumed, named):
-    report = validate(recorded, {**config, **assumed})
+    report = validate(recorded, replace(config, **assumed))
     assert report.verdict == Verdict.FAIL
     (finding,) = (f for f in report.findings if 'recorded ratio' in f)
     assert all(words in finding for words in named)
@@ -366,7 +367,7 @@ def test_a_constant_offset_is_named_and_accepted_on_request(recorded, config):
 
 def test_the_offset_that_homing_leaves_is_accepted_with_its_poses(recorded, config):
     """A node that was homed before the recording has another zero than the configuration."""
-    homed = {**config, 'rotor_zero': 0.75}
+    homed = replace(config, rotor_zero=0.75)
     report = validate(recorded, homed)
     assert any('constant' in f for f in report.findings)
     assert not topic_of(report, POSES).passed
@@ -432,7 +433,7 @@ def test_another_joint_name_is_named(recorded, config):
 
 
 def test_a_prefix_of_the_configuration_is_expected(recorded, config):
-    report = validate(recorded, {**config, 'frame_prefix': 'left_'})
+    report = validate(recorded, replace(config, frame_prefix='left_'))
     assert report.verdict == Verdict.FAIL
     assert all(topic.faults for topic in report.topics)
 
@@ -452,7 +453,7 @@ def test_a_prefix_that_the_outputs_agree_on_is_taken_from_them(recorded, config)
     report = validate(with_frames, config)
     assert report.verdict == Verdict.FAIL
     assert "no joint 'left_output_shaft'" in topic_of(report, OUTPUT).faults[0]
-    assert validate(with_both, {**config, 'frame_prefix': 'right_'}).verdict == Verdict.FAIL
+    assert validate(with_both, replace(config, frame_prefix='right_')).verdict == Verdict.FAIL
 
 
 def test_poses_that_lack_a_body_are_malformed(recorded, config):
@@ -557,7 +558,7 @@ def test_missing_messages_are_counted_exactly_in_long_recordings(recorded, confi
 
 
 def test_gaps_that_could_hide_a_turn_are_named(config):
-    single = {**config, 'rotor_encoder': 'single_turn', 'max_rotor_speed': 2000.0}
+    single = replace(config, rotor_encoder='single_turn', max_rotor_speed=2000.0)
     report = validate(read_bag(BAGS / 'driver_faults'), single)
     assert report.rotor.jumps > 0
     assert not report.rotor.referenced
@@ -565,7 +566,7 @@ def test_gaps_that_could_hide_a_turn_are_named(config):
 
 
 def test_overspeed_is_named(recorded, config):
-    report = validate(recorded, {**config, 'max_rotor_speed': 10.0})
+    report = validate(recorded, replace(config, max_rotor_speed=10.0))
     assert report.verdict == Verdict.PASS
     assert report.rotor.overspeed > 0
     assert any('max_rotor_speed' in finding for finding in report.findings)
@@ -825,7 +826,7 @@ def test_progress_is_reported(recorded, config):
 def test_of_a_gear_with_only_a_ratio_the_output_alone_is_validated(name):
     """The node recorded these outputs of a mechanism with this ratio."""
     file = 'single_turn' if name == 'single_turn_encoder' else 'actuator'
-    config = parameters.load(CONFIGS / f'{file}.yaml') | {'gear_ratio': '-19'}
+    config = replace(NodeParameters.load(CONFIGS / f'{file}.yaml'), gear_ratio='-19')
     report = validate(read_bag(BAGS / name), config, tolerances=Tolerances(1e-12))
     assert report.verdict == Verdict.PASS
     assert [topic.topic for topic in report.topics] == [OUTPUT]
@@ -834,7 +835,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_validated(name):
 
 
 def test_another_ratio_is_named(recorded, config):
-    report = validate(recorded, config | {'gear_ratio': '-58/3'})
+    report = validate(recorded, replace(config, gear_ratio='-58/3'))
     assert report.verdict == Verdict.FAIL
     (finding,) = (f for f in report.findings if 'recorded ratio' in f)
     assert finding.startswith('the recorded ratio is -19 ± ')
@@ -842,7 +843,7 @@ def test_another_ratio_is_named(recorded, config):
 
 
 def test_offset_of_the_only_output_is_accepted(recorded, config):
-    config = config | {'gear_ratio': '-19'}
+    config = replace(config, gear_ratio='-19')
     changed = change_all(recorded, OUTPUT, add('position', 0.125))
     assert validate(changed, config).verdict == Verdict.FAIL
     report = validate(changed, config, allow_offset=True)
@@ -852,6 +853,6 @@ def test_offset_of_the_only_output_is_accepted(recorded, config):
 
 def test_missing_outputs_of_a_gear_with_only_a_ratio_are_counted(recorded, config):
     left = recorded[: index_of(recorded, OUTPUT)] + recorded[index_of(recorded, OUTPUT) + 1 :]
-    report = validate(left, config | {'gear_ratio': '-19'}, strict=True)
+    report = validate(left, replace(config, gear_ratio='-19'), strict=True)
     assert report.verdict == Verdict.FAIL
     assert [topic.missing for topic in report.topics] == [1]

@@ -3,13 +3,13 @@
 import struct
 import threading
 import time
+from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
 from gear_kinematics.bag import Bag, BagError, LiveBagWriter
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.watch import recording, watcher
 from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.recording import Recording
@@ -163,11 +163,11 @@ def test_watcher_that_cannot_join_says_why(monkeypatch):
 
 @pytest.mark.parametrize('absolute', [True, False])
 def test_parameters_of_the_node_are_kept_beside_the_data(tmp_path, absolute):
-    given = parameters.load(parameters.default_config())
+    given = NodeParameters.load()
     calibration = str(tmp_path / 'gear.yaml') if absolute else 'gear.yaml'
-    told = {**given, 'ring_teeth': 61, 'satellite_teeth': 58, 'calibration': calibration}
-    note = Watcher()._keep_parameters(SimpleNamespace(parameters=told), tmp_path)
-    kept = parameters.load(tmp_path / 'actuator.yaml')
-    assert kept == {**told, 'calibration': calibration if absolute else ''}
+    told = replace(given, ring_teeth=61, satellite_teeth=58, calibration=calibration)
+    note = watcher._keep_parameters(told, tmp_path)
+    kept = NodeParameters.load(tmp_path / 'actuator.yaml')
+    assert kept == replace(told, calibration=calibration if absolute else '')
     words = ' Give its calibration to gearkin validate: gear.yaml.'
     assert note == ('' if absolute else words)

@@ -7,6 +7,7 @@ import math
 import re
 import time
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -16,7 +17,7 @@ from watching import WatcherStandIn
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.parameters import node_parameters as parameters
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.new_config import new_config
 from gear_kinematics.watch import drivers
 from gear_kinematics.watch.drivers import Driver
@@ -103,11 +104,7 @@ def gear_node(**changes):
         'known': True,
         'restarts': 0,
         'gear': GearRatio(-19),
-        'parameters': {
-            'input_timeout': 1.0,
-            'transmission_error_window': 10.0,
-            'transmission_error_limit': math.radians(0.1),
-        },
+        'parameters': replace(NodeParameters.load(), transmission_error_limit=math.radians(0.1)),
         'statuses': {
             'transmission error': Status('transmission error', 0, 'ok', values, time.monotonic())
         },
@@ -308,7 +305,7 @@ def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
 
 def test_init_writes_what_is_named(listening, capsys):
     assert main(['init', '--topic', '/motor/joint_states', '--joint', 'm1', '-o', 'a b.yaml']) == 0
-    assert parameters.load(listening / 'a b.yaml')['rotor_joint'] == 'm1'
+    assert NodeParameters.load(listening / 'a b.yaml').rotor_joint == 'm1'
     command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
     assert f'\n    {command}/motor/joint_states\n' in capsys.readouterr().out
 

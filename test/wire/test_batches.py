@@ -2,6 +2,7 @@
 
 import math
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,8 @@ from hypothesis import strategies as st
 from live import rotor_bytes
 from wire import micro_ros_bytes
 
-from gear_kinematics.state.rotor_input import InputSettings, RotorInput
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
 from gear_kinematics.wire.cdr import MalformedMessageError, PoseArrayTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -133,7 +135,13 @@ def test_padding_that_is_left_to_chance_makes_no_layout():
     st.floats(-10.0, 10.0) | st.floats(-1e15, 1e15),
 )
 def test_batches_of_input_are_accepted_as_one_by_one(batches, joint, encoder, direction, zero):
-    settings = InputSettings(joint, direction, zero, encoder, 650.0, 6500.0)
+    settings = replace(
+        NodeParameters.load(),
+        rotor_joint=joint,
+        rotor_direction=direction,
+        rotor_zero=zero,
+        rotor_encoder=encoder,
+    )
     one_by_one, at_once = RotorInput(settings), RotorInput(settings)
     for batch in batches:
         clock = [7 * SECOND + k for k in range(len(batch))]

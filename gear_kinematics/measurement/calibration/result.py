@@ -15,7 +15,7 @@ from gear_kinematics.measurement.calibration.spectrum import Spectrum
 from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm, Term, TorqueTerm
 from gear_kinematics.measurement.ratio import RatioEstimate
 from gear_kinematics.measurement.recording import Array
-from gear_kinematics.parameters.share import version
+from gear_kinematics.share import version
 
 _Kind = TypeVar('_Kind', OrderTerm, StopTerm, TorqueTerm)
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated

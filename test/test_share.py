@@ -6,18 +6,17 @@ from pathlib import Path
 
 import pytest
 
-import gear_kinematics.parameters.share
-from gear_kinematics.parameters.share import share_directory
+import gear_kinematics.share
+from gear_kinematics.share import share_directory
 
-ROOT = Path(__file__).resolve().parents[2]
-SOURCE = Path(gear_kinematics.parameters.share.__file__)
+ROOT = Path(__file__).resolve().parents[1]
+SOURCE = Path(gear_kinematics.share.__file__)
 
 
 def share_of(package: Path):
     """Copy the module to a package folder and call it there."""
-    room = package / SOURCE.parent.name
-    room.mkdir(parents=True)
-    path = Path(shutil.copy(SOURCE, room))
+    package.mkdir(parents=True)
+    path = Path(shutil.copy(SOURCE, package))
     spec = importlib.util.spec_from_file_location('share_elsewhere', path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -69,7 +68,7 @@ def test_symlinked_package_finds_its_source_tree(tmp_path):
     site = tmp_path / 'install/lib/python3.12/site-packages'
     site.mkdir(parents=True)
     (site / 'gear_kinematics').symlink_to(tree / 'gear_kinematics')
-    path = site / 'gear_kinematics/parameters/share.py'
+    path = site / 'gear_kinematics/share.py'
     spec = importlib.util.spec_from_file_location('share_linked', path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
