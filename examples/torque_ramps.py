@@ -17,8 +17,8 @@ def arc_minutes(angle: float) -> str:
     return f'{60.0 * math.degrees(angle):.2f}′'
 
 
-hysteresis = figures.smallest.hysteresis
+hysteresis = figures.hysteresis
 print(f'hysteresis {arc_minutes(hysteresis.value)} ± {arc_minutes(hysteresis.uncertainty)}')
 print(f'backlash {arc_minutes(figures.backlash.low)} to {arc_minutes(figures.backlash.high)}')
-for part in figures.largest.stiffness:
+for part in figures.stiffness:
     print(f'stiffness from {part.low:g} to {part.high:g} N·m: {part.both.value:.0f} N·m/rad')

@@ -142,13 +142,11 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
 
 
-def missing_encoder(bag: Bag, also: str = '') -> BagError:
-    """Return the error for a bag without a topic of the output encoder."""
+def missing_encoder(bag: Bag) -> str:
+    """Say that a bag has no topic of the output encoder, and which topics it might be."""
     topics = _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)
     hint = among(OUTPUT_ENCODER, topics)
-    return BagError(
-        f'{bag.path}: {also}no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}'
-    )
+    return f'no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}'
 
 
 def corrected_beside(output: str = Topics().output) -> dict[str, str]:

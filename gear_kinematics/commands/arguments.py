@@ -11,7 +11,7 @@ from gear_kinematics.commands.targets import add_force
 from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.kinematics.preload import STEEL_SHEAR_MODULUS, Stiffness, shaft_stiffness
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.columns import ANGLE_UNITS, Columns
+from gear_kinematics.measurement.csv_files import ANGLE_UNITS, Sources
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters, default_config
 from gear_kinematics.wire.nearest import among
 
@@ -102,7 +102,7 @@ _COLUMNS = {
 
 
 def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
-    """Add the options for the columns of a CSV file, and for encoders; see `columns`."""
+    """Add the options for the columns of a CSV file, and for encoders; see `sources`."""
     group = parser.add_argument_group('columns of a CSV', 'by default found by name')
     for role in roles:
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
@@ -129,15 +129,17 @@ def add_columns(parser: argparse.ArgumentParser, *roles: str) -> None:
     )
 
 
-def columns(options: argparse.Namespace) -> Columns:
-    """The columns given by the options."""
+def sources(options: argparse.Namespace) -> Sources:
+    """The columns and topics given by the options."""
     names = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
-    return Columns(
+    return Sources(
         **names,
         unit=options.angle_unit,
         on_rotor=options.on_rotor,
         rotor_counts=options.rotor_counts,
         output_counts=options.output_counts,
+        rotor_topic=options.rotor_topic,
+        encoder_topic=options.encoder_topic,
     )
 
 

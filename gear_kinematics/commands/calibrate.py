@@ -89,9 +89,6 @@ def _read(
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-                yield read_encoders(
-                    path, config, arguments.columns(options), options.rotor_topic,
-                    options.encoder_topic, progress,
-                )  # fmt: skip
+                yield read_encoders(path, config, arguments.sources(options), progress)
         except (ValueError, OSError) as error:
             complain(error)

@@ -9,19 +9,25 @@ from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Reporter, complain, message_progress
-from gear_kinematics.measurement.clock import common_times
+from gear_kinematics.measurement.answer import Limits
 from gear_kinematics.measurement.compare import groups as grouping
 from gear_kinematics.measurement.compare.quantities import at_common_torque
 from gear_kinematics.measurement.compare.section import compared, over_positions, over_time
+from gear_kinematics.measurement.compare.trend import common_times
 from gear_kinematics.measurement.comparison import Comparison
 from gear_kinematics.measurement.document import document
 from gear_kinematics.measurement.encoder_step import UNITS
 from gear_kinematics.measurement.figures import STIFFNESS_SHARES
-from gear_kinematics.measurement.limits import Limits
-from gear_kinematics.measurement.lost_motion import LostMotion, Request
+from gear_kinematics.measurement.lost_motion import (
+    WORK,
+    LostMotion,
+    Outcome,
+    Request,
+    Task,
+    measure_recording,
+)
 from gear_kinematics.measurement.preload.section import over_preload
 from gear_kinematics.measurement.preload.settings import check_pattern, settings_of
-from gear_kinematics.measurement.task import WORK, Outcome, Task, measure_recording
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import Verdict
 
@@ -204,7 +210,7 @@ def _compared(
     """Return the reports, those that are compared at a common torque, and what they tell."""
     torques = options.rated_torque, options.stiffness_torques
     if options.trend:
-        times, source = common_times([report.recording.dates for report in reports])
+        times, source = common_times([report.recording for report in reports])
         order = sorted(range(len(reports)), key=times.__getitem__)
         ordered = at_common_torque([reports[number] for number in order], *torques)
         return ordered, [over_time(ordered, [times[number] for number in order], source)]
@@ -250,8 +256,6 @@ def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Ta
         name,
         config,
         Request(options.rated_torque, corners, options.fit_ratio, options.delay),
-        arguments.columns(options),
-        options.rotor_topic,
-        options.encoder_topic,
+        arguments.sources(options),
         options.debug,
     )

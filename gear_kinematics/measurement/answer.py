@@ -1,14 +1,17 @@
-"""The answer of a recording in one sentence, and the remarks on its basis and limits."""
+"""What a recording shows in sentences: the answer, what limits say of it, and remarks."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
 
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.encoder_step import Source, Step
 from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.middle_line import Cause
+from gear_kinematics.measurement.middle_line import Backlash, Cause
 from gear_kinematics.measurement.ratio import ratio_remarks
-from gear_kinematics.measurement.tables import too_uncertain
+from gear_kinematics.measurement.tables import shown, too_uncertain
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, arc_minutes
 from gear_kinematics.report.document import number, printable
 
@@ -26,37 +29,96 @@ def answer(report: LostMotion) -> str:
     if found is None or not (found.forward or found.backward):
         return 'The output does not move far enough in one direction to tell its errors.'
     accuracy = arc_minutes(found.forward or found.backward)
-    told = f'In one direction the output deviates by {accuracy}′ peak to peak'
+    error = f'In one direction the output deviates by {accuracy}′ peak to peak'
     if found.lost_motion:
-        return f'{told}; on reversals it loses {arc_minutes(found.lost_motion)}′.'
+        return f'{error}; on reversals it loses {arc_minutes(found.lost_motion)}′.'
     if found.reversals:
         return (
-            f'{told}; backward it lags by {arc_minutes(found.reversals)}′, by lost motion or by a '
-            'delay between the encoders.'
+            f'{error}; backward it lags by {arc_minutes(found.reversals)}′, by lost motion or by '
+            'a delay between the encoders.'
         )
-    return f'{told}.'
+    return f'{error}.'
 
 
 def _of_ramps(figures: GearFigures) -> str:
-    width = arc_minutes(figures.smallest.hysteresis)
+    width = f'At zero torque the output rests anywhere within {arc_minutes(figures.hysteresis)}′.'
     backlash = figures.backlash
-    told = f'At zero torque the output rests anywhere within {width}′.'
     if backlash.high is None:
-        return f'{told} How much of it is play is not known; {backlash.cause.value}.'
+        return f'{width} How much of it is play is not known; {backlash.cause.value}.'
     if value := backlash.value:
-        return f'{told} Of it, {arc_minutes(value)}′ is play, the rest friction.'
+        return f'{width} Of it, {arc_minutes(value)}′ is play, the rest friction.'
     low, high = (number(end * ARC_MINUTES) for end in (backlash.low, backlash.high))
     cause = f'; {cause}' if (cause := _cause(figures)) else ''
-    return f'{told} Of it, at least {low}′ and at most {high}′ is play, the rest friction{cause}.'
+    return f'{width} Of it, at least {low}′ and at most {high}′ is play, the rest friction{cause}.'
 
 
 def _cause(figures: GearFigures) -> str:
     """Why the backlash has no value, or what to record so that it has."""
-    cause, smallest = figures.backlash.cause, figures.smallest
-    enough = 2.0 * smallest.friction.value if smallest.friction else math.inf
-    if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * smallest.amplitude:
+    cause, friction = figures.backlash.cause, figures.friction
+    enough = 2.0 * friction.value if friction else math.inf
+    if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * figures.smallest.amplitude:
         return f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
     return cause.value
+
+
+# Limits
+
+
+class Judgement(NamedTuple):
+    """What became of a limit."""
+
+    limit: str
+    """Its name."""
+    holds: bool
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Of a gear: the most of angles, rad, and the least stiffness; None where there is none."""
+
+    hysteresis: float | None = None
+    lost_motion: float | None = None
+    """At ±3 % of the rated torque, or on reversals where there are no ramps."""
+    backlash: float | None = None
+    stiffness: float | None = None
+    """N·m/rad, in the highest range of torque."""
+
+    def judge(self, report: LostMotion) -> list[Judgement]:
+        """Judge a recording by each limit, at the end of the interval that speaks against it."""
+        found = report.figures
+        moving = found or report.transmission
+        judged: list[tuple[str, float | None, Estimate | Backlash | None]] = [
+            ('hysteresis', self.hysteresis, found.hysteresis if found else None),
+            ('lost motion', self.lost_motion, moving.lost_motion if moving else None),
+            ('backlash', self.backlash, found.backlash if found else None),
+            (
+                'stiffness',
+                self.stiffness,
+                found.stiffness[-1].both if found and found.stiffness else None,
+            ),
+        ]
+        return [_judged(name, limit, value) for name, limit, value in judged if limit is not None]
+
+
+def _judged(name: str, limit: float, value: Estimate | Backlash | None) -> Judgement:
+    if value is None or (isinstance(value, Backlash) and value.high is None):
+        return Judgement(name, holds=False, text=f'the {name} is not known')
+    if isinstance(value, Backlash):
+        low, high = value.low, value.high or 0.0
+    else:
+        spread = value.uncertainty or 0.0
+        low, high = value.value - spread, value.value + spread
+    if name == 'stiffness':
+        holds, fails, unit, scale = low >= limit, high < limit, ' N·m/rad', 1.0
+    else:
+        holds, fails, unit, scale = high <= limit, low > limit, '′', ARC_MINUTES
+    place = 'is within' if holds else 'is beyond' if fails else 'may be beyond'
+    place = f'{place} the limit of {number(limit * scale)}{unit}'
+    return Judgement(name, holds, f'the {name} of {shown(value, scale)}{unit} {place}')
+
+
+# Remarks
 
 
 def remarks(report: LostMotion) -> list[str]:
@@ -84,8 +146,7 @@ def _remarks(report: LostMotion) -> Iterator[str]:
             yield f'Too uncertain to tell, as the ± exceeds the value: {", ".join(vague)}.'
         if found.smallest.loops == 1 or found.largest.loops == 1:
             yield 'There is no uncertainty where nothing was repeated.'
-        width = found.smallest.hysteresis
-        if width.value < -(width.uncertainty or 0.0):
+        if found.hysteresis.value < -(found.hysteresis.uncertainty or 0.0):
             yield (
                 'The hysteresis is negative, which no gear has: the torque comes later than the '
                 'angle, as behind a filter or from another clock.'

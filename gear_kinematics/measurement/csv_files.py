@@ -2,28 +2,177 @@
 
 import csv
 import math
+import re
 from array import array
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, product
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, split_turns
-from gear_kinematics.measurement.clock import ClockError, dates_of, times_of_rows, unit_since_1970
-from gear_kinematics.measurement.columns import Column, Columns, find_columns
-from gear_kinematics.measurement.encoder_step import step_of
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
+from gear_kinematics.measurement.encoder_step import UNITS, step_of
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
-    Loading,
     Recording,
     RecordingError,
     RotorMotion,
+    locked_output,
+    times_of_rows,
+    unit_since_1970,
 )
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.nearest import among
+from gear_kinematics.wire.topics import OUTPUT_ENCODER
+
+_ROTOR, _OUTPUT = ('rotor', 'motor', 'odrive'), ('output', 'load', 'shaft', 'link')
+"""Words for either side of the gear."""
+_ANGLES = ('position', 'pos', 'angle', 'encoder', 'enc')
+_ENCODERS = ('', *_ANGLES, 'encoder_position', 'encoder_pos')
+_TORQUES = ('torque', 'effort')
+
+
+def _joined(*words: Sequence[str]) -> tuple[str, ...]:
+    return tuple('_'.join(filter(None, several)) for several in product(*words))
+
+
+_NAMES: Mapping[str, tuple[str, ...]] = {
+    'angle': (*_joined(('', 'encoder', 'enc'), _ANGLES), 'deflection', 'twist'),
+    'torque': _joined(('', 'measured', 'output', 'load', 'motor', 'motor_current'), _TORQUES),
+    'rotor': _joined(_ROTOR, _ENCODERS),
+    'output': (*_joined(_OUTPUT, _ENCODERS), OUTPUT_ENCODER),
+    'time': ('time', 't', 'stamp', 'timestamp'),
+}
+"""Names of columns without their units, the likeliest first."""
+_COUNTS = ('counts', 'count', 'cnt', 'inc', 'increments', 'ticks')
+ANGLE_UNITS = (*UNITS, 'counts')
+"""Units of angle that can be given."""
+_ANGULAR = ('angle', 'rotor', 'output')
+_OF_ANGLE = {**UNITS, '°': UNITS['deg'], 'turns': TURN, **dict.fromkeys(_COUNTS)}
+_UNITS: Mapping[str, Mapping[str, float | None]] = {
+    **dict.fromkeys(_ANGULAR, _OF_ANGLE),
+    'torque': {'nm': 1.0, 'n·m': 1.0, 'n*m': 1.0, 'n.m': 1.0, 'mnm': 1e-3},
+    'time': {'s': 1.0, 'sec': 1.0, 'ms': 1e-3, 'us': 1e-6, 'µs': 1e-6, 'ns': 1e-9},
+}
+"""In SI units; None: counts of an encoder."""
+_KNOWN_UNITS = {unit for units in _UNITS.values() for unit in units}
+_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]$')
+_WORD = re.compile(r'[^\s_/-]+')
+_MOTEUS = {'position', 'torque', 'q_current'}
+"""Registers of moteus motor controllers, which give positions in revolutions."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sources:
+    """Columns of a CSV file and topics of a bag; those that are None are found by their names."""
+
+    angle: str | None = None
+    torque: str | None = None
+    rotor: str | None = None
+    output: str | None = None
+    time: str | None = None
+    unit: str | None = None
+    """Unit of all angles, one of ANGLE_UNITS; None: by their names, or rad."""
+    on_rotor: bool = False
+    """Whether angle and torque are the rotor's, unless their names say the output's."""
+    rotor_counts: int | None = None
+    """Counts per turn of the encoder of the rotor, or of the angle column."""
+    output_counts: int | None = None
+    """The same of the output's encoder."""
+    rotor_topic: str | None = None
+    encoder_topic: str | None = None
+
+
+class Column(NamedTuple):
+    """A column that is read."""
+
+    name: str
+    scale: float
+    """Of its numbers, to rad, N·m or s."""
+    unit: str
+    """For the report; empty where nothing is known."""
+    on_rotor: bool
+
+
+def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
+    """Find what can be read: angle and torque, or rotor and output, with torque and time if any.
+
+    Args:
+        header: the names in a file.
+        given: what is known of them.
+
+    Raises:
+        ValueError: if they do not suffice, or a unit is not known.
+    """
+    named = {role: name for role in _NAMES if (name := getattr(given, role))}
+    for name in named.values():
+        if name not in header:
+            raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
+    known = {_split(name)[0]: name for name in reversed(header)}
+    found = {
+        role: name
+        for role, names in _NAMES.items()
+        if (name := named.get(role) or next((known[n] for n in names if n in known), None))
+    }
+    if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
+        found.pop('angle', None)
+    elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
+        others = {role: name for role, name in found.items() if role not in _ANGULAR}
+        found = {'angle': angles[0], **others}
+    else:
+        unknown = ', '.join(filter(None, (_split(name)[2] for name in header)))
+        hint = f'; unknown units: {unknown}; known: {_listed("angle")}' if unknown else ''
+        raise ValueError(
+            'neither an angle and a torque nor a rotor and an output among the columns '
+            f'{", ".join(header)}; name them with --angle-column, --torque-column, '
+            f'--rotor-column, --output-column{hint}'
+        )
+    moteus = {name.lower() for name in header} >= _MOTEUS
+    units = [_split(found[role])[1] for role in _ANGULAR if role in found]
+    common = next(filter(None, units), 'rev' if moteus else '')
+    return {role: _column(role, name, given, common) for role, name in found.items()}
+
+
+def _column(role: str, name: str, given: Sources, common: str) -> Column:
+    plain, unit, unknown = _split(name)
+    if unknown:
+        raise ValueError(f'{name}: the unit {unknown} is not known; known: {_listed(role)}')
+    if role in _ANGULAR:
+        unit = given.unit or unit or common
+    scale = _UNITS[role].get(unit, 1.0)
+    if scale is None:
+        encoder = 'output' if role == 'output' else 'rotor'
+        counts = getattr(given, f'{encoder}_counts')
+        if counts is None:
+            raise ValueError(f'{name} has counts: give those per turn with --{encoder}-counts')
+        scale, unit = TURN / counts, f'{counts} counts a turn'
+    on_rotor = given.on_rotor and plain.partition('_')[0] not in _OUTPUT
+    return Column(name, scale, unit, on_rotor)
+
+
+def _split(name: str) -> tuple[str, str, str]:
+    """A name without its unit, in the form of `_NAMES`, the unit, and the unit if it is not known.
+
+    Either may be empty. An unknown unit is in brackets, or ends as a known one.
+    """
+    text, unit = name.strip().lower(), ''
+    if brackets := _BRACKETS.search(text):
+        text, unit = text[: brackets.start()], brackets[1]
+    words = _WORD.findall(text)
+    last = words[-1] if len(words) > 1 else ''
+    if not unit and last in _KNOWN_UNITS:
+        unit = words.pop()
+    likely = unit or (last if last.endswith(('rad', 'deg', 'rev', 'nm')) else '')
+    return '_'.join(words), unit, '' if likely in _KNOWN_UNITS else likely
+
+
+def _listed(role: str) -> str:
+    return ', '.join(sorted(_UNITS[role]))
 
 
 def is_csv(path: Path) -> bool:
@@ -31,13 +180,13 @@ def is_csv(path: Path) -> bool:
     return path.suffix.lower() in {'.csv', '.tsv', '.txt'}
 
 
-def read_csv(path: Path, columns: Columns, ratio: Fraction) -> Recording:
+def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
     """Read a CSV file of a gear with a ratio; a row was sampled at one time.
 
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
     """
-    found, data = _read(path, columns)
+    found, data = _read(path, sources)
     quantities = np.array([values for role, values in data.items() if role != 'time'])
     usable = np.all(np.abs(quantities) <= LARGEST_ANGLE, axis=0)  # NaN compares false
     if not usable.any():
@@ -55,8 +204,8 @@ def read_csv(path: Path, columns: Columns, ratio: Fraction) -> Recording:
         start = float(time[0]) if unit_since_1970(time[0]) else None
         try:
             data['time'] = times_of_rows(time)
-        except ClockError as error:
-            if columns.time:
+        except RecordingError as error:
+            if sources.time:
                 raise RecordingError(f'{path}: the times in {name}: {error}') from error
             remarks.append(f'the times in {name} are not used: {error}')
         else:
@@ -69,16 +218,19 @@ def read_csv(path: Path, columns: Columns, ratio: Fraction) -> Recording:
         data['torque'] *= float(ratio)
     encoders = locked = None
     if 'rotor' in data:
-        encoders = _encoders(data, columns, ratio)
+        encoders = _encoders(data, sources, ratio)
     else:
-        locked = _locked(data, columns, ratio if found['angle'].on_rotor else Fraction(1))
+        at_output = ratio if found['angle'].on_rotor else Fraction(1)
+        step = step_of(sources.rotor_counts, data['angle'])
+        locked = locked_output(data['torque'], data['angle'], step, at_output, data.get('time'))
     return Recording(
-        path, path.name, tuple(_described(found)), len(usable), dates_of(path, start),
-        encoders, locked, tuple(remarks),
+        path, path.name, tuple(_described(found)), len(usable), start, encoders, locked,
+        tuple(remarks), lacking='not both a rotor and an output among the columns; name them with '
+        '--rotor-column and --output-column',
     )  # fmt: skip
 
 
-def _encoders(data: Mapping[str, Array], columns: Columns, ratio: Fraction) -> Encoders:
+def _encoders(data: Mapping[str, Array], sources: Sources, ratio: Fraction) -> Encoders:
     rows, time = np.arange(len(data['rotor'])), data.get('time')
     stamp = np.round((rows if time is None else time) * SECOND).astype(np.int64)
     effort = data['torque'] / float(ratio) if 'torque' in data else None
@@ -88,17 +240,9 @@ def _encoders(data: Mapping[str, Array], columns: Columns, ratio: Fraction) -> E
         before=rows,
         share=np.zeros(len(rows)),
         measured=data['output'],
-        rotor_step=step_of(columns.rotor_counts, data['rotor']),
-        output_step=step_of(columns.output_counts, data['output']),
+        rotor_step=step_of(sources.rotor_counts, data['rotor']),
+        output_step=step_of(sources.output_counts, data['output']),
     )
-
-
-def _locked(data: Mapping[str, Array], columns: Columns, ratio: Fraction) -> Loading:
-    """Angle and torque in one column each; the ratio is that of the angle to the output."""
-    angle = data['angle']
-    step = step_of(columns.rotor_counts, angle).scaled(float(1 / ratio))
-    time = data.get('time')
-    return Loading(data['torque'], angle / float(ratio), step, measured=False, time=time)
 
 
 def _described(found: Mapping[str, Column]) -> Iterable[str]:
@@ -110,7 +254,7 @@ def _described(found: Mapping[str, Column]) -> Iterable[str]:
         yield f'{role}{side} from {column.name} in {unit.replace("nm", "N·m")}'
 
 
-def _read(path: Path, columns: Columns) -> tuple[dict[str, Column], dict[str, Array]]:
+def _read(path: Path, sources: Sources) -> tuple[dict[str, Column], dict[str, Array]]:
     """The columns that are needed, row by row, in SI units; NaN in empty rows."""
     try:
         with path.open(encoding='utf-8-sig') as file:
@@ -120,7 +264,7 @@ def _read(path: Path, columns: Columns) -> tuple[dict[str, Column], dict[str, Ar
             for name, count in Counter(header).items():
                 if count > 1:
                     raise ValueError(f'more than one column {name!r}')
-            found = find_columns(header, columns) if header else {}
+            found = find_columns(header, sources) if header else {}
             values = _numbers(header, rows, found)
     except (OSError, UnicodeDecodeError) as error:
         cause = getattr(error, 'strerror', None) or 'not text in UTF-8'

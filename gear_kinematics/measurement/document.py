@@ -5,11 +5,10 @@ from dataclasses import replace
 from typing import Any
 
 from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
-from gear_kinematics.measurement.answer import answer, remarks
+from gear_kinematics.measurement.answer import Judgement, Limits, answer, remarks
 from gear_kinematics.measurement.comparison import Comparison
 from gear_kinematics.measurement.curves import panels
-from gear_kinematics.measurement.figures import GearFigures, Stiffness
-from gear_kinematics.measurement.limits import Limits
+from gear_kinematics.measurement.figures import Figures, GearFigures, Stiffness
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import Backlash
 from gear_kinematics.measurement.tables import head, key, summary, tables
@@ -34,7 +33,11 @@ def document(
     reports: Sequence[LostMotion], comparisons: Sequence[Comparison], limits: Limits
 ) -> Document:
     """Return the document on recordings, with a section for each, and then their comparisons."""
-    sections = tuple(_section(report, limits) for report in reports)
+    sections, recordings = [], []
+    for report in reports:
+        sentences = answer(report), limits.judge(report), remarks(report)
+        sections.append(_section(report, *sentences))
+        recordings.append(_recording(report, *sentences))
     verdicts = [section.verdict for section in sections if section.verdict]
     return Document(
         'gearkin lost-motion',
@@ -43,7 +46,7 @@ def document(
             'schema': SCHEMA,
             'version': VERSION,
             'coverage': COVERAGE,
-            'recordings': [_recording(report, limits) for report in reports],
+            'recordings': recordings,
             **{key: plain(value) for found in comparisons for key, value in found.data.items()},
         },
         max(verdicts, key=list(Verdict).index, default=None),
@@ -52,8 +55,9 @@ def document(
     )
 
 
-def _section(report: LostMotion, limits: Limits) -> Section:
-    judged = list(limits.judge(report))
+def _section(
+    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: Sequence[str]
+) -> Section:
     passed = all(judgement.holds for judgement in judged)
     return Section(
         printable(report.name),
@@ -61,9 +65,9 @@ def _section(report: LostMotion, limits: Limits) -> Section:
         (Verdict.PASS if passed else Verdict.FAIL) if judged else None,
         (
             *(Finding('finding', f'{one.text[0].upper()}{one.text[1:]}.') for one in judged),
-            Finding('finding', answer(report)),
+            Finding('finding', said),
         ),
-        tuple(remarks(report)),
+        tuple(remarked),
         Figure(tuple(panels(report)), columns=_COLUMNS),
         picture_first=True,
         key=key(report),
@@ -72,21 +76,22 @@ def _section(report: LostMotion, limits: Limits) -> Section:
     )
 
 
-def _recording(report: LostMotion, limits: Limits) -> Mapping[str, Any]:
+def _recording(
+    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: Sequence[str]
+) -> Mapping[str, Any]:
     recording, both = report.recording, report.recording.encoders
-    judged = limits.judge(report)
     transmission = plain(report.transmission) or {}
     transmission.pop('spectra', None)
     return {
         'recording': report.name,
-        'answer': answer(report),
+        'answer': said,
         'limits': {one.limit: {'holds': one.holds, 'text': one.text} for one in judged},
         'columns': recording.columns,
         'samples': recording.rows,
         'error': recording.damage,
         'gear_ratio': str(report.gear_ratio),
         'fitted_ratio': plain(report.fitted),
-        **(_figures(report.figures) if report.figures else {}),
+        **(_of_gear(report.figures) if report.figures else {}),
         'measured': report.measured,
         'transmission': transmission or None,
         'encoders': both
@@ -98,38 +103,33 @@ def _recording(report: LostMotion, limits: Limits) -> Mapping[str, Any]:
             'output_step_source': both.output_step.source,
             'unmatched': both.unmatched,
         },
-        'remarks': remarks(report),
+        'remarks': remarked,
     }
 
 
-def _figures(found: GearFigures) -> dict[str, Any]:
-    largest = found.largest
+def _of_gear(found: GearFigures) -> dict[str, Any]:
+    figures = _figures(found)
+    figures['lost_motion_without_friction']['load'] = found.settings.small_load
+    whole = found.largest.overall
     return {
         'rated_torque': found.settings.rated_torque,
-        'hysteresis': _with_unit(found.smallest.hysteresis, 'rad'),
-        'lost_motion': _with_unit(largest.lost_motion, 'rad'),
-        'lost_motion_without_friction': {
-            'load': found.settings.small_load,
-            **_with_unit(found.frictionless, 'rad'),
-        },
-        'friction': _with_unit(found.smallest.friction, 'N·m'),
-        'backlash': _backlash(found.backlash),
-        'stiffness': [_stiffness(stiffness) for stiffness in largest.stiffness],
-        'overall_stiffness': largest.overall and _stiffness(largest.overall),
+        **figures,
+        'overall_stiffness': _stiffness(whole) if whole else None,
         'by_amplitude': [
-            {
-                'amplitude': figures.amplitude,
-                'loops': figures.loops,
-                'rate': figures.rate,
-                'hysteresis': _with_unit(figures.hysteresis, 'rad'),
-                'lost_motion': _with_unit(figures.lost_motion, 'rad'),
-                'lost_motion_without_friction': _with_unit(figures.frictionless, 'rad'),
-                'friction': _with_unit(figures.friction, 'N·m'),
-                'backlash': _backlash(figures.backlash),
-                'stiffness': [_stiffness(stiffness) for stiffness in figures.stiffness],
-            }
-            for figures in found.by_amplitude
+            {'amplitude': of.amplitude, 'loops': of.loops, 'rate': of.rate, **_figures(of)}
+            for of in found.by_amplitude
         ],
+    }
+
+
+def _figures(found: GearFigures | Figures) -> dict[str, Any]:
+    return {
+        'hysteresis': _with_unit(found.hysteresis, 'rad'),
+        'lost_motion': _with_unit(found.lost_motion, 'rad'),
+        'lost_motion_without_friction': _with_unit(found.frictionless, 'rad'),
+        'friction': _with_unit(found.friction, 'N·m'),
+        'backlash': _backlash(found.backlash),
+        'stiffness': [_stiffness(stiffness) for stiffness in found.stiffness],
     }
 
 

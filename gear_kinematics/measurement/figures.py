@@ -100,23 +100,43 @@ class GearFigures:
 
     @property
     def smallest(self) -> Figures:
-        """Figures of the smallest ramps: of hysteresis and friction."""
+        """Figures of the smallest ramps, in which friction shows."""
         return self.by_amplitude[0]
 
     @property
     def largest(self) -> Figures:
-        """Figures of the largest ramps: of lost motion and stiffness."""
+        """Figures of the largest ramps, which load the gear."""
         return self.by_amplitude[-1]
 
     @property
+    def hysteresis(self) -> Estimate:
+        """rad, of the smallest ramps."""
+        return self.smallest.hysteresis
+
+    @property
+    def friction(self) -> Estimate | None:
+        """N·m, of the smallest ramps."""
+        return self.smallest.friction
+
+    @property
+    def lost_motion(self) -> Estimate | None:
+        """rad, of the largest ramps."""
+        return self.largest.lost_motion
+
+    @property
     def frictionless(self) -> Estimate | None:
-        """Lost motion without friction, rad, of the smallest ramps that tell it."""
+        """Lost motion without friction, rad, of the smallest ramps that reach its load."""
         return next((f.frictionless for f in self.by_amplitude if f.frictionless), None)
 
     @property
     def backlash(self) -> Backlash:
         """What all ramps together leave room for."""
         return reconciled([figures.backlash for figures in self.by_amplitude])
+
+    @property
+    def stiffness(self) -> tuple[Stiffness, ...]:
+        """Of the largest ramps."""
+        return self.largest.stiffness
 
 
 def settings_for(

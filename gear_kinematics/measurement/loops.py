@@ -8,7 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 from scipy.spatial import ConvexHull
+
+from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 
 Array = NDArray[np.float64]
 
@@ -28,6 +31,13 @@ _ROUNDING = 1e-9
 """Relative differences of torques that are rounding errors, as where a torque stands still."""
 _COMPLETE = 0.9
 """Share of the amplitude that both halves of a complete loop reach on both sides."""
+_FEWEST = 4
+"""Loops, or reversals, in which an effect of time can be told from scatter."""
+_MAX_CHANCE = 0.01
+"""Probability below which a drift is no coincidence."""
+_STILL = np.linspace(0.3, 0.9, 30)
+"""Shares of twice the friction by which the torque has gone back: the gear certainly stands still,
+and what a late encoder still had to show has come."""
 
 
 class RampError(ValueError):
@@ -133,6 +143,40 @@ class Ramps:
         times = [float(np.ptp(half.time)) for half in self.halves if half.time is not None]
         seconds = float(np.median(times)) if times else 0.0
         return 2.0 * self.amplitude / seconds if seconds else None
+
+    def drift(self) -> tuple[Estimate, float] | None:
+        """How far the zero moves from the first loop to the last, rad, and in which time, s.
+
+        None unless the middles of the loops at no torque move evenly.
+        """
+        if not self.rate or len(self.loops) < _FEWEST:
+            return None
+        times = [
+            float(np.mean([half.at(0.0, half.time) for half in loop if half.time is not None]))
+            for loop in self.loops
+        ]
+        line = stats.linregress(times, [loop.middle(0.0) for loop in self.loops])
+        span, count = times[-1] - times[0], len(times)
+        moved = Estimate(line.slope * span, line.stderr * span, count - 2, count)
+        return (moved, span) if line.pvalue < _MAX_CHANCE else None
+
+    def creep(self, friction: float, angle_step: float) -> Estimate | None:
+        """How far the angle goes on after the torque has turned back, rad; None unless it does.
+
+        Args:
+            friction: N·m, which holds the gear meanwhile.
+            angle_step: rad, between readings of the encoder; 0 if unknown.
+        """
+        least = min(abs(half.start - half.end) for half in self.halves)
+        if not self.rate or len(self.halves) < _FEWEST or least < 4.0 * friction:
+            return None
+        further = []
+        for half in self.halves:
+            way = 1.0 if half.rising else -1.0
+            held = half.angle_at(half.start + way * 2.0 * friction * _STILL)
+            further.append(-way * float(np.mean(held) - half.angle_at(half.start)))
+        found = Estimate.of_mean(further, Component(resolution(angle_step)))
+        return found if found.value > (found.uncertainty or 0.0) else None
 
 
 def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[Ramps, ...]:

@@ -1,16 +1,27 @@
-"""What a recording tells of a gear: the figures of torque ramps, and the transmission error."""
+"""What a recording tells of a gear: the figures of torque ramps, and the transmission error.
 
-from collections.abc import Sequence
+`measure` works on a recording that was read, `measure_recording` on a file, so that many can be
+measured in processes of this machine or on a Dask cluster.
+"""
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
+from gear_kinematics.bag import ReportProgress, fleet
+from gear_kinematics.bag.errors import unexpected
+from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Gear, GearRatio
+from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.figures import GearFigures, Settings, gear_figures, settings_for
 from gear_kinematics.measurement.loops import RampError, Ramps, find_ramps
 from gear_kinematics.measurement.ratio import RatioEstimate, check_ratio, fit_ratio
+from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import Recording, RecordingError
-from gear_kinematics.measurement.time_effects import time_remarks
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
+from gear_kinematics.measurement.wording import arc_minutes
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import number
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -90,10 +101,84 @@ def measure(
             step = loading.angle_step.size
             settings = settings_for(ramps, step, request.rated_torque, request.corners)
             figures = gear_figures(ramps, settings)
-            remarks += time_remarks(ramps, figures.smallest.friction, step)
+            remarks += time_remarks(ramps, figures.friction, step)
             report = replace(report, ramps=ramps, figures=figures, measured=loading.measured)
         except RampError as error:
             if not found:
                 raise
             remarks.append(f'{error}.')
     return replace(report, remarks=tuple(remarks))
+
+
+def time_remarks(
+    ramps: Sequence[Ramps], friction: Estimate | None, angle_step: float
+) -> Iterator[str]:
+    """Say what changes with time, with its size; it is not taken out of the figures.
+
+    Args:
+        ramps: from small to large amplitude.
+        friction: N·m, of the smallest, as creep adds to that of large ones.
+        angle_step: rad, between readings of the encoder; 0 if unknown.
+    """
+    if drift := max(ramps, key=lambda ramps: len(ramps.loops)).drift():
+        moved, span = drift
+        yield f'The zero drifts by {arc_minutes(moved)} arcmin in {number(span)} s, evenly.'
+    if friction and (further := ramps[-1].creep(friction.value, angle_step)):
+        yield (
+            f'After the torque has turned back, the angle goes on by {arc_minutes(further)} '
+            'arcmin while friction holds the gear: it creeps, or the encoder is late. This is '
+            'part of the hysteresis.'
+        )
+
+
+# Many recordings
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """A recording, and how to measure it."""
+
+    number: int
+    """Place among the recordings."""
+    path: Path
+    name: str
+    """In the report."""
+    parameters: NodeParameters
+    request: Request
+    sources: Sources
+    debug: bool = False
+    """Whether to print tracebacks of unexpected errors to stderr."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Outcome:
+    """What became of a recording: a report or an error."""
+
+    report: LostMotion | None
+    error: str = ''
+
+
+def measure_recording(task: Task, progress: ReportProgress | None = None) -> Outcome:
+    """Measure one recording; any error about it is in the outcome."""
+    try:
+        recording = read(task.path, task.parameters, task.sources, progress)
+        recording = replace(recording, name=task.name)
+        return Outcome(measure(recording, task.parameters.gear, task.parameters, task.request))
+    except (ValueError, OSError) as error:
+        if isinstance(error, (RampError, RecordingError)) and str(task.path) not in str(error):
+            return _failed(task, str(error))
+        return Outcome(None, str(error))
+    except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
+        return _failed(task, unexpected(error, debug=task.debug))
+
+
+def _failed(task: Task, cause: str) -> Outcome:
+    return Outcome(None, f'{task.path}: {cause}')
+
+
+def _absolute(task: Task) -> Task:
+    return replace(task, path=task.path.absolute())
+
+
+WORK = fleet.Work(measure_recording, _failed, _absolute)
+"""For `fleet.on_this_machine` and `fleet.on_cluster`."""

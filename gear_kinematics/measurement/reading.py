@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -16,19 +15,18 @@ from gear_kinematics.bag import (
     sort_by_topic,
 )
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
-from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.measurement.clock import before_set_back, dates_of, in_order
-from gear_kinematics.measurement.columns import Columns
-from gear_kinematics.measurement.csv_files import is_csv, read_csv
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
+from gear_kinematics.measurement.csv_files import Sources, is_csv, read_csv
 from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
-    Loading,
     Recording,
     RecordingError,
     RotorMotion,
+    before_set_back,
+    in_order,
+    locked_output,
     match,
 )
 from gear_kinematics.parameters import NodeParameters
@@ -41,9 +39,7 @@ from gear_kinematics.wire.cdr import SECOND
 def read(
     path: Path,
     parameters: NodeParameters,
-    columns: Columns | None = None,
-    rotor_topic: str | None = None,
-    encoder_topic: str | None = None,
+    sources: Sources | None = None,
     progress: ReportProgress | None = None,
 ) -> Recording:
     """Read a recording.
@@ -51,44 +47,39 @@ def read(
     Args:
         path: of a CSV file or a bag.
         parameters: of the node.
-        columns: of a CSV file; the counts per turn of the encoders in a bag.
-        rotor_topic: of the rotor's states in a bag; None finds it by type and name.
-        encoder_topic: of the output's encoder in a bag; None finds it by type and name.
+        sources: what is known of its columns or topics, and of the encoders.
         progress: called after each batch of a bag, with the messages on all of its topics.
 
     Raises:
         BagError, RecordingError: if it cannot be read, or contains nothing to measure.
     """
-    columns = columns or Columns()
+    sources = sources or Sources()
     if is_csv(path):
-        return read_csv(path, columns, parameters.gear.gear_ratio)
-    return _read_bag(path, parameters, columns, rotor_topic, encoder_topic, progress)
+        return read_csv(path, sources, parameters.gear.gear_ratio)
+    return _read_bag(path, parameters, sources, progress)
 
 
-def read_encoders(path: Path, *arguments: Any) -> tuple[Recording, Encoders]:
+def read_encoders(
+    path: Path,
+    parameters: NodeParameters,
+    sources: Sources | None = None,
+    progress: ReportProgress | None = None,
+) -> tuple[Recording, Encoders]:
     """Read a recording of both encoders; see `read`.
 
     Raises:
         BagError, RecordingError: see `read`; if it lacks the output's encoder.
     """
-    recording = read(path, *arguments)
+    recording = read(path, parameters, sources, progress)
     if recording.encoders is None:
-        if not is_csv(path):
-            with Bag(path) as bag:
-                raise missing_encoder(bag)
-        raise RecordingError(
-            f'{path}: not both a rotor and an output among the columns; name them with '
-            '--rotor-column and --output-column'
-        )
+        raise RecordingError(f'{path}: {recording.lacking}')
     return recording, recording.encoders
 
 
 def _read_bag(
     path: Path,
     parameters: NodeParameters,
-    columns: Columns,
-    rotor_topic: str | None,
-    encoder_topic: str | None,
+    sources: Sources,
     progress: ReportProgress | None,
 ) -> Recording:
     rotor_input = RotorInput(parameters)
@@ -96,8 +87,9 @@ def _read_bag(
     outputs: list[Sequence[Array]] = []
     start, lacking, damage = None, '', None
     with Bag(path) as bag:
-        encoder = find_encoder_topic(bag, encoder_topic)
-        rotor = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)
+        encoder = find_encoder_topic(bag, sources.encoder_topic)
+        rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
+        no_encoder = '' if encoder else missing_encoder(bag)
         topics = [topic for topic in (rotor, encoder) if topic]
         messages = bag.messages(topics)
         try:
@@ -132,20 +124,24 @@ def _read_bag(
         stamps, angles = _joined(outputs)
         if lacking and not len(stamps):
             raise BagError(f'{path}: {encoder}: {lacking}')
-        encoders, told = _compared(motion, stamps, angles, parameters, columns)
-        remarks += [f'{encoder}: {text}' for text in told]
+        encoders, left_out = _compared(motion, stamps, angles, parameters, sources)
+        remarks += [f'{encoder}: {text}' for text in left_out]
         if not len(encoders.measured):
             raise RecordingError(f'{path}: no output angle was measured between two rotor states')
         described.append(f'output {encoder}, rad')
     elif not has_effort:
-        raise missing_encoder(bag, f'{rotor} has no effort, and ')
+        raise BagError(f'{path}: {rotor} has no effort, and {no_encoder}')
     else:
-        locked = _locked(motion, effort, columns, parameters.gear.gear_ratio)
+        ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
+        step = step_of(sources.rotor_counts, motion.turned)
+        seconds = (stamp[known] - stamp[known][0]) / SECOND
+        torque, turned = float(ratio) * effort[known], motion.turned[known]
+        locked = locked_output(torque, turned, step, ratio, seconds)
     if has_effort:
         described.append(f'torque: effort of {rotor} times the ratio, N·m')
     return Recording(
-        path, path.name, tuple(described), rows, dates_of(path, start), encoders, locked,
-        tuple(remarks), damage,
+        path, path.name, tuple(described), rows, start, encoders, locked, tuple(remarks), damage,
+        no_encoder,
     )  # fmt: skip
 
 
@@ -166,32 +162,20 @@ def _joined(batches: list[Sequence[Array]]) -> list[Array]:
     return [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
 
 
-def _locked(motion: RotorMotion, effort: Array, columns: Columns, ratio: GearRatio) -> Loading:
-    """Angles of a rotor under torque, with the output taken to be locked."""
-    known = np.isfinite(effort)
-    return Loading(
-        float(ratio) * effort[known],
-        motion.turned[known] / float(ratio),
-        step_of(columns.rotor_counts, motion.turned).scaled(float(1 / ratio)),
-        measured=False,
-        time=(motion.stamp[known] - motion.stamp[known][0]) / SECOND,
-    )
-
-
 def _compared(
     motion: RotorMotion,
     stamps: Array,
     angles: Array,
     parameters: NodeParameters,
-    columns: Columns,
+    sources: Sources,
 ) -> tuple[Encoders, list[str]]:
     """Interpolate the rotor to the angles of the output; say what is left out."""
-    told = []
+    left_out = []
     kept, disordered = in_order(stamps)
     if disordered:
-        told.append(f'{disordered} angles out of order')
+        left_out.append(f'{disordered} angles out of order')
     if rest := len(stamps) - len(kept) - disordered:
-        told.append(f'the clock was set back; the last {rest} angles are left out')
+        left_out.append(f'the clock was set back; the last {rest} angles are left out')
     stamps, angles = stamps[kept], angles[kept]
     gap = round(parameters.transmission_error_max_gap * SECOND)
     before, share, inside = match(motion.stamp, stamps, gap)
@@ -206,8 +190,8 @@ def _compared(
         before=before,
         share=share,
         measured=angles[inside],
-        rotor_step=step_of(columns.rotor_counts, motion.turns * TURN + motion.angle),
-        output_step=step_of(columns.output_counts, angles),
+        rotor_step=step_of(sources.rotor_counts, motion.turned),
+        output_step=step_of(sources.output_counts, angles),
         unmatched={cause: count for cause, count in unmatched.items() if count},
     )
-    return encoders, told
+    return encoders, left_out

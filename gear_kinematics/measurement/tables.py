@@ -18,16 +18,16 @@ from gear_kinematics.measurement.wording import (
 )
 from gear_kinematics.report.document import Cell, Layout, Table, Tone, counted, number, printable
 
-_FIGURES = ('figure', 'value', f'± ({PERCENT})', 'in degrees', 'repeats', 'from')
-_WORDS = ('', 'from')
-_DEGREES = math.degrees(1.0)
+_SCALES = {'arcmin': ARC_MINUTES, 'ms': 1e3}
+"""From SI to the units that are not."""
 
 
 def head(report: LostMotion) -> Table:
     """Return what a recording contains and how it was read."""
     found = report.figures
     rates = [figures.rate for figures in found.by_amplitude] if found else []
-    kinds = {'static (torque ramps)': found, 'dynamic (in motion)': report.transmission}
+    motion = report.transmission
+    kinds = {'static (torque ramps)': found, 'dynamic (in motion)': motion}
     return Table.of_values(
         Layout.INLINE,
         ('samples', str(report.recording.rows)),
@@ -35,6 +35,7 @@ def head(report: LostMotion) -> Table:
         ('gear ratio', str(report.gear_ratio)),
         ('rated torque', f'{number(found.settings.rated_torque)} N·m' if found else ''),
         ('test', ', '.join(kind for kind, known in kinds.items() if known)),
+        ('travel', f'{number(math.degrees(motion.travel), 4)}°' if motion else ''),
         ('rate of the torque', '; '.join(f'{number(rate)} N·m/s' for rate in rates if rate)),
     )
 
@@ -42,13 +43,15 @@ def head(report: LostMotion) -> Table:
 def tables(report: LostMotion) -> Iterator[Table]:
     """Yield the tables for the available results."""
     if found := report.figures:
-        yield _figure_table(found)
+        yield _table(figure for figure in _figures(found) if figure.clear)
         if len(found.by_amplitude) > 1:
             yield _amplitude_table(found)
         yield _stiffness_table(found)
-    if report.transmission:
-        yield _transmission_table(report.transmission, report)
-        yield _order_table(report.transmission)
+    if motion := report.transmission:
+        both = report.recording.encoders
+        timed = bool(both and both.timed)
+        yield _table(figure for figure in _errors(motion, timed=timed) if figure.value)
+        yield _order_table(motion)
 
 
 class _Figure(NamedTuple):
@@ -56,45 +59,54 @@ class _Figure(NamedTuple):
 
     label: str
     unit: str
-    estimate: Estimate | None
+    value: Estimate | Backlash | None
+    """SI."""
     source: str = ''
-    scale: float = 1.0
+
+    @property
+    def clear(self) -> bool:
+        """Whether the value is known, and its uncertainty does not exceed it."""
+        return self.value.clear if isinstance(self.value, Estimate) else self.value is not None
+
+    @property
+    def scale(self) -> float:
+        """The factor with which the value is shown."""
+        return _SCALES.get(self.unit, 1.0)
 
 
-def _angle(label: str, estimate: Estimate | None, source: str = '') -> _Figure:
-    return _Figure(label, 'arcmin', estimate, source, ARC_MINUTES)
+def _table(figures: Iterable[_Figure]) -> Table:
+    columns = ('figure', 'value', f'± ({PERCENT})', 'repeats', 'from')
+    return Table(columns, tuple(map(_row, figures)), ('', 'from'))
 
 
-def _rows(figures: Iterable[_Figure]) -> Iterator[tuple[Cell, ...]]:
-    """Yield rows of the known figures."""
-    for label, unit, estimate, source, scale in figures:
-        if estimate:
-            value, spread = rounded(estimate, scale)
-            yield (
-                Cell(label, unit=unit),
-                Cell(value, unit=unit),
-                Cell(spread, Tone.PLAIN if spread else Tone.NOTABLE, unit=unit),
-                Cell(rounded(estimate, _DEGREES)[0] if unit == 'arcmin' else '', unit='°'),
-                Cell(str(estimate.repeats)),
-                Cell(source),
-            )
+def _row(figure: _Figure) -> tuple[Cell, ...]:
+    label, unit, value, source = figure
+    if isinstance(value, Backlash):
+        if value.value is None:
+            interval = Cell(shown(value, figure.scale), unit='' if value.high is None else unit)
+            return Cell(label, unit=unit), interval, Cell(''), Cell(''), Cell(source)
+        value = value.value
+    texts = (*rounded(value, figure.scale), str(value.repeats)) if value else ('', '', '')
+    text, spread, repeats = texts
+    uncertainty = Cell(spread, Tone.PLAIN if spread else Tone.NOTABLE, unit)
+    return Cell(label, unit=unit), Cell(text, unit=unit), uncertainty, Cell(repeats), Cell(source)
 
 
 def _figures(found: GearFigures) -> list[_Figure]:
     """List the figures: of friction from small ramps, others from the largest."""
-    smallest, largest = found.smallest, found.largest
-    small, large = map(_source, (smallest, largest))
+    small, large = map(_source, (found.smallest, found.largest))
     at = number(LOST_MOTION_SHARE * found.settings.rated_torque)
-    load = number(found.settings.small_load)
-    stiffness = {_range(s): s.both for s in largest.stiffness}
-    if largest.overall:
-        stiffness['of whole loops'] = largest.overall.both
+    load, whole = number(found.settings.small_load), found.largest.overall
     return [
-        _angle('hysteresis at zero torque', smallest.hysteresis, small),
-        _angle(f'lost motion at ±{at} N·m', largest.lost_motion, large),
-        _angle(f'lost motion without friction at ±{load} N·m', found.frictionless, small),
-        _Figure('friction', 'N·m', smallest.friction, small),
-        *(_Figure(f'stiffness {of}', 'N·m/rad', s, large) for of, s in stiffness.items()),
+        _Figure('hysteresis at zero torque', 'arcmin', found.hysteresis, small),
+        _Figure('backlash', 'arcmin', found.backlash, 'all ramps'),
+        _Figure(f'lost motion at ±{at} N·m', 'arcmin', found.lost_motion, large),
+        _Figure(
+            f'lost motion without friction at ±{load} N·m', 'arcmin', found.frictionless, small
+        ),
+        _Figure('friction', 'N·m', found.friction, small),
+        *(_Figure(f'stiffness {_range(s)}', 'N·m/rad', s.both, large) for s in found.stiffness),
+        _Figure('stiffness of whole loops', 'N·m/rad', whole.both if whole else None, large),
     ]
 
 
@@ -109,36 +121,21 @@ def _range(stiffness: Stiffness) -> str:
 def too_uncertain(found: GearFigures) -> list[str]:
     """Describe the figures that are left out of their table, as their ± exceed them."""
     return [
-        f'{figure.label} ({plus_minus(figure.estimate, figure.scale)} {figure.unit})'
+        f'{figure.label} ({shown(figure.value, figure.scale)} {figure.unit})'
         for figure in _figures(found)
-        if figure.estimate and not figure.estimate.clear
+        if figure.value and not figure.clear
     ]
 
 
-def _figure_table(found: GearFigures) -> Table:
-    rows = list(_rows(f for f in _figures(found) if f.estimate and f.estimate.clear))
-    rows.insert(1, _backlash_row(found.backlash))
-    return Table(_FIGURES, tuple(rows), _WORDS)
-
-
-def _backlash_row(backlash: Backlash) -> tuple[Cell, ...]:
-    if backlash.value:
-        return next(_rows([_angle('backlash', backlash.value, 'all ramps')]))
-    minutes, degrees = (
-        Cell(interval(backlash, scale), unit='' if backlash.high is None else unit)
-        for scale, unit in ((ARC_MINUTES, 'arcmin'), (_DEGREES, '°'))
-    )
-    cells = (minutes, Cell(''), degrees, Cell(''), Cell('all ramps'))
-    return (Cell('backlash', unit='arcmin'), *cells)
-
-
-def interval(backlash: Backlash | None, scale: float = ARC_MINUTES) -> str:
-    """Format a backlash: a value, or the interval that contains it."""
-    if backlash is None or backlash.high is None:
+def shown(value: Estimate | Backlash | None, scale: float) -> str:
+    """Format a figure; a backlash without a value, as the interval that contains it."""
+    if not isinstance(value, Backlash):
+        return plus_minus(value, scale)
+    if value.high is None:
         return 'unknown'
-    if backlash.value:
-        return plus_minus(backlash.value, scale)
-    return f'{number(backlash.low * scale)} to {number(backlash.high * scale)}'
+    if value.value:
+        return plus_minus(value.value, scale)
+    return f'{number(value.low * scale)} to {number(value.high * scale)}'
 
 
 def _amplitude_table(found: GearFigures) -> Table:
@@ -150,7 +147,7 @@ def _amplitude_table(found: GearFigures) -> Table:
             'hysteresis [arcmin]': lambda f: arc_minutes(f.hysteresis),
             'lost motion [arcmin]': lambda f: arc_minutes(f.lost_motion),
             'without friction [arcmin]': lambda f: arc_minutes(f.frictionless),
-            'backlash [arcmin]': lambda f: interval(f.backlash),
+            'backlash [arcmin]': lambda f: shown(f.backlash, ARC_MINUTES) or 'unknown',
             'friction [N·m]': lambda f: plus_minus(f.friction),
         },
         found.by_amplitude,
@@ -172,29 +169,15 @@ def _stiffness_table(found: GearFigures) -> Table:
     )
 
 
-def _transmission_table(found: TransmissionFigures, report: LostMotion) -> Table:
-    """Return the figures of the transmission error."""
-    both = report.recording.encoders
-    unit, scale = ('ms', 1e3) if both and both.timed else ('rows', 1.0)
-    rows = _rows(
-        (
-            _angle('transmission accuracy forward', found.forward),
-            _angle('transmission accuracy backward', found.backward),
-            _angle('backward minus forward', found.reversals),
-            _angle('lost motion on reversals', found.lost_motion),
-            _Figure('delay of the output encoder', unit, found.delay, '', scale),
-        )
-    )
-    travel = number(math.degrees(found.travel), 4)
-    offset = (
-        Cell('mean error', unit='arcmin'),
-        Cell(number(found.offset * ARC_MINUTES, 5), unit='arcmin'),
-        Cell(''),
-        Cell(number(math.degrees(found.offset), 5), unit='°'),
-        Cell(''),
-        Cell(f'{found.samples} samples over {travel}° of the output'),
-    )
-    return Table(_FIGURES, (*rows, offset), _WORDS)
+def _errors(found: TransmissionFigures, *, timed: bool) -> list[_Figure]:
+    """List the figures of the transmission error."""
+    return [
+        _Figure('transmission accuracy forward', 'arcmin', found.forward),
+        _Figure('transmission accuracy backward', 'arcmin', found.backward),
+        _Figure('backward minus forward', 'arcmin', found.reversals),
+        _Figure('lost motion on reversals', 'arcmin', found.lost_motion),
+        _Figure('delay of the output encoder', 'ms' if timed else 'rows', found.delay),
+    ]
 
 
 def _order_table(found: TransmissionFigures) -> Table:
@@ -212,29 +195,25 @@ def _order_table(found: TransmissionFigures) -> Table:
 
 def key(report: LostMotion) -> Table:
     """Return the figures of the summary, which a page shows first."""
-    return Table.of_values(Layout.INLINE, *_quantities(report).items())
+    return Table.of_values(Layout.INLINE, *_main_figures(report).items())
 
 
 def summary(reports: Sequence[LostMotion]) -> Table:
     """Return a row for each recording, of at least one."""
-    rows = [(printable(report.name), *_quantities(report).values()) for report in reports]
-    columns = ('recording', *_quantities(reports[0]))
+    rows = [(printable(report.name), *_main_figures(report).values()) for report in reports]
+    columns = ('recording', *_main_figures(reports[0]))
     return Table(columns, tuple(tuple(map(Cell, row)) for row in rows))
 
 
-def _quantities(report: LostMotion) -> dict[str, str]:
-    hysteresis = lost_motion = stiffness = accuracy = None
-    backlash = ''
-    if error := report.transmission:
-        lost_motion, accuracy = error.lost_motion, error.forward
-    if found := report.figures:
-        hysteresis, lost_motion = found.smallest.hysteresis, found.largest.lost_motion
-        stiffness = found.largest.stiffness[-1].both if found.largest.stiffness else None
-        backlash = interval(found.backlash)
+def _main_figures(report: LostMotion) -> dict[str, str]:
+    found, motion = report.figures, report.transmission
+    moving = found or motion
     return {
-        'hysteresis [arcmin]': arc_minutes(hysteresis),
-        'backlash [arcmin]': backlash,
-        'lost motion [arcmin]': arc_minutes(lost_motion),
-        'stiffness [N·m/rad]': plus_minus(stiffness),
-        'transmission accuracy [arcmin]': arc_minutes(accuracy),
+        'hysteresis [arcmin]': arc_minutes(found.hysteresis) if found else '',
+        'backlash [arcmin]': shown(found.backlash, ARC_MINUTES) if found else '',
+        'lost motion [arcmin]': arc_minutes(moving.lost_motion) if moving else '',
+        'stiffness [N·m/rad]': (
+            plus_minus(found.stiffness[-1].both) if found and found.stiffness else ''
+        ),
+        'transmission accuracy [arcmin]': arc_minutes(motion.forward) if motion else '',
     }

@@ -83,14 +83,3 @@ def test_only_turns_with_an_interval_can_be_pinned(ramps_json, tmp_path):
     assert 'its settings are plain numbers' in refusal('index', '--measured', path)
     path = changed(ramps_json, tmp_path, cause='no figure clearly falls')
     assert 'no least turn: no figure clearly falls' in refusal('index', '--measured', path)
-
-
-@pytest.mark.parametrize(
-    ('options', 'complaint'),
-    [
-        (['--load', '2'], '--load needs --preloads'),
-        (['--preload-unit', 'deg'], '--preload-unit needs --preloads'),
-    ],
-)
-def test_options_of_preloads_need_it(options, complaint):
-    assert complaint in refusal('lost-motion', 'a.csv', *options)

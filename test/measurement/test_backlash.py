@@ -18,8 +18,8 @@ from simulated_ramps import (
 )
 
 from gear_kinematics.measurement.loops import find_ramps
+from gear_kinematics.measurement.lost_motion import time_remarks
 from gear_kinematics.measurement.middle_line import Backlash, Cause, reconciled
-from gear_kinematics.measurement.time_effects import time_remarks
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
 TEN = 10.0 * ARC_MINUTE
@@ -77,7 +77,7 @@ def test_it_is_never_wider_than_the_hysteresis():
     angle = 200.0 * ARC_MINUTE * load + torque / 600.0
     angle[1::2] += 3.0 * ARC_MINUTE  # rests anywhere
     figures = measured(torque, angle, np.arange(len(torque)) / 100.0)
-    width = figures.smallest.hysteresis
+    width = figures.hysteresis
     assert figures.backlash.high <= width.value + width.uncertainty + 1e-12
 
 
@@ -121,7 +121,7 @@ def test_what_time_does_is_one_remark(name, said):
     scenario = next(one for one in SCENARIOS if one.name == name)
     recorded = simulate(scenario, np.random.default_rng(3))
     found = find_ramps(recorded.torque, recorded.angle, recorded.time)
-    friction = measured(recorded.torque, recorded.angle, recorded.time).smallest.friction
+    friction = measured(recorded.torque, recorded.angle, recorded.time).friction
     remarks = list(time_remarks(found, friction, STEP))
     assert [said in remark for remark in remarks if 'drifts' not in remark] == [True] * bool(said)
 

@@ -76,12 +76,6 @@ def test_step_that_the_print_hides_is_not_determinable(decimals):
     assert found == Step(10.0**-decimals, Source.RECORDING)
 
 
-def test_single_precision_that_hides_the_step_in_an_unknown_unit():
-    many = 1.2345 * single(stepped(readings(2e4, 1e-3), STEP) / 1.2345)
-    found = find_step(many)
-    assert found.source != Source.FOUND
-
-
 @pytest.mark.parametrize('seed', range(5))
 @pytest.mark.parametrize('readings_of', ['noise', 'sine', 'walk'])
 def test_readings_without_steps_have_none(seed, readings_of):
@@ -112,11 +106,6 @@ def test_levels_may_be_missing(step, jump):
     counts = np.cumsum(np.random.default_rng(4).integers(jump, jump + 3, 3000))
     assert find_step(counts * step) == Step(pytest.approx(step, rel=1e-9), Source.FOUND)
     assert find_step(-(counts * step)) == Step(pytest.approx(step, rel=1e-9), Source.FOUND)
-
-
-def test_resolution_is_as_good_as_a_step_where_they_are_equal():
-    counts = np.cumsum(np.random.default_rng(4).integers(0, 3, 3000))
-    assert find_step(counts * 1e-3) == Step(1e-3, Source.RECORDING)
 
 
 def test_steps_of_a_difference():

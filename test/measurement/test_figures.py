@@ -3,7 +3,6 @@
 import csv
 import math
 from itertools import count, islice
-from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from gear_recordings import Gear, creep, quantised, ramps
 from gear_kinematics.correction.uncertainty import student_t
 from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
 from gear_kinematics.measurement.loops import RampError, find_ramps
-from gear_kinematics.measurement.middle_line import Cause
 
 RATED = 40.0
 STEP = 2.0 * math.pi / 65536.0
@@ -28,17 +26,9 @@ GEARS = {
 NOISES = (0.0, 0.02, 0.1, 0.3)
 
 
-class Truth(NamedTuple):
+def truth(gear: Gear) -> dict[str, float]:
     """Expected figures, by the definitions."""
 
-    hysteresis: float
-    play: float
-    friction: float
-    lost_motion: float
-    stiffness: float
-
-
-def truth(gear: Gear) -> Truth:
     def angle(load: float) -> float:
         return load / gear.stiffness + math.copysign(0.5 * gear.play, load)
 
@@ -46,13 +36,11 @@ def truth(gear: Gear) -> Truth:
         return 0.5 * (angle(torque - gear.friction) + angle(torque + gear.friction))
 
     at = 0.03 * RATED
-    return Truth(
-        hysteresis=angle(gear.friction) - angle(-gear.friction),
-        play=gear.play,
-        friction=gear.friction,
-        lost_motion=middle(at) - middle(-at),
-        stiffness=gear.stiffness,
+    hysteresis, lost_motion = (
+        angle(gear.friction) - angle(-gear.friction),
+        middle(at) - middle(-at),
     )
+    return gear._asdict() | {'hysteresis': hysteresis, 'lost_motion': lost_motion}
 
 
 def measured(torque, angle, step=STEP, rated=RATED) -> GearFigures:
@@ -62,10 +50,10 @@ def measured(torque, angle, step=STEP, rated=RATED) -> GearFigures:
 
 def estimates(found: GearFigures) -> dict:
     figures = {
-        'hysteresis': found.smallest.hysteresis,
-        'friction': found.smallest.friction,
-        'lost_motion': found.largest.lost_motion,
-        'stiffness': found.largest.stiffness[-1].both,
+        'hysteresis': found.hysteresis,
+        'friction': found.friction,
+        'lost_motion': found.lost_motion,
+        'stiffness': found.stiffness[-1].both,
     }
     return {name: estimate for name, estimate in figures.items() if estimate}
 
@@ -85,7 +73,7 @@ def recorded(angle, noise: float, seed: int):
 @pytest.mark.slow
 @pytest.mark.parametrize('name', GEARS)
 def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):
-    expected = truth(GEARS[name])._asdict()
+    expected = truth(GEARS[name])
     found = measured(TORQUE, angles[name], step=0.0)
     backlash = found.backlash
     assert backlash.low - 1e-5 <= expected['play'] <= backlash.high + 1e-5
@@ -104,7 +92,7 @@ def test_stated_uncertainties_hold_over_a_grid_of_noise(angles):
     widths: dict[str, list[float]] = {}
     seeds = count()  # with the same noise, what holds for one gear would hold for all
     for name, gear in GEARS.items():
-        expected = truth(gear)._asdict()
+        expected = truth(gear)
         for noise in NOISES:
             for seed in islice(seeds, 4):
                 found = estimates(measured(*recorded(angles[name], noise, seed)))
@@ -133,7 +121,7 @@ def test_many_repeats_do_not_hide_that_noise_rounds_the_curve():
     """The gear goes through its play at a torque of 1 N·m; lost motion is read at 1.2 N·m."""
     torque = ramps(*[(LARGE, 400)] * 10)
     angle = creep(GEARS['backlash'], torque)
-    expected = truth(GEARS['backlash']).lost_motion
+    expected = truth(GEARS['backlash'])['lost_motion']
     for seed in range(8):
         noisy = torque + 0.1 * np.random.default_rng(seed).standard_normal(len(torque))
         found = measured(noisy, angle, step=0.0).largest
@@ -174,6 +162,10 @@ def test_ranges_that_the_ramps_do_not_reach_are_left_out():
     torque = ramps(*[(6.5, 200)] * 3)
     found = measured(torque, creep(GEARS['soft'], torque), step=0.0).largest
     assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, 6.0)]
+    torque = ramps((1.0, 200), (1.0, 200))
+    found = measured(torque, creep(Gear(0.01, 300.0, 0.2), torque), step=0.0).largest
+    assert found.lost_motion is None
+    assert found.hysteresis.value == pytest.approx(0.01 + 0.4 / 300.0, abs=1e-5)
 
 
 def test_whole_loops_have_the_mean_slope_of_both_ways():
@@ -184,16 +176,6 @@ def test_whole_loops_have_the_mean_slope_of_both_ways():
     sides = [np.polyfit(torque[way], angle[way], 1)[0] for way in (torque > 0, torque < 0)]
     # A line through all samples of a side, as many publications draw it; the first ramp is virgin.
     assert found.overall.both.value == pytest.approx(2.0 / sum(sides), rel=2e-3)
-
-
-def test_small_ramps_of_a_gear_that_is_rated_far_higher():
-    """No stiffness is clear of the play."""
-    torque = ramps(*[(SMALL, 200)] * 3)
-    figures = measured(torque, creep(GEARS['backlash'], torque), step=0.0, rated=RATED)
-    found = figures.largest
-    assert [(s.low, round(s.high, 2)) for s in found.stiffness] == [(0.0, SMALL)]
-    assert figures.backlash.value.value == pytest.approx(0.02, abs=2e-5)
-    assert found.hysteresis.value == pytest.approx(truth(GEARS['backlash']).hysteresis, abs=2e-5)
 
 
 def test_a_range_that_friction_holds_has_no_stiffness():
@@ -211,34 +193,9 @@ def test_angle_that_does_not_follow_the_torque_is_refused(offset):
             measured(torque, angle + offset, step=0.0, rated=SMALL)
 
 
-def test_no_lost_motion_beyond_the_ramps():
-    torque = ramps((1.0, 200), (1.0, 200))
-    found = measured(torque, creep(Gear(0.01, 300.0, 0.2), torque), step=0.0).largest
-    assert found.lost_motion is None
-    assert found.hysteresis.value == pytest.approx(0.01 + 0.4 / 300.0, abs=1e-5)
-
-
-def test_single_ramp_has_figures_but_no_uncertainty():
-    torque = ramps((SMALL, 300))
-    figures = measured(torque, creep(GEARS['backlash'], torque), rated=SMALL)
-    found = figures.largest
-    assert found.loops == 1
-    assert found.hysteresis.value == pytest.approx(truth(GEARS['backlash']).hysteresis, abs=1e-4)
-    assert found.hysteresis.uncertainty is None
-    assert found.friction is None  # the loop is not closed
-    assert figures.backlash == (0.0, found.hysteresis.value, Cause.REPEATS)
-
-
 # The measured actuator
 
-FILES = (
-    'base_onyx_no_preload',
-    'conic_onyx_preload_1',
-    'conic_onyx_preload_2',
-    'conic_onyx_preload_3',
-    'conic_onyx_preload_4',
-    'conic_onyx_preload_5',
-)
+FILES = ('base_onyx_no_preload', *(f'conic_onyx_preload_{setting}' for setting in range(1, 6)))
 
 
 def columns(path) -> dict[str, np.ndarray]:
@@ -247,32 +204,11 @@ def columns(path) -> dict[str, np.ndarray]:
     return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
-@pytest.fixture(scope='module', params=FILES)
-def actuator_test(request, shared_path):
-    data = columns(shared_path(f'data/torque_ramps/{request.param}_position_1.csv'))
-    return request.param, data
-
-
 @pytest.mark.slow
-def test_preload_shows_in_the_hysteresis_of_the_actuator(actuator_test):
-    name, data = actuator_test
-    figures = measured(data['TORQUE'], 2.0 * math.pi * data['POSITION'])
-    small, large = figures.by_amplitude
-    assert (small.loops, large.loops) == (5, 3)
-    assert small.amplitude == pytest.approx(4.0, abs=0.1)
-    width = np.degrees(small.hysteresis.value)
-    spread = np.degrees(small.hysteresis.uncertainty)
-    if name in FILES[:2]:
-        assert 1.5 < width - spread < width + spread < 2.0
-    else:
-        assert width + spread < 1.0
-    assert 0.0 <= figures.backlash.low < np.degrees(figures.backlash.high) <= width + spread
-
-
-@pytest.mark.slow
-def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(actuator_test):
+@pytest.mark.parametrize('name', FILES)
+def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(shared_path, name):
     """The commanded torque is free of noise: angles where it is zero, ramp by ramp."""
-    _, data = actuator_test
+    data = columns(shared_path(f'data/torque_ramps/{name}_position_1.csv'))
     widths = []
     for test in range(5):
         rows = data['test_nr'] == test
@@ -286,25 +222,6 @@ def test_hysteresis_of_the_actuator_is_that_of_the_commanded_torque(actuator_tes
     small = measured(data['TORQUE'], 2.0 * math.pi * data['POSITION']).smallest
     expected = 2.0 * math.pi * np.mean(widths)
     assert abs(small.hysteresis.value - expected) <= small.hysteresis.uncertainty
-
-
-@pytest.mark.slow
-def test_ramps_of_the_actuator_repeat_within_their_uncertainty(shared_path):
-    """Each ramp lies in the 95 % prediction interval of the others."""
-    inside = total = 0
-    for name in FILES:
-        data = columns(shared_path(f'data/torque_ramps/{name}_position_1.csv'))
-        ramps_found = find_ramps(data['TORQUE'], 2.0 * math.pi * data['POSITION'])
-        widths = np.array([loop.width(0.0) for loop in ramps_found[0].loops])
-        for k, width in enumerate(widths):
-            others = np.delete(widths, k)
-            count = len(others)
-            reach = student_t(count - 1) * np.std(others, ddof=1) * math.sqrt(1 + 1 / count)
-            inside += abs(width - others.mean()) <= reach
-            total += 1
-    assert total == 30
-    # Of 30, fewer than 25 would be inside once in 300 times.
-    assert inside >= 25
 
 
 def test_a_published_stiffness_is_found(shared_path):

@@ -74,13 +74,6 @@ def test_measured_lost_motion_falls_up_to_the_fourth_setting():
     assert advice.end.value == pytest.approx(4.0, abs=0.7)
 
 
-def test_settings_that_all_rest_beyond_the_play_show_no_fall():
-    found = [measured(k, 30.0 + 0.1 * k) for k in range(5)]
-    advice = advise(found, None, None)
-    assert not advice.falling
-    assert advice.least is None
-
-
 def test_a_fall_that_one_recording_shows_has_no_end_beyond_the_next():
     advice = advise([measured(k, v) for k, v in enumerate(CONIC, 1)], None, None)
     assert advice.falling

@@ -8,7 +8,7 @@ import pytest
 from gear_recordings import Samples, encoders, quantised, write_csv, write_recording
 
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.measurement.columns import Columns
+from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.lost_motion import Request, measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
@@ -124,7 +124,7 @@ def test_values_of_a_csv_row_are_simultaneous(tmp_path, config, actuator):
         rotor_position=np.degrees(-19.0 * ideal),
         output_position=np.degrees(output_of(ideal)),
     )
-    recording = read(path, config, Columns(unit='deg'))
+    recording = read(path, config, Sources(unit='deg'))
     assert recording.remarks == ('the times in time are not used: they stand still',)
     found = measure(recording, actuator, config, Request(delay=0.0)).transmission
     assert found.samples == len(ideal)

@@ -1,5 +1,9 @@
 """Since when a gear has changed: simulated sequences of recordings."""
 
+from datetime import UTC, datetime
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps
@@ -7,7 +11,7 @@ from gear_recordings import Gear, creep, ramps
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.compare.quantities import Quantity, at_common_torque
 from gear_kinematics.measurement.compare.section import over_time
-from gear_kinematics.measurement.compare.trend import trend
+from gear_kinematics.measurement.compare.trend import common_times, named_time, trend
 from gear_kinematics.measurement.figures import gear_figures, settings_for
 from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
@@ -17,11 +21,8 @@ DAY = 86400.0
 
 def recorded(means, seed, scatter=0.1) -> Quantity:
     values = means * np.exp(scatter * np.random.default_rng(seed).standard_normal(len(means)))
-    return quantity_of(Estimate(value, None, 0.0, 1) for value in values)
-
-
-def quantity_of(values) -> Quantity:
-    return Quantity('hysteresis', 'rad', tuple(values), main=True)
+    found = (Estimate(value, None, 0.0, 1) for value in values)
+    return Quantity('hysteresis', 'rad', tuple(found), main=True)
 
 
 def trend_of(quantity, times=None):
@@ -57,13 +58,6 @@ def test_a_slope_is_in_proportion_to_time_and_robust():
     assert found.probability < 0.002
 
 
-def test_recordings_without_the_figure_are_passed_over():
-    values = list(recorded([1.0] * 5 + [3.0] * 6, seed=5).values)
-    values[1] = values[5] = None
-    found = trend_of(quantity_of(values))
-    assert (found.first, found.second) == ('4', '6')
-
-
 def test_the_sentence_says_since_when():
     torque, reports = ramps(*[(4.0, 30)] * 2, (40.0, 30)), []
     for number, play in enumerate([0.004] * 4 + [0.012] * 5):
@@ -71,14 +65,39 @@ def test_the_sentence_says_since_when():
         found = find_ramps(torque, creep(Gear(play, 300.0, friction), torque))
         figures = gear_figures(found, settings_for(found, 0.0))
         reports.append(LostMotion(f'0302_0{number}00.csv', None, None, found, figures))
-    times = [DAY * number for number in range(9)]
-    comparison = over_time(at_common_torque(reports), times, 'names')
+    comparison = over_time(at_common_torque(reports), [DAY * k for k in range(9)], 'names')
     # In the model the hysteresis is play + 2 friction / stiffness.
     assert comparison.sentence.startswith('since 0302_04: hysteresis 32.')
-    data = comparison.data['trend']
-    assert data['recordings'][4] == {'name': '0302_0400.csv', 'days': 4.0}
-    hysteresis = data['figures'][0]
-    assert hysteresis['significant']
-    assert hysteresis['ratio'] == pytest.approx((0.012 + 0.00546) / (0.004 + 0.00546), rel=0.03)
-    with pytest.raises(ValueError, match='--trend needs 5 recordings'):
-        over_time(at_common_torque(reports[:4]), times[:4], 'names')
+
+
+# When recordings were made
+
+
+@pytest.mark.parametrize(
+    ('name', 'time'),
+    [
+        ('2024-07-12__14-07-48__torqueramp__conic 1pre1.csv', (2024, 7, 12, 14, 7, 48)),
+        ('rosbag2_2024_07_12-14_07_48', (2024, 7, 12, 14, 7, 48)),
+        ('ramps-20240712T140748.csv', (2024, 7, 12, 14, 7, 48)),
+        ('0712_1407_conic_1pre1.csv', (2000, 7, 12, 14, 7, 0)),
+        ('0229_0001.csv', (2000, 2, 29, 0, 1, 0)),
+        ('9999_9999_then_0712_1407.csv', (2000, 7, 12, 14, 7, 0)),
+        ('conic_onyx_preload_1_position_1.csv', None),
+        ('serial_123456789_0712.csv', None),
+        ('1332_1407.csv', None),
+    ],
+)
+def test_time_in_a_name(name, time):
+    assert named_time(name) == (time and datetime(*time, tzinfo=UTC).timestamp())
+
+
+def test_the_first_source_that_dates_all_recordings_counts(tmp_path):
+    def made(name: str, start: float | None):
+        (tmp_path / name).touch()
+        return SimpleNamespace(path=Path(tmp_path / name), start=start)
+
+    both, named = made('0712_1407.csv', 3.0), made('0712_1408.csv', None)
+    assert common_times([both, both])[0] == [3.0, 3.0]
+    times, source = common_times([both, named])
+    assert (times[1] - times[0], source) == (60.0, 'the times in their names')
+    assert 'copying' in common_times([both, named, made('x.csv', None)])[1]

@@ -186,8 +186,8 @@ ROOMS = {
 """Each room of the package and the rooms it imports, all of which stand before it."""
 MEASUREMENT = {
     'preload': ('comparison', 'encoder_step', 'loops', 'lost_motion', 'wording'),
-    'compare': ('comparison', 'figures', 'loops', 'lost_motion', 'wording'),
-    'calibration': ('clock', 'curves', 'ratio', 'recording', 'transmission', 'wording'),
+    'compare': ('comparison', 'figures', 'loops', 'lost_motion', 'recording', 'wording'),
+    'calibration': ('curves', 'ratio', 'recording', 'transmission', 'wording'),
 }
 """Rooms within `measurement`, and what of its modules they import."""
 TENANTS = {

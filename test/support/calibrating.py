@@ -12,7 +12,6 @@ from simulated_gear import GearSet, Simulated, gears, simulate, slow_strokes, st
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.measurement.calibration import Fit, fit, to_calibration
-from gear_kinematics.measurement.clock import Dates
 from gear_kinematics.measurement.recording import Encoders, Recording
 
 LIMITED = GearSet(
@@ -66,7 +65,7 @@ def recorded(simulated: Simulated, gear: int, *, timed: bool = True) -> tuple[Re
     both = encoders(rotor, measured, stamp, COUNTS, COUNTS)
     both = replace(both, rotor=both.rotor._replace(effort=effort))
     path = Path(__file__)  # of no importance but for its hash
-    return Recording(path, f'gear {gear}', (), len(rotor), Dates(None, None, 0.0), both), both
+    return Recording(path, f'gear {gear}', (), len(rotor), None, both), both
 
 
 def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:

@@ -96,31 +96,33 @@ class Samples(NamedTuple):
     stamps: Sequence[int]  # ns
     positions: Sequence[float]
     efforts: Sequence[float] | None = None
+    received: Sequence[int] | None = None  # ns; None: at the stamps
 
 
 def write_recording(path: Path, rotor: Samples, encoder: Samples | None = None) -> Path:
-    """Write a bag with /rotor_state and /output_encoder, in the order of their stamps."""
+    """Write a bag with /rotor_state and /output_encoder, in the order of reception."""
     recorded = {'/rotor_state': ('rotor', rotor)}
     if encoder:
         recorded['/output_encoder'] = ('output_shaft', encoder)
     messages = [
-        (stamp, topic, data)
+        (received, topic, data)
         for topic, (joint, samples) in recorded.items()
-        for stamp, data in _messages(joint, samples)
+        for received, data in _messages(joint, samples)
     ]
     with BagWriter(path) as writer:
         for topic in recorded:
             writer.add_topic(topic, 'sensor_msgs/msg/JointState')
-        for stamp, topic, data in sorted(messages):
-            writer.write(topic, stamp, data)
+        for received, topic, data in sorted(messages):
+            writer.write(topic, received, data)
     return path
 
 
 def _messages(joint: str, samples: Samples):
     template = JointStateTemplate([joint], velocity=False, effort=samples.efforts is not None)
     columns = [samples.positions, *([] if samples.efforts is None else [samples.efforts])]
-    for stamp, *numbers in zip(samples.stamps, *columns, strict=True):
-        yield int(stamp), template.encode(int(stamp), *([float(number)] for number in numbers))
+    received = samples.stamps if samples.received is None else samples.received
+    for at, stamp, *numbers in zip(received, samples.stamps, *columns, strict=True):
+        yield int(at), template.encode(int(stamp), *([float(number)] for number in numbers))
 
 
 def record_both_encoders(folder: Path, *names: str) -> None:

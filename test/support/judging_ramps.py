@@ -38,15 +38,14 @@ def judge(scenario: Scenario, count: int, seed: int = 1, *, alike: bool = False)
     backlash = [figures.backlash for figures in found]
     widths = [(math.inf if one.high is None else one.high) - one.low for one in backlash]
     held = [
-        # Within the step of the encoder, which hides the ends of an interval.
-        one.low - 0.5 * STEP <= play and (one.high is None or play <= one.high + 0.5 * STEP)
+        one.low <= play and (one.high is None or play <= one.high)
         for one, play in zip(backlash, gears.play * np.ones(count), strict=True)
     ]
     return Judged(
-        hysteresis=_share((one.smallest.hysteresis for one in found), hysteresis(gears)),
+        hysteresis=_share((one.hysteresis for one in found), hysteresis(gears)),
         friction=math.nan
         if scenario.slip or scenario.creeps or np.any(scenario.lag) or scenario.inertia
-        else _share((one.smallest.friction for one in found), gears.friction),
+        else _share((one.friction for one in found), gears.friction),
         backlash=float(np.mean(held)),
         width=float(np.median(widths)),
         widest=float(np.quantile(widths, 0.95)),

@@ -1,11 +1,9 @@
 """The figures of several recordings at one torque, so that they can be compared."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
-from operator import attrgetter
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.comparison import HYSTERESIS
@@ -117,31 +115,25 @@ def _quantities(
 ) -> list[Quantity]:
     little, large = ([chosen and chosen[1] for chosen in own] for own in (small, loaded))
     moved = [report.transmission for report in reports]
-    ranges = sorted(
-        {(s.low, s.high) for f in large if f for s in f.stiffness if 0.0 < s.low < s.high <= reach}
-    )
-    stiffness = {
-        f'stiffness {number(own[0])} to {number(own[1])} N·m': partial(_stiffness, own)
-        for own in ranges
-    }
-    listed: list[tuple[str, str, Sequence[Any], Callable[[Any], Estimate | None]]] = [
-        (HYSTERESIS, 'rad', little, attrgetter('hysteresis')),
-        ('lost motion without friction', 'rad', little, attrgetter('frictionless')),
-        ('friction', 'N·m', little, attrgetter('friction')),
-        ('lost motion', 'rad', large, attrgetter('lost_motion')),
-        *((name, 'N·m/rad', large, of) for name, of in stiffness.items()),
-        ('overall stiffness', 'N·m/rad', large, lambda f: f.overall and f.overall.both),
-        ('lost motion on reversals', 'rad', moved, attrgetter('lost_motion')),
-        ('transmission accuracy', 'rad', moved, attrgetter('forward')),
+    overall = [f.overall if f else None for f in large]
+    ranges = [
+        {(s.low, s.high): s.both for s in found if 0.0 < s.low < s.high <= reach}
+        for found in (f.stiffness if f else () for f in large)
     ]
-    main = {HYSTERESIS, *[*stiffness][-1:]}
-    found = (
-        Quantity(name, unit, tuple(own and of(own) for own in owners), name in main)
-        for name, unit, owners, of in listed
-    )
-    known = [quantity for quantity in found if sum(map(bool, quantity.values)) > 1]
-    return known if any(small) else [replace(quantity, main=True) for quantity in known]
-
-
-def _stiffness(limits: tuple[float, float], figures: Figures) -> Estimate | None:
-    return next((s.both for s in figures.stiffness if (s.low, s.high) == limits), None)
+    stiffness = {
+        f'stiffness {number(low)} to {number(high)} N·m': [own.get((low, high)) for own in ranges]
+        for low, high in sorted({limits for own in ranges for limits in own})
+    }
+    listed: list[tuple[str, str, Iterable[Estimate | None]]] = [
+        (HYSTERESIS, 'rad', (f.hysteresis if f else None for f in little)),
+        ('lost motion without friction', 'rad', (f.frictionless if f else None for f in little)),
+        ('friction', 'N·m', (f.friction if f else None for f in little)),
+        ('lost motion', 'rad', (f.lost_motion if f else None for f in large)),
+        *((name, 'N·m/rad', values) for name, values in stiffness.items()),
+        ('overall stiffness', 'N·m/rad', (s.both if s else None for s in overall)),
+        ('lost motion on reversals', 'rad', (f.lost_motion if f else None for f in moved)),
+        ('transmission accuracy', 'rad', (f.forward if f else None for f in moved)),
+    ]
+    main = {HYSTERESIS, *[*stiffness][-1:]} if any(small) else {name for name, *_ in listed}
+    found = [Quantity(name, unit, tuple(v), name in main) for name, unit, v in listed]
+    return [quantity for quantity in found if sum(map(bool, quantity.values)) > 1]

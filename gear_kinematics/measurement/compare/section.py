@@ -1,22 +1,38 @@
 """The sections of a report on several recordings, in words, tables and panels."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby, product
+from statistics import fmean
 from typing import Any
 
+import numpy as np
+
 from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.measurement.compare import panels
 from gear_kinematics.measurement.compare.changes import SIGNIFICANCE, Change, changes_of, judged
 from gear_kinematics.measurement.compare.groups import Group, by_label, single
-from gear_kinematics.measurement.compare.quantities import Common, in_common
+from gear_kinematics.measurement.compare.quantities import Chosen, Common, in_common
 from gear_kinematics.measurement.compare.trend import FEWEST, trend
 from gear_kinematics.measurement.comparison import HYSTERESIS, Comparison
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT
-from gear_kinematics.report.document import Cell, Section, Table, Tone, number, printable
+from gear_kinematics.report.document import (
+    Cell,
+    Figure,
+    Line,
+    Panel,
+    Pen,
+    Section,
+    Table,
+    Tone,
+    number,
+    printable,
+)
 
 _DAY = 86400.0  # s
+_PENS = (Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH)
+_TORQUES = 300
+"""Of half a loop in a plot."""
 _LEAST = 1e-4
 """Probability below which no number is given."""
 _JUDGED = (
@@ -31,7 +47,6 @@ _WITHIN = (
 )
 _ORDERS = f'{_JUDGED}, if the place of a step is right; by chance: share of random orders'
 _SAMPLE = f'Each ± ({PERCENT}) takes the measured positions as a random sample of all'
-_POSITION_KEYS = 'gear', 'figure', 'unit', 'mean', 'least', 'greatest'
 
 
 def compared(
@@ -52,17 +67,20 @@ def compared(
         return None
     repeated = any(change.repeated for change in found)
     if len(others) == 1:
-        told = f'{others[0].name} against {first.name}: {_told(found)}{_play(reports, *named)}'
+        answer = (
+            f'{others[0].name} against {first.name}: {_changed(found)}{_play(reports, *named)}'
+        )
     else:
-        told = f'against {first.name}: {_total(found)}'
-    told += '' if repeated else '; judged by the scatter within single recordings'
+        answer = f'against {first.name}: {_total(found)}'
+    answer += '' if repeated else '; judged by the scatter within single recordings'
     members = [
         {'name': group.name, 'recordings': [reports[k].name for k in group.members]}
         for group in named
     ]
     data = {'groups': members, 'changes': [_data(change) for change in found]}
-    texts = told, _BETWEEN if repeated else _WITHIN
-    return _comparison('comparison', common, named, _table(found), texts, data)
+    texts = answer, _BETWEEN if repeated else _WITHIN
+    table = _table(found, lambda c: f', {c.second}' if len(others) > 1 else '')
+    return _comparison('comparison', common, named, table, texts, data)
 
 
 def over_positions(
@@ -76,32 +94,38 @@ def over_positions(
         ValueError: if no figure of a gear is known at two positions.
     """
     common, places, several = in_common(reports), by_label(positions), len(gears) > 1
-    rows, told, data = [], [], []
+    rows, parts, data = [], [], []
     for gear, quantity in product(gears, common.quantities):
         known = {m: value.value for m in gear.members if (value := quantity.values[m])}
-        at = [
-            (sum(own) / len(own), name)
-            for name, members in places
+        at = sorted(
+            (fmean(own), place)
+            for place, members in places
             if (own := [known[member] for member in members if member in known])
-        ]
+        )
         if len(at) < 2:  # noqa: PLR2004, nothing to combine
             continue
-        mean, low, high = Estimate.of_mean([value for value, _ in at]), min(at), max(at)
+        mean, (least, lowest), (greatest, highest) = (
+            Estimate.of_mean([value for value, _ in at]), at[0], at[-1]
+        )  # fmt: skip
         subject = f'{gear.name}: {quantity.name}' if several else quantity.name
-        shown = (f'{quantity.cell(value).with_unit()} at {place}' for value, place in (low, high))
-        cells = (Cell(printable(text)) for text in (subject, *shown))
-        rows.append((next(cells), quantity.cell(mean), *cells))
+        low, high, middle = (quantity.cell(value) for value in (least, greatest, mean))
+        ends = f'{low.with_unit()} at {lowest}', f'{high.with_unit()} at {highest}'
+        rows.append((Cell(printable(subject)), middle, *(Cell(printable(end)) for end in ends)))
         if quantity.name == HYSTERESIS or (quantity.main and not several):
-            between = quantity.cell(low[0], high[0]).text
-            told.append(f'{subject} {quantity.cell(mean).with_unit()} ({between})')
-        ends = ({'value': value, 'position': place} for value, place in (low, high))
-        row = gear.name, quantity.name, quantity.unit, mean, *ends
-        data.append(dict(zip(_POSITION_KEYS, row, strict=True)))
+            parts.append(f'{subject} {middle.with_unit()} ({low.text} to {high.text})')
+        data.append({
+            'gear': gear.name,
+            'figure': quantity.name,
+            'unit': quantity.unit,
+            'mean': mean,
+            'least': {'value': least, 'position': lowest},
+            'greatest': {'value': greatest, 'position': highest},
+        })  # fmt: skip
     if not rows:
         raise ValueError('--positions: no figure is known at two positions')
     columns = 'over positions', 'mean', 'least', 'greatest'
     table = Table(columns, tuple(rows), ('', 'least', 'greatest'))
-    texts = f'over {len(places)} positions: {", ".join(told)}', _SAMPLE
+    texts = f'over {len(places)} positions: {", ".join(parts)}', _SAMPLE
     drawn = gears if several else places
     return _comparison('positions', common, drawn, table, texts, {'positions': data})
 
@@ -129,7 +153,7 @@ def over_time(reports: Sequence[LostMotion], times: Sequence[float], source: str
 
     clear = [change for change in found if change.significant]
     clear.sort(key=lambda change: (names.index(change.second), since(change)))
-    told = '; '.join(
+    since_when = '; '.join(
         f'{start}: {", ".join(f"{_arrow(change)} (p = {_chance(change)})" for change in same)}'
         for start, same in groupby(clear, since)
     )
@@ -140,8 +164,9 @@ def over_time(reports: Sequence[LostMotion], times: Sequence[float], source: str
         'figures': [_data(change) for change in found],
     }
     span = f'The recordings span {number(days[-1])} days, by {source}'
-    texts = told or f'no change is shown by {len(reports)} recordings', _ORDERS, span
-    return _comparison('trend', common, named, _table(found), texts, {'trend': data})
+    texts = since_when or f'no change is shown by {len(reports)} recordings', _ORDERS, span
+    table = _table(found, lambda c: f' {since(c)}')
+    return _comparison('trend', common, named, table, texts, {'trend': data})
 
 
 def _comparison(
@@ -153,13 +178,14 @@ def _comparison(
     data: Mapping[str, Any],
 ) -> Comparison:
     remarks = tuple(f'{printable(text)}.' for text in (*texts, *common.remarks))
-    section = Section(name, (table,), remarks=remarks, figure=panels.figure(common, groups))
+    section = Section(name, (table,), remarks=remarks, figure=_figure(common, groups))
     return Comparison(section, printable(texts[0]), data)
 
 
-def _table(found: Sequence[Change]) -> Table:
+def _table(found: Sequence[Change], about: Callable[[Change], str]) -> Table:
+    """Return a row for each change, whose subject says besides the figure what it is about."""
     columns = {
-        'change': lambda c: printable(f'{c.quantity.name}, {c.first} to {c.second}'),
+        'change': lambda c: printable(f'{c.quantity.name}{about(c)}'),
         'before': lambda c: c.quantity.cell(c.before),
         'after': lambda c: c.quantity.cell(c.after),
         'ratio': lambda c: number(c.after / c.before),
@@ -188,7 +214,7 @@ def _arrow(change: Change, *others: Change) -> str:
     return f'{change.quantity.name} {cell(change.before).text} → {after}'
 
 
-def _told(found: Sequence[Change]) -> str:
+def _changed(found: Sequence[Change]) -> str:
     """Say what has changed: the hysteresis, and what else is significant."""
     parts = [
         f'{_arrow(change)} ({_judgement(change).text})'
@@ -238,3 +264,41 @@ def _data(change: Change) -> Mapping[str, Any]:
         'probability': change.probability,
         'significant': change.significant,
     }
+
+
+# Panels
+
+
+def _figure(common: Common, groups: Sequence[Group]) -> Figure:
+    """Draw the loops of recordings over one another, and their main figures over the groups."""
+    ticks = tuple((float(k), printable(group.name)) for k, group in enumerate(groups))
+    lines = tuple(sorted(_loops(groups, common.loops), key=lambda line: not line.behind))
+    torque, angle = 'torque at the output [N·m]', 'wind-up at the output [arcmin]'
+    panels = [Panel('mean loops', torque, angle, lines)] if lines else []
+    places = [  # those of a group side by side
+        (k + 0.5 * place / len(group.members), member)
+        for k, group in enumerate(groups)
+        for place, member in enumerate(group.members)
+    ]
+    for quantity in filter(lambda quantity: quantity.main, common.quantities):
+        known = [(x, v.value, v.uncertainty) for x, m in places if (v := quantity.values[m])]
+        x, y, error = np.array(known, dtype=np.float64).T
+        scale, label = quantity.scale, f'{quantity.name} [{quantity.cell(0.0).unit}]'
+        line = Line('recordings', Pen.FIRST, x, scale * y, points=True, error=scale * error)
+        panels.append(Panel(quantity.name, '', label, (line,), ticks=ticks))
+    return Figure(tuple(panels))
+
+
+def _loops(groups: Sequence[Group], chosen: Sequence[Chosen]) -> Iterator[Line]:
+    """Draw mean loops; of many groups, only the first and the last are told apart."""
+    few = len(groups) <= len(_PENS)
+    pens = dict(enumerate(_PENS)) if few else {0: Pen.FIRST, len(groups) - 1: Pen.SECOND}
+    for k, group in enumerate(groups):
+        for ramps, _ in filter(None, (chosen[member] for member in group.members)):
+            torque = ramps.amplitude * np.linspace(1.0, -1.0, _TORQUES)
+            fall = np.mean([loop.fall.angle_at(torque) for loop in ramps.loops], axis=0)
+            rise = np.mean([loop.rise.angle_at(torque[::-1]) for loop in ramps.loops], axis=0)
+            angle = np.concatenate([fall, rise]) - np.mean([fall, rise])
+            around = np.concatenate([torque, torque[::-1]])
+            legend = printable(group.name) if k in pens else 'between them'
+            yield Line(legend, pens.get(k, Pen.FAINT), around, angle * ARC_MINUTES)

@@ -1,7 +1,10 @@
 """When a gear has changed: by the one step, or slope, of a figure over time that explains most."""
 
+import re
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 from scipy.stats import theilslopes
@@ -10,12 +13,20 @@ from gear_kinematics.correction.uncertainty import COVERAGE
 from gear_kinematics.measurement.compare.changes import Change, changes_of
 from gear_kinematics.measurement.compare.groups import Group
 from gear_kinematics.measurement.compare.quantities import Quantity
+from gear_kinematics.measurement.recording import Recording
 
 FEWEST = 5
 """Recordings: of four, a steady rise or fall comes up by chance in 2 of 24 orders."""
 _DRAWS = 4000
 """Random orders: they give a probability of 5 % within 0.7 % (95 %)."""
 _SEED = 0x6EA2
+_DATE = re.compile(
+    r'(?<!\d)(?:(?P<year>\d{4})[-_.]?)?(?P<month>\d\d)[-_.]?(?P<day>\d\d)'
+    r'[-_.T ]+(?P<hour>\d\d)[-_.:h]?(?P<minute>\d\d)(?:[-_.:]?(?P<second>\d\d))?(?!\d)'
+)
+"""Such as 2024-07-12__14-07-48, 20240712T140748 or 0712_1407."""
+_NO_YEAR = 2000
+"""Taken where a name has no year; a leap year."""
 
 
 def trend(quantity: Quantity, times: Sequence[float], names: Sequence[str]) -> Change | None:
@@ -50,3 +61,30 @@ def trend(quantity: Quantity, times: Sequence[float], names: Sequence[str]) -> C
     first, last, *interval = map(float, np.exp([start, start + slope, *ends]))
     whole = names[0], names[-1], first, last
     return Change(quantity, *whole, tuple(interval), chance, repeated=True)
+
+
+def common_times(recordings: Sequence[Recording]) -> tuple[list[float], str]:
+    """Date recordings by the best source that dates all of them.
+
+    Returns:
+        Times in s, of which only differences count, and their source.
+    """
+    for found, source in (
+        ([recording.start for recording in recordings], 'the times in the recordings'),
+        ([named_time(one.path.name) for one in recordings], 'the times in their names'),
+    ):
+        times = [time for time in found if time is not None]
+        if len(times) == len(recordings):
+            return times, source
+    files = 'the times of their files, which copying may have changed'
+    return [recording.path.stat().st_mtime for recording in recordings], files
+
+
+def named_time(name: str) -> float | None:
+    """Return the time in a name, s since 1970; None if there is none."""
+    for match in _DATE.finditer(name):
+        parts = {unit: int(value) for unit, value in match.groupdict('0').items()}
+        parts['year'] = parts['year'] or _NO_YEAR
+        with suppress(ValueError):
+            return datetime(**parts, tzinfo=UTC).timestamp()
+    return None

@@ -92,7 +92,7 @@ def _reading(report: LostMotion, setting: float, amplitude: float, name: str) ->
     friction = small.friction.value
     load = friction if name == HYSTERESIS else report.figures.settings.small_load
     # With play, one branch alone carries the load in all but the lowest range.
-    ranges = [s for s in report.figures.largest.stiffness if s.low > 0.0]
+    ranges = [s for s in report.figures.stiffness if s.low > 0.0]
     sides = [(1.0 / s.positive.value, 1.0 / s.negative.value) for s in ranges[-1:]]
     return Reading(setting, angle.value, load, friction, *sides)
 

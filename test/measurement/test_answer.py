@@ -1,0 +1,125 @@
+"""What a report says of a recording: its answer, its remarks, and what became of limits."""
+
+import math
+
+import numpy as np
+import pytest
+from gear_recordings import Gear, creep, ramps, write_csv
+
+from gear_kinematics.correction.uncertainty import Component, Estimate
+from gear_kinematics.measurement.answer import Limits, answer, remarks
+from gear_kinematics.measurement.lost_motion import Request, measure
+from gear_kinematics.measurement.reading import read
+from gear_kinematics.measurement.wording import rounded
+
+ARC_MINUTE = math.radians(1.0 / 60.0)
+GEAR = Gear(play=10.0 * ARC_MINUTE, stiffness=300.0, friction=1.0)  # hysteresis 32.9′
+SMALL = ramps(*[(4.0, 200)] * 3)
+
+
+@pytest.fixture(scope='module')
+def report_of(tmp_path_factory, config, actuator):
+    def measured(**columns):
+        path = write_csv(tmp_path_factory.mktemp('answer') / 'r.csv', **columns)
+        return measure(read(path, config), actuator, config, Request())
+
+    return measured
+
+
+@pytest.fixture(scope='module')
+def report(report_of):
+    torque = ramps(*[(4.0, 200)] * 5, *[(40.0, 400)] * 3)
+    return report_of(angle=creep(GEAR, torque), torque=torque)
+
+
+@pytest.mark.parametrize(
+    ('name', 'limit', 'holds', 'said'),
+    [
+        ('hysteresis', 33.5 * ARC_MINUTE, True, 'is within the limit of 33.5′'),
+        ('hysteresis', 32.0 * ARC_MINUTE, False, 'is beyond the limit of 32′'),
+        ('backlash', 10.5 * ARC_MINUTE, True, 'is within the limit'),
+        ('backlash', 10.0 * ARC_MINUTE, False, 'may be beyond the limit of 10′'),
+        ('backlash', 9.0 * ARC_MINUTE, False, 'is beyond the limit of 9′'),
+        ('lost_motion', 1.0, True, 'is within'),
+        ('lost_motion', 1e-4, False, 'is beyond'),
+        ('stiffness', 290.0, True, 'is within the limit of 290 N·m/rad'),
+        ('stiffness', 310.0, False, 'is beyond the limit of 310 N·m/rad'),
+    ],
+)
+def test_limits_are_held_exceeded_or_not_shown(report, name, limit, holds, said):
+    (judged,) = Limits(**{name: limit}).judge(report)
+    assert (judged.holds, said in judged.text) == (holds, True), judged.text
+
+
+def test_a_limit_within_the_uncertainty_cannot_be_shown(report):
+    value = report.figures.stiffness[-1].both
+    (judged,) = Limits(stiffness=value.value - 0.5 * value.uncertainty).judge(report)
+    assert not judged.holds
+    assert 'may be beyond' in judged.text
+
+
+def test_what_is_not_known_holds_no_limit(report_of):
+    ideal = 0.01 * np.arange(400)
+    judged = Limits(1.0, 1.0, 1.0, 1.0).judge(report_of(rotor=-19.0 * ideal, output=ideal))
+    assert len(judged) == 4
+    assert not any(one.holds for one in judged)
+    assert all('is not known' in one.text for one in judged)
+
+
+@pytest.mark.parametrize(
+    ('friction', 'said'),
+    [
+        (0.5, '′ is play, the rest friction.'),
+        # Of 4 N·m: the spring beyond the play is hardly loaded.
+        (3.9, 'How much of it is play is not known; to separate them, ramp to a torque of at'),
+    ],
+)
+def test_the_answer_is_a_sentence_for_who_must_decide(report_of, friction, said):
+    sentence = answer(
+        report_of(angle=creep(GEAR._replace(friction=friction), SMALL), torque=SMALL)
+    )
+    assert sentence.startswith('At zero torque the output rests anywhere within ')
+    assert said in sentence
+
+
+def test_remarks_tell_what_a_single_loop_cannot(report_of):
+    torque = ramps((4.0, 200))
+    report = report_of(angle=creep(GEAR, torque), torque=torque)
+    said = ' '.join(remarks(report))
+    assert 'There is no uncertainty where nothing was repeated.' in said
+    assert 'All ramps have about one amplitude' in said
+    assert 'Inferred, not measured' in said
+    assert 'to separate them, repeat the ramps five times or more' in answer(report)
+
+
+@pytest.mark.parametrize('rows', [0, 15])
+def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(report_of, rows):
+    angle = creep(Gear(play=0.0, stiffness=300.0, friction=0.1), SMALL)
+    late = np.concatenate([np.zeros(rows), SMALL])[: len(SMALL)]
+    said = ' '.join(remarks(report_of(angle=angle, torque=late)))
+    assert ('The hysteresis is negative' in said) == (rows > 0)
+
+
+def test_figures_that_their_uncertainty_exceeds_are_remarks(report_of):
+    """The second of two large loops is three times as soft."""
+    torque = ramps(*[(4.0, 150)] * 3, *[(40.0, 300)] * 2)
+    angle = creep(GEAR, torque) * np.where(np.arange(len(torque)) < 3000, 1.0, 3.0)
+    (vague,) = (s for s in remarks(report_of(angle=angle, torque=torque)) if 'uncertain to' in s)
+    value, _, spread = vague.split(' stiffness 20 to 40 N·m (')[1].split()[:3]
+    assert float(value) < float(spread)
+
+
+@pytest.mark.parametrize(
+    ('value', 'spread', 'written'),
+    [
+        (93.3456, 1.3789, ('93.3', '1.4')),
+        (0.00123456, 0.000021, ('0.001235', '0.000021')),
+        (-0.004, 0.5, ('0.00', '0.50')),
+        (531.7, 134.2, ('532', '134')),
+        (2.0, 0.0, ('2', '0')),
+        (1 / 3, 1e-13, ('0.333333', '1e-13')),
+    ],
+)
+def test_values_are_written_to_the_second_digit_of_their_uncertainty(value, spread, written):
+    normal = Estimate.of_mean([value] * 9, Component(spread / 1.959964))
+    assert rounded(normal, 1.0) == written
