@@ -55,7 +55,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         recordings,
         gear.gear_ratio,
         gear if isinstance(gear, Mechanism) and not options.fit_ratio else None,
-        fit_ratio=options.fit_ratio,
+        estimate_ratio=options.fit_ratio,
     )
     if result.helps:
         write(options.output, to_calibration(result).text())

@@ -1,7 +1,6 @@
 """The calibrated output during operation, and how well the calibration fits a measured angle."""
 
 import math
-from array import array
 from collections import deque
 from collections.abc import Iterable
 from typing import Any, NamedTuple, Self
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
+from gear_kinematics.correction.window import SlidingWindow
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
@@ -87,9 +87,8 @@ class CalibratedOutput:
         """Forget the motion and the comparison, as after homing."""
         self._corrector.reset()
         self._predicted: deque[tuple[int, float, float]] = deque(maxlen=_DEPTH)
-        self._stamps = array('q')
-        # Of each compared sample: the error, the error minus the deviation, the half width; rad.
-        self._compared = array('d'), array('d'), array('d')
+        # The error, the error minus the deviation, the half width; rad.
+        self._compared = SlidingWindow(3)
 
     def correct(self, sample: RotorSample, *, segment: int, referenced: bool) -> Correction:
         """Compute the correction at the next sample; the arguments are those of `Corrector`."""
@@ -116,24 +115,12 @@ class CalibratedOutput:
             end, next_deviation, next_half_width = predicted[1]
             share = (stamp - start) / (end - start)
             deviation += share * (next_deviation - deviation)
-            if self._stamps and stamp < self._stamps[-1]:  # the clock was set back
-                self._drop(len(self._stamps))
-            self._stamps.append(stamp)
-            values = error, error - deviation, max(half_width, next_half_width)
-            for column, value in zip(self._compared, values, strict=True):
-                column.append(value)
+            self._compared.add(stamp, error, error - deviation, max(half_width, next_half_width))
 
     def fit(self, window: float) -> CalibrationFit | None:
         """Judge the samples within a window, s, and forget older ones; None without any."""
-        if not self._stamps:
-            return None
-        begin = self._stamps[-1] - round(window * SECOND)
-        self._drop(int(np.searchsorted(np.array(self._stamps), begin)))
-        return CalibrationFit.of(*map(np.array, self._compared))
-
-    def _drop(self, count: int) -> None:
-        for column in (self._stamps, *self._compared):
-            del column[:count]
+        columns = self._compared.columns(round(window * SECOND))
+        return CalibrationFit.of(*columns) if columns.size else None
 
 
 def _excess(outside: float) -> float:

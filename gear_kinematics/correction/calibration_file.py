@@ -11,7 +11,7 @@ from typing import Any, Self, get_args, get_origin, get_type_hints
 
 import yaml
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 
 SCHEMA = 'gear_kinematics/calibration/1'
@@ -154,12 +154,12 @@ class Calibration:
             raise CalibrationError('; '.join(faults))
 
     @classmethod
-    def load(cls, path: Path, mechanism: Mechanism | Fraction | None = None) -> Self:
+    def load(cls, path: Path, gear: Gear | None = None) -> Self:
         """Read a file.
 
         Args:
             path: of the file.
-            mechanism: the gear to correct, or its ratio; None checks no gear.
+            gear: to correct; None checks no gear.
 
         Raises:
             CalibrationError: if the file cannot be used, or is of another gear; the text names it.
@@ -172,45 +172,36 @@ class Calibration:
                 raise CalibrationError(f'`units` must be {UNITS}')
             entries = {key: document[key] for key in document if key not in {'schema', 'units'}}
             calibration: Self = _read(cls, entries, '')
-            if mechanism is not None:
-                calibration.check(mechanism)
+            if gear is not None:
+                calibration.check(gear)
         except CalibrationError as error:
             raise CalibrationError(f'{path}: {error}') from error
         return calibration
 
     def text(self) -> str:
         """The content of the file."""
-        plain = _plain({'schema': SCHEMA, 'units': UNITS} | asdict(self))
         return yaml.dump(
-            plain,
-            Dumper=Dumper,
+            {'schema': SCHEMA, 'units': UNITS} | asdict(self),
+            Dumper=_Dumper,
             sort_keys=False,
             allow_unicode=True,
             default_flow_style=None,  # a line for each order, stop and row of the covariance
             width=math.inf,
         )
 
-    def check(self, mechanism: Mechanism | Fraction) -> None:
-        """Check that this is a calibration of a gear.
-
-        Args:
-            mechanism: the gear, or its ratio if no more is known.
+    def check(self, gear: Gear) -> None:
+        """Check that this is a calibration of a gear; teeth count where both sides know them.
 
         Raises:
             CalibrationError: if it is of another one, naming both.
         """
-        if isinstance(mechanism, Fraction):
-            there, teeth = mechanism, None
-        else:
-            there = mechanism.gear_ratio
-            teeth = mechanism.ring_teeth, mechanism.satellite_teeth
-        own_teeth = None
-        if self.ring_teeth is not None and self.satellite_teeth is not None:
-            own_teeth = self.ring_teeth, self.satellite_teeth
-        differ = None not in {teeth, own_teeth} and teeth != own_teeth
-        if differ or there != self.gear_ratio:
-            own = _gear(self.gear_ratio, own_teeth)
-            raise CalibrationError(f'calibrated for {own}, not for {_gear(there, teeth)}')
+        known = gear if isinstance(gear, Mechanism) else None
+        its = (known.ring_teeth, known.satellite_teeth) if known else (None, None)
+        own = self.ring_teeth, self.satellite_teeth
+        differ = None not in {*own, *its} and own != its
+        if differ or gear.gear_ratio != self.gear_ratio:
+            here, there = _described(self.gear_ratio, *own), _described(gear.gear_ratio, *its)
+            raise CalibrationError(f'calibrated for {here}, not for {there}')
 
     @property
     def period(self) -> int:
@@ -245,18 +236,16 @@ class Calibration:
         return faults
 
 
-def _gear(ratio: Fraction, teeth: tuple[int, int] | None) -> str:
-    pair = '' if teeth is None else f' (ring {teeth[0]}, satellite {teeth[1]} teeth)'
-    return f'gear ratio {ratio}{pair}'
+def _described(ratio: Fraction, ring: int | None, satellite: int | None) -> str:
+    teeth = '' if ring is None else f' (ring {ring}, satellite {satellite} teeth)'
+    return f'gear ratio {ratio}{teeth}'
 
 
-def _plain(value: Any) -> Any:
-    """Convert what YAML has no type for."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, tuple):
-        return [_plain(item) for item in value]
-    return str(value) if isinstance(value, Fraction) else value
+class _Dumper(Dumper):
+    """Writes exact ratios as texts."""
+
+
+_Dumper.add_multi_representer(Fraction, lambda dumper, ratio: dumper.represent_str(str(ratio)))
 
 
 def _read(kind: Any, value: Any, where: str) -> Any:
@@ -268,14 +257,12 @@ def _read(kind: Any, value: Any, where: str) -> Any:
         return _read_fields(kind, value, where)
     if get_origin(kind) is tuple:
         item, *others = get_args(kind)
-        if not isinstance(value, list) or (others != [...] and len(value) != 1 + len(others)):
-            raise CalibrationError(f'{where} must be a list of {_length(others)}, not {value!r}')
+        count = None if others == [...] else 1 + len(others)
+        if not isinstance(value, list) or count not in {None, len(value)}:
+            length = f'{count} numbers' if count else 'any length'
+            raise CalibrationError(f'{where} must be a list of {length}, not {value!r}')
         return tuple(_read(item, entry, f'{where}[{k}]') for k, entry in enumerate(value))
     return _read_scalar(kind, value, where)
-
-
-def _length(others: list[Any]) -> str:
-    return 'any length' if others == [...] else f'{1 + len(others)} numbers'
 
 
 def _read_fields(kind: Any, value: Any, where: str) -> Any:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.uncertainty import Component, Estimate
+from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_values
 
 Array = NDArray[np.float64]
 
@@ -60,8 +60,7 @@ def separate(
 ) -> Reversals | None:
     """Separate lost motion from a delay.
 
-    Uncertainties are those of the jackknife by Tukey's pseudo-values (Efron, The Jackknife, the
-    Bootstrap and Other Resampling Plans, 1982), which leaves out a pair at a time, or a block of
+    Uncertainties are those of the jackknife, which leaves out a pair at a time, or a block of
     angles where there are few pairs.
 
     Args:
@@ -82,8 +81,8 @@ def separate(
         left_out += [np.concatenate([*groups[:k], *groups[k + 1 :]]) for k in range(len(groups))]
 
     def estimate(of: Callable[[Array], float], *others: Component) -> Estimate:
-        whole, *parts = (of(rows) for rows in left_out)
-        values = [whole + len(parts[1:]) * (whole - part) for part in parts] or [whole]
+        fits = [of(rows) for rows in left_out]
+        values = pseudo_values(fits).tolist() or fits
         return replace(Estimate.of_mean(values, *others), repeats=len(pairs))
 
     difference = estimate(lambda rows: float(_mean(rows)[0]), *others)

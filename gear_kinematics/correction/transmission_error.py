@@ -9,16 +9,18 @@ from collections import Counter, deque
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.correction.reversals import Pair, Reversals, separate
+from gear_kinematics.correction.window import SlidingWindow
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
+Array = NDArray[np.float64]
+
 _DEPTH = 8192
 """Samples of each kind that are kept."""
-_UNIT = 2.0**52
-"""Units of a sum per radian: integers can be added and subtracted without rounding."""
 _BINS = 720
 """Bins of output angles in a turn, in which both directions are compared."""
 
@@ -72,14 +74,6 @@ class _Ideal(NamedTuple):
     stamp: int
     turns: int
     angle: float
-    direction: int
-
-
-class _Place(NamedTuple):
-    """Where and in which direction an error was measured."""
-
-    angle: int
-    """Number of the bin of output angles."""
     direction: int
 
 
@@ -193,135 +187,56 @@ class TransmissionError:
         return ErrorSample(stamp, error, before.turns, ideal, direction, speed)
 
 
-class SlidingStatistics:
-    """Mean and peak-to-peak value of a sliding window; adding takes amortised constant time."""
+class ErrorStatistics(NamedTuple):
+    """Statistics of the transmission error; None where there are no samples."""
 
-    def __init__(self) -> None:
-        self._values: deque[tuple[int, int]] = deque()
-        self._sum = 0
-        # Values that are greater, or less, than all later ones.
-        self._greatest: deque[tuple[int, float]] = deque()
-        self._least: deque[tuple[int, float]] = deque()
-
-    def __len__(self) -> int:
-        return len(self._values)
-
-    def add(self, stamp: int, value: float) -> None:
-        """Add a value, rad, at a stamp, ns, not before the last."""
-        counted = round(value * _UNIT)
-        self._values.append((stamp, counted))
-        self._sum += counted
-        while self._greatest and self._greatest[-1][1] <= value:
-            self._greatest.pop()
-        self._greatest.append((stamp, value))
-        while self._least and self._least[-1][1] >= value:
-            self._least.pop()
-        self._least.append((stamp, value))
-
-    def drop(self, before: int) -> None:
-        """Drop values older than a stamp, ns."""
-        while self._values and self._values[0][0] < before:
-            self._sum -= self._values.popleft()[1]
-        for extremes in (self._greatest, self._least):
-            while extremes and extremes[0][0] < before:
-                extremes.popleft()
-
-    @property
-    def mean(self) -> float | None:
-        """rad; None without values."""
-        return self._sum / len(self._values) / _UNIT if self._values else None
-
-    @property
-    def peak_to_peak(self) -> float | None:
-        """rad; None without values."""
-        return self._greatest[0][1] - self._least[0][1] if self._values else None
-
-
-class ReversalWindow:
-    """Errors and speeds of a sliding window by output angle and direction.
-
-    Adding takes amortised constant time; `reversals` takes a time in proportion to the angles.
-    """
-
-    def __init__(self) -> None:
-        self._samples: deque[tuple[int, _Place, int, int]] = deque()
-        # Number of samples, sum of errors, sum of speeds.
-        self._sums: dict[_Place, list[int]] = {}
-
-    def add(self, sample: ErrorSample) -> None:
-        """Add an error that is not older than the last."""
-        angle = sample.turns * _BINS + math.floor(sample.ideal / TURN * _BINS)
-        place = _Place(angle, sample.direction)
-        error, speed = round(sample.error * _UNIT), round(sample.speed * _UNIT)
-        self._samples.append((sample.stamp, place, error, speed))
-        self._count(place, 1, error, speed)
-
-    def drop(self, before: int) -> None:
-        """Drop samples older than a stamp, ns."""
-        while self._samples and self._samples[0][0] < before:
-            _, place, error, speed = self._samples.popleft()
-            self._count(place, -1, -error, -speed)
-
-    def _count(self, place: _Place, *steps: int) -> None:
-        sums = self._sums.setdefault(place, [0, 0, 0])
-        for k, step in enumerate(steps):
-            sums[k] += step
-        if not sums[0]:
-            del self._sums[place]
-
-    def reversals(self) -> Reversals | None:
-        """What differs between both directions, over the angles that both cover, if any."""
-        angles = sorted(
-            angle
-            for angle, direction in self._sums
-            if direction > 0 and _Place(angle, -1) in self._sums
-        )
-        if not angles:
-            return None
-        forward, backward = (
-            np.array([self._mean(_Place(angle, way)) for angle in angles]) for way in (1, -1)
-        )
-        difference = backward - forward
-        return separate([Pair(difference[:, 0], -difference[:, 1])])
-
-    def _mean(self, place: _Place) -> tuple[float, float]:
-        count, error, speed = self._sums[place]
-        return error / count / _UNIT, speed / count / _UNIT
+    samples: int = 0
+    mean: float | None = None
+    """rad."""
+    peak_to_peak: float | None = None
+    """rad."""
+    mean_forward: float | None = None
+    """rad."""
+    mean_backward: float | None = None
+    """rad."""
+    reversals: Reversals | None = None
+    """Lost motion and delay; None unless both directions cover the same angles."""
 
 
 class ErrorWindow:
-    """Statistics of the transmission error over a sliding window, by direction."""
+    """The transmission errors of a sliding window."""
 
     def __init__(self, length: int) -> None:
-        """Start empty.
-
-        Args:
-            length: ns, of the window.
-        """
+        """Start empty; `length` is in ns."""
         self._length = length
-        self.reset()
-
-    def reset(self) -> None:
-        """Forget all samples."""
-        self.both = SlidingStatistics()
-        """Statistics of all samples."""
-        self.forward = SlidingStatistics()
-        """Statistics of forward motion."""
-        self.backward = SlidingStatistics()
-        """Statistics of backward motion."""
-        self._reversals = ReversalWindow()
+        self._samples = SlidingWindow(5)
 
     def add(self, sample: ErrorSample) -> None:
-        """Add an error that is not older than the last."""
-        self.both.add(sample.stamp, sample.error)
-        if sample.direction:
-            statistics = self.forward if sample.direction > 0 else self.backward
-            statistics.add(sample.stamp, sample.error)
-            self._reversals.add(sample)
-        for window in (self.both, self.forward, self.backward, self._reversals):
-            window.drop(sample.stamp - self._length)
+        """Add the next error; one that is older than the last begins anew."""
+        self._samples.add(*sample)
 
-    @property
-    def reversals(self) -> Reversals | None:
-        """Lost motion and delay; None unless both directions cover the same angles."""
-        return self._reversals.reversals()
+    def statistics(self) -> ErrorStatistics:
+        """Evaluate the window, in 0.6 ms for 10 000 samples."""
+        error, turns, ideal, direction, speed = self._samples.columns(self._length)
+        if not len(error):
+            return ErrorStatistics()
+        bins = (turns - turns[0]) * _BINS + np.floor(ideal / TURN * _BINS)
+        ways = direction > 0, direction < 0
+        forward, backward = (_means(bins[rows], error[rows], speed[rows]) for rows in ways)
+        _, there, back = np.intersect1d(forward[0], backward[0], return_indices=True)
+        _, difference, speed_difference = backward[:, back] - forward[:, there]
+        means = [float(error[rows].mean()) if rows.any() else None for rows in ways]
+        return ErrorStatistics(
+            len(error),
+            float(error.mean()),
+            float(np.ptp(error)),
+            means[0],
+            means[1],
+            separate([Pair(difference, -speed_difference)]),
+        )
+
+
+def _means(bins: Array, *columns: Array) -> Array:
+    """The bins that occur, in order, and the means of columns in each, (1 + columns, bins)."""
+    found, place, counts = np.unique(bins, return_inverse=True, return_counts=True)
+    return np.array([found, *(np.bincount(place, column) / counts for column in columns)])

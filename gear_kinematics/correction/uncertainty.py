@@ -14,8 +14,6 @@ COVERAGE = 0.95
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
 _MANY = 10_000
-_EXACT = 1e-6
-"""Least standard uncertainty of an effect in usual effects."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +63,7 @@ class Estimate:
             return cls(value, None, 0.0, 1)
         own = [
             Component(
-                abs(factor) * _deviation(values) / math.sqrt(len(values)),
+                abs(factor) * deviation(values) / math.sqrt(len(values)),
                 len(values) - 1,
             )
             for factor, values in terms
@@ -77,47 +75,18 @@ class Estimate:
         """Expanded uncertainty, by Student's t for `COVERAGE` (GUM G.3)."""
         if self.standard is None:
             return None
-        return student_t(_whole(self.degrees_of_freedom)) * self.standard
+        # Rounding must not cost a whole degree of freedom.
+        return student_t(int(min(self.degrees_of_freedom, _MANY) + 1e-6)) * self.standard
 
     @property
     def clear(self) -> bool:
         """Whether the expanded uncertainty, if known, does not exceed the value."""
         return (self.uncertainty or 0.0) <= abs(self.value)
 
-    def minus(self, other: 'Estimate') -> 'Estimate':
-        """Estimate the difference from a quantity that was measured independently.
-
-        Its degrees of freedom are those of Welch and Satterthwaite (GUM G.4.1).
-        """
-        value, repeats = self.value - other.value, min(self.repeats, other.repeats)
-        if self.standard is None or other.standard is None:
-            return Estimate(value, None, 0.0, repeats)
-        parts = [
-            Component(estimate.standard, estimate.degrees_of_freedom)
-            for estimate in (self, other)
-            if estimate.standard is not None
-        ]
-        return Estimate(value, *combined(parts), repeats)
-
-    def joined(self, *others: Component) -> 'Estimate':
-        """Add components of uncertainty that the repeats do not show (GUM 5.1.2)."""
-        if self.standard is None:
-            return self
-        own = Component(self.standard, self.degrees_of_freedom)
-        return Estimate(self.value, *combined((own, *others)), self.repeats)
-
     def times(self, factor: float) -> 'Estimate':
         """Estimate a multiple of the quantity."""
         standard = None if self.standard is None else abs(factor) * self.standard
         return Estimate(factor * self.value, standard, self.degrees_of_freedom, self.repeats)
-
-    def probability_of_zero(self) -> float | None:
-        """Probability of a value as far from zero if the quantity is zero; None if unknown."""
-        if self.standard is None:
-            return None
-        if not self.standard:
-            return float(self.value == 0.0)
-        return student_tail(self.value / self.standard, self.degrees_of_freedom)
 
     def inverse(self) -> 'Estimate':
         """Estimate the reciprocal of the quantity."""
@@ -140,80 +109,27 @@ def combined(parts: Sequence[Component]) -> tuple[float, float]:
     return standard, 1.0 / spread if spread else math.inf
 
 
-def _whole(degrees: float) -> int:
-    """Round degrees of freedom down."""
-    # Rounding must not cost a whole degree of freedom.
-    return int(min(degrees, _MANY) + 1e-6)
-
-
-def _deviation(values: Sequence[float]) -> float:
+def deviation(values: Sequence[float]) -> float:
     """Experimental standard deviation (GUM 4.2.2), without squares that overflow."""
     return math.hypot(*(np.asarray(values) - np.mean(values))) / math.sqrt(len(values) - 1)
+
+
+def pseudo_values(fits: Sequence[float] | NDArray[np.float64]) -> NDArray[np.float64]:
+    """Tukey's pseudo-values of the jackknife, whose mean and scatter are those of an estimate.
+
+    (B. Efron, C. Stein, Annals of Statistics 9 (1981) 586)
+
+    Args:
+        fits: of all blocks, and then without each block, (1 + blocks,).
+    """
+    whole, without = fits[0], np.asarray(fits[1:])
+    values: NDArray[np.float64] = len(without) * whole - (len(without) - 1) * without
+    return values
 
 
 def resolution(step: float) -> float:
     """Standard uncertainty of a reading in steps (GUM F.2.2.1), in their unit."""
     return step / math.sqrt(12.0)
-
-
-def hidden_resolution(step: float, repeats: Sequence[float], readings: int) -> float:
-    """Standard uncertainty by the steps of an encoder that the scatter of repeats does not show.
-
-    Repeats that scatter over steps are rounded differently. With normal scatter of the standard
-    deviation s, exp(-2π²(s/step)²) is the most that remains in their mean: B. Widrow, I. Kollár,
-    M.-C. Liu, IEEE Trans. Instrum. Meas. 45 (1996) 353.
-
-    Args:
-        step: of a reading.
-        repeats: at least one, each a sum or difference of readings.
-        readings: their number in each repeat.
-    """
-    if not step or len(repeats) == 1:
-        return math.sqrt(readings) * resolution(step)
-    turns = math.pi * _deviation(repeats) / math.sqrt(readings) / step
-    return math.sqrt(readings) * resolution(step) * math.exp(-2.0 * turns * turns)
-
-
-def slope_resolution(step: float, run: float, slope: float) -> float:
-    """Standard uncertainty of a slope by the steps of an encoder.
-
-    The line goes through many readings, of which those within a step count as one; over less than
-    six steps, the line counts as one through its ends.
-
-    Args:
-        step: of a reading.
-        run: length of the line on the other axis.
-        slope: of the line, in the unit of the step over that of the run.
-    """
-    if not step:
-        return 0.0
-    steps = max(6.0, abs(slope) * run / step)
-    return resolution(step) / run * math.sqrt(12.0 / steps)
-
-
-def by_steps(standard: float, repeats: int) -> Component:
-    """Give what the steps of an encoder add to the uncertainty of a mean over repeats.
-
-    It is no better known than what chance does to the mean.
-
-    Args:
-        standard: uncertainty by the steps.
-        repeats: number of the values whose mean is taken.
-    """
-    return Component(standard, repeats - 1)
-
-
-def common_part(errors: NDArray[np.float64]) -> float:
-    """Root mean square of what is the same in all repeats, without what scatter adds to it.
-
-    Args:
-        errors: (repeats, ...); a single repeat shows nothing.
-    """
-    count = len(errors)
-    if count < 2:  # noqa: PLR2004, nothing to compare
-        return 0.0
-    scatter = float(np.mean(np.var(errors, axis=0, ddof=1))) / count
-    return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
 
 
 @cache
@@ -234,19 +150,6 @@ def student_t(degrees: int) -> float:
             low = middle
         else:
             high = middle
-
-
-def student_tail(t: float, degrees: float) -> float:
-    """Probability that Student's distribution exceeds t in magnitude.
-
-    Args:
-        t: of either sign.
-        degrees: of freedom, at least 1; fractions are rounded down.
-    """
-    whole = _whole(degrees)
-    if whole >= _MANY:
-        return math.erfc(abs(t) / math.sqrt(2.0))
-    return max(0.0, 1.0 - _share_within(math.atan(abs(t) / math.sqrt(whole)), whole))
 
 
 def _share_within(angle: float, degrees: int) -> float:

@@ -7,16 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import (
-    Component,
-    Estimate,
-    by_steps,
-    common_part,
-    hidden_resolution,
-    resolution,
-    slope_resolution,
-)
-from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
+from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
+from gear_kinematics.measurement.loops import Array, HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.measurement.middle_line import (
     MOST_FRICTION,
     Backlash,
@@ -26,6 +18,7 @@ from gear_kinematics.measurement.middle_line import (
     reconciled,
     stiffness_of,
 )
+from gear_kinematics.measurement.resolution import hidden_resolution, slope_resolution
 
 LOST_MOTION_SHARE = 0.03
 """Lost motion is measured between ± this share of the rated torque."""
@@ -218,9 +211,22 @@ def _drifted(loops: Sequence[Loop]) -> Component:
     return Component(0.5 * per_loop, len(loops) - 2)
 
 
+def _common_part(errors: Array) -> float:
+    """Root mean square of what is the same in all repeats, without what scatter adds to it.
+
+    Args:
+        errors: (repeats, ...); a single repeat shows nothing.
+    """
+    count = len(errors)
+    if count < 2:  # noqa: PLR2004, nothing to compare
+        return 0.0
+    scatter = float(np.mean(np.var(errors, axis=0, ddof=1))) / count
+    return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
+
+
 def _rounded(roundings: Sequence[float]) -> Component:
     """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7)."""
-    return Component(common_part(np.array(roundings)) / math.sqrt(3.0))
+    return Component(_common_part(np.array(roundings)) / math.sqrt(3.0))
 
 
 def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> Estimate | None:
@@ -241,7 +247,7 @@ def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> E
     reading = stiffness * resolution(angle_step) / math.sqrt(2.0 * steps)
     drifted = 0.5 * stiffness * _drifted(ramps.loops).standard
     others = (uneven, math.hypot(reading, drifted))
-    return Estimate.of_mean(near, *(by_steps(other, len(lines)) for other in others))
+    return Estimate.of_mean(near, *(Component(other, len(lines) - 1) for other in others))
 
 
 def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
@@ -285,7 +291,7 @@ def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
         least = float(np.min(np.mean(pulls, axis=0)))
         if least * (high - low) > still:  # else friction holds the gear throughout
             steps = slope_resolution(settings.angle_step, high - low, least)
-            found.append(_of_sides(low, high, pulls, by_steps(steps, len(pulls))))
+            found.append(_of_sides(low, high, pulls, Component(steps, len(pulls) - 1)))
     return tuple(found)
 
 

@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.uncertainty import Estimate, student_t
+from gear_kinematics.correction.uncertainty import Estimate, deviation, pseudo_values, student_t
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
@@ -76,19 +76,24 @@ class RatioEstimate:
         return GearRatio(simplest_fraction(*_interval(self.measured, _NEAR)))
 
 
-def fit_ratio(encoders: Encoders, assumed: GearRatio) -> RatioEstimate:
+def fit_ratio(
+    encoders: Encoders, assumed: Fraction, eccentric_turns: float = 0.0
+) -> RatioEstimate:
     """Estimate the ratio from a recording.
 
     Args:
         encoders: of rotor and output.
         assumed: a ratio that is near. Between samples, the output may turn at most half a turn
             more or less than by this ratio.
+        eccentric_turns: turns of the output from which on an error once per turn is fitted.
 
     Raises:
         RecordingError: see `estimate_ratio`.
     """
     ideal = encoders.at_measured(encoders.ideal(assumed))
-    return estimate_ratio(ideal * float(assumed), ideal + encoders.error(assumed))
+    output = ideal + encoders.error(assumed)
+    eccentric = bool(np.ptp(output) >= eccentric_turns * TURN)
+    return estimate_ratio(ideal * float(assumed), output, eccentric=eccentric)
 
 
 def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
@@ -107,7 +112,7 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
     return f'The recording does not have the ratio {assumed}: {wrong}.' if wrong else ''
 
 
-def wrong_ratio(encoders: Encoders, assumed: GearRatio) -> str:
+def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     """Say in a clause which ratio a recording has, if it is clearly not the assumed one."""
     found = _other_ratio(encoders, assumed)
     if found is None:
@@ -123,7 +128,7 @@ def _within(measured: Estimate, ratio: Fraction) -> bool:
     return abs(measured.value - ratio) <= _WRONG * (measured.uncertainty or 0.0)
 
 
-def _other_ratio(encoders: Encoders, assumed: GearRatio) -> RatioEstimate | None:
+def _other_ratio(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
     """The ratio of a recording if it is not the assumed one; rough over less than a turn."""
     ideal = encoders.at_measured(encoders.ideal(assumed))
     ideal, error = ideal - np.mean(ideal), encoders.error(assumed)
@@ -141,9 +146,9 @@ def _other_ratio(encoders: Encoders, assumed: GearRatio) -> RatioEstimate | None
         steep *= max(1.0, abs(float(assumed)))
     if abs(slope) <= steep or abs(slope) * travel <= _WRONG * rest:
         return None
-    value = assumed / (1.0 + slope)
+    value = float(assumed) / (1.0 + slope)
     standard = abs(value) * _ECCENTRICITY / student_t(_BLOCKS)
-    return with_candidates(Estimate(value, standard, _BLOCKS, 1))
+    return _with_candidates(Estimate(value, standard, _BLOCKS, 1))
 
 
 def estimate_ratio(rotor: Array, output: Array, *, eccentric: bool = True) -> RatioEstimate:
@@ -189,20 +194,20 @@ def estimate_ratio(rotor: Array, output: Array, *, eccentric: bool = True) -> Ra
         for part in np.array_split(np.arange(len(x)), _BLOCKS)
     ])  # fmt: skip
     whole = sums.sum(axis=0)
-    slope, *without = (
+    fits = [
         float(np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=None)[0][0])
         for rows in (whole, *(whole - sums))
-    )
-    scatter = (_BLOCKS - 1) * float(np.var(without))
+    ]
+    slope, scatter = fits[0], deviation(pseudo_values(fits).tolist()) / math.sqrt(_BLOCKS)
     rounding = float(np.spacing(max(np.abs(output).max(), abs(slope))))
-    standard, freedom = math.hypot(math.sqrt(scatter), rounding), _BLOCKS - len(columns)
+    standard, freedom = math.hypot(scatter, rounding), _BLOCKS - len(columns)
     if not _FAR * student_t(freedom) * standard < abs(slope):
         raise RecordingError('the output does not follow the rotor: no ratio fits')
     value = travel / slope
-    return with_candidates(Estimate(value, abs(value / slope) * standard, freedom, _BLOCKS))
+    return _with_candidates(Estimate(value, abs(value / slope) * standard, freedom, _BLOCKS))
 
 
-def with_candidates(measured: Estimate) -> RatioEstimate:
+def _with_candidates(measured: Estimate) -> RatioEstimate:
     """Find the simple fraction and the tooth pairs that fit a measured ratio."""
     low, high = _interval(measured, _FAR)
     simplest = simplest_fraction(low, high)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.correction.reversals import Reversals
-from gear_kinematics.correction.transmission_error import ErrorWindow
+from gear_kinematics.correction.transmission_error import ErrorStatistics
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -152,10 +152,12 @@ class EncoderMonitor:
         if newly_lost:
             warnings.append(f'lost {newly_lost}')
         # Without new samples, the statistics are out of date.
-        window = encoder.window if compared and not silent else ErrorWindow(0)
-        peak_to_peak = window.both.peak_to_peak
-        if peak_to_peak is not None and peak_to_peak > parameters.transmission_error_limit:
-            warnings.append(f'peak to peak {peak_to_peak:.3g} rad')
+        error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
+        if (
+            error.peak_to_peak is not None
+            and error.peak_to_peak > parameters.transmission_error_limit
+        ):
+            warnings.append(f'peak to peak {error.peak_to_peak:.3g} rad')
         values = {
             'received': str(encoder.received),
             'compared': str(matched),
@@ -163,14 +165,14 @@ class EncoderMonitor:
             **_by_cause('not compared', encoder.comparison.unmatched),
             'lost messages': str(self.lost),
             'age of last input (s)': f'{age:.3f}',
-            'samples': str(len(window.both)),
-            'mean (rad)': _number(window.both.mean),
-            'peak to peak (rad)': _number(peak_to_peak),
-            'mean forward (rad)': _number(window.forward.mean),
-            'mean backward (rad)': _number(window.backward.mean),
-            **_reversals(window.reversals),
+            'samples': str(error.samples),
+            'mean (rad)': _number(error.mean),
+            'peak to peak (rad)': _number(error.peak_to_peak),
+            'mean forward (rad)': _number(error.mean_forward),
+            'mean backward (rad)': _number(error.mean_backward),
+            **_reversals(error.reversals),
         }
-        if fit and window.both:
+        if fit and error.samples:
             if not fit.fits:
                 warnings.append('calibration no longer fits')
             values['explained by the calibration (%)'] = _percent(fit.explained)

@@ -58,7 +58,6 @@ class OutputEncoder:
         self._ratio = parameters.gear.gear_ratio
         self.comparison = comparison(parameters)
         """Counts the measured angles that were compared, and those that were not by cause."""
-        self._last = 0
 
     def fits(self, parameters: NodeParameters) -> bool:
         """Whether the errors so far are also those with other parameters."""
@@ -93,8 +92,5 @@ class OutputEncoder:
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
         for sample in samples:
-            if sample.stamp < self._last:  # the clock was set back
-                self.window.reset()
-            self._last = sample.stamp
             self.window.add(sample)
         return samples

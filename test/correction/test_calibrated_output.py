@@ -61,16 +61,6 @@ def test_calibration_explains_what_it_predicts_apart_from_the_encoders_zero():
     assert fit.fits
 
 
-@pytest.mark.parametrize('seed', range(20))
-def test_noise_alone_is_not_taken_for_a_bad_fit(seed):
-    output = CalibratedOutput(MADE)
-    rng = np.random.default_rng(seed)
-    for second in range(20):
-        errors = measured(rng, count=COUNT // 10 * (second + 1))[-COUNT // 10 :]
-        follow(output, errors, start=second * COUNT // 10)
-        assert output.fit(WINDOW).fits
-
-
 def coloured(rng, time_constant: float) -> np.ndarray:
     """Give a first-order Gauss-Markov process of variance 1."""
     decay = math.exp(-PERIOD / SECOND / time_constant)
@@ -80,8 +70,8 @@ def coloured(rng, time_constant: float) -> np.ndarray:
     return np.array(values)
 
 
-@pytest.mark.parametrize('time_constant', [0.1, 1.0, 5.0])
-def test_coloured_noise_is_not_taken_for_a_bad_fit(time_constant):
+@pytest.mark.parametrize('time_constant', [1e-4, 0.1, 1.0, 5.0])
+def test_noise_is_not_taken_for_a_bad_fit(time_constant):
     for seed in range(10):
         rng = np.random.default_rng(seed)
         errors = measured(rng, noise=0.0) + 1e-4 / 1.96 * coloured(rng, time_constant)
@@ -129,12 +119,6 @@ def test_nothing_is_said_without_a_comparison():
     assert output.fit(WINDOW) is None
 
 
-def test_reset_forgets_the_comparison():
-    output = run(measured(np.random.default_rng(4)))
-    output.reset()
-    assert output.fit(WINDOW) is None
-
-
 def test_clock_that_is_set_back_begins_anew():
     rng = np.random.default_rng(5)
     output = run(measured(rng, amplitude=0.0))
@@ -142,14 +126,6 @@ def test_clock_that_is_set_back_begins_anew():
     fit = output.fit(WINDOW)
     assert fit.samples == COUNT // 2 - 1
     assert fit.fits
-
-
-def test_same_stamp_is_corrected_and_compared_once():
-    output = CalibratedOutput(MADE)
-    for k in (0, 1, 1, 2):
-        output.correct(sample(k, 10.0 * k), **INPUT)
-    output.compare([ErrorSample(START + PERIOD, AMPLITUDE, 0, 0.0, 1, 0.0)])
-    assert output.fit(WINDOW).samples == 1
 
 
 def test_homing_makes_the_play_unknown():
@@ -163,7 +139,9 @@ def test_homing_makes_the_play_unknown():
     assert widths == pytest.approx([1e-4 + unknown, 1e-4, 1e-4 + unknown, 1e-4])
 
 
-@pytest.mark.parametrize(('time_constant', 'low', 'high'), [(0.05, 70, 140), (0.5, 6, 25)])
+@pytest.mark.parametrize(
+    ('time_constant', 'low', 'high'), [(1e-4, 0.6 * COUNT, 1e5), (0.05, 70, 140), (0.5, 6, 25)]
+)
 def test_independent_samples_are_those_of_a_gauss_markov_process(time_constant, low, high):
     # The variance of the mean of T seconds is that of T / (2 time constants) samples.
     assert low < WINDOW / (2 * time_constant) < high
@@ -175,8 +153,6 @@ def test_independent_samples_are_those_of_a_gauss_markov_process(time_constant, 
     assert low < np.median(counts) < high
 
 
-def test_white_noise_is_independent_and_a_constant_is_no_fault():
-    values = np.random.default_rng(7).normal(size=COUNT)
-    assert independent_samples(values - values.mean()) > 0.6 * COUNT
+def test_a_constant_is_no_fault():
     assert independent_samples(np.zeros(50)) == 50.0
     assert independent_samples(np.array([0.0])) == 1.0

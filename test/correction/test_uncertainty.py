@@ -9,11 +9,8 @@ import pytest
 from gear_kinematics.correction.uncertainty import (
     Component,
     Estimate,
-    hidden_resolution,
-    resolution,
-    slope_resolution,
+    pseudo_values,
     student_t,
-    student_tail,
 )
 
 # GUM, table G.2, fraction p = 95 %
@@ -89,64 +86,6 @@ def test_relative_uncertainty_of_the_inverse_is_the_same():
     assert inverse.degrees_of_freedom == estimate.degrees_of_freedom
 
 
-@pytest.mark.parametrize('scale', [1e-290, 1e-90, 1e90, 1e200])
-def test_no_scale_overflows(scale):
-    values = [1.0, 2.0, 4.0]
-    one = Estimate.of_mean(values, Component(0.5, 7.0))
-    scaled = Estimate.of_mean([scale * v for v in values], Component(scale * 0.5, 7.0))
-    assert scaled.standard == pytest.approx(scale * one.standard)
-    assert scaled.degrees_of_freedom == pytest.approx(one.degrees_of_freedom)
-
-
-def test_reading_in_steps_has_a_rectangular_distribution():
-    # The variance of a rectangle of width 0.3, by numbers.
-    rectangle = (np.arange(100_000) + 0.5) / 100_000 * 0.3
-    assert resolution(0.3) == pytest.approx(np.std(rectangle), rel=1e-9)
-
-
-@pytest.mark.parametrize('scatter', [0.0, 0.1, 0.2, 0.3, 0.4])
-def test_scatter_of_repeats_shows_the_steps_of_an_encoder(scatter):
-    # Means of rounded readings of a normal distribution, for all its places within a step of 1.
-    places = np.arange(500) / 500
-    off = np.linspace(-6.0, 6.0, 4001) if scatter else np.zeros(1)
-    density = np.exp(-0.5 * off**2)
-    readings = np.round(places[:, None] + scatter * off)
-    error = readings @ density / density.sum() - places
-    repeats = [7.0 - scatter, 7.0, 7.0 + scatter]
-    found = hidden_resolution(1.0, repeats, readings=1)
-    assert 0.75 * found <= np.sqrt(np.mean(error**2)) <= 1.001 * found
-
-
-def test_readings_of_a_difference_share_its_scatter():
-    repeats = [1.0, 1.3, 1.6]
-    one = hidden_resolution(1.0, [x / math.sqrt(2.0) for x in repeats], readings=1)
-    assert hidden_resolution(1.0, repeats, readings=2) == pytest.approx(math.sqrt(2.0) * one)
-
-
-def test_a_single_reading_hides_its_whole_step():
-    assert hidden_resolution(0.3, [5.0], readings=2) == pytest.approx(0.3 / math.sqrt(6.0))
-    assert hidden_resolution(0.0, [5.0, 6.0], readings=2) == 0.0
-
-
-@pytest.mark.parametrize('steps', [3.0, 10.0, 80.0])
-def test_slope_of_a_line_is_as_uncertain_as_its_steps(steps):
-    run = np.linspace(0.0, 2.0, 600)
-    random = np.random.default_rng(3)
-    lines = 0.5 * steps * run + random.uniform(size=(2000, 1)) + random.normal(size=(2000, 600))
-    errors = np.polynomial.polynomial.polyfit(run, (np.round(lines) - lines).T, 1)[1]
-    aligned = 0.5 * steps * run + random.uniform(size=(2000, 1))
-    worst = np.polynomial.polynomial.polyfit(run, (np.round(aligned) - aligned).T, 1)[1]
-    stated = slope_resolution(1.0, run=2.0, slope=-0.5 * steps)
-    assert max(np.std(errors), np.std(worst)) <= stated
-
-
-def test_slope_over_few_steps_is_that_between_two_readings():
-    assert slope_resolution(0.3, run=2.0, slope=0.1) == pytest.approx(
-        math.sqrt(2.0) * resolution(0.3) / 2.0
-    )
-    assert slope_resolution(0.0, run=2.0, slope=0.1) == 0.0
-
-
 def test_intervals_hold_the_mean_as_often_as_they_say():
     generator, hits, trials = np.random.default_rng(5), 0, 2000
     for _ in range(trials):
@@ -156,31 +95,7 @@ def test_intervals_hold_the_mean_as_often_as_they_say():
     assert abs(hits - 0.95 * trials) < 4 * math.sqrt(trials * 0.95 * 0.05)
 
 
-@pytest.mark.parametrize(
-    ('t', 'degrees', 'probability'),
-    [  # tables of Student's distribution, two-sided
-        (12.706, 1, 0.05),
-        (2.776, 4, 0.05),
-        (-2.776, 4.9, 0.05),
-        (4.604, 4, 0.01),
-        (2.086, 20, 0.05),
-        (1.95996, math.inf, 0.05),
-        (0.0, 3, 1.0),
-    ],
-)
-def test_probability_of_a_greater_t(t, degrees, probability):
-    assert student_tail(t, degrees) == pytest.approx(probability, rel=1e-3)
-
-
-def test_difference_has_the_degrees_of_freedom_of_welch():
-    first = Estimate(5.0, 0.3, 4.0, 5)
-    second = Estimate(3.0, 0.4, 8.0, 9)
-    difference = first.minus(second)
-    assert (difference.value, difference.standard) == pytest.approx((2.0, 0.5))
-    # B. L. Welch, Biometrika 34 (1947) 28: s⁴ / Σ (sᵢ⁴ / νᵢ).
-    assert difference.degrees_of_freedom == pytest.approx(0.5**4 / (0.3**4 / 4 + 0.4**4 / 8))
-    assert difference.probability_of_zero() == student_tail(4.0, 11.0)
-    unknown = first.minus(Estimate(3.0, None, 0.0, 1))
-    assert unknown.value == 2.0
-    assert unknown.uncertainty is None
-    assert unknown.probability_of_zero() is None
+def test_jackknife_of_a_mean_is_its_standard_error():
+    values = np.random.default_rng(1).standard_normal(24)
+    without = [np.delete(values, k).mean() for k in range(24)]
+    assert pseudo_values([values.mean(), *without]) == pytest.approx(values)

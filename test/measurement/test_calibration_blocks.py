@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from gear_kinematics.measurement.calibration.normal import (
+from gear_kinematics.measurement.calibration.selection import (
     NormalEquations,
     blocks_of,
     is_as_good,
-    jackknife,
     standard_error,
     widening,
 )
@@ -29,32 +28,12 @@ def test_standard_error_of_neighbours_that_are_alike_is_that_of_their_groups():
     assert error == (pytest.approx(np.std(groups, ddof=1) / 6**0.5), 5)
 
 
-def test_too_few_blocks_have_no_standard_error():
-    assert standard_error(np.array([1.0, 2.0]))[0] == 0.0
-
-
-def test_jackknife_of_a_mean_is_its_standard_error():
-    values = np.random.default_rng(1).standard_normal(24)
-    without = [np.delete(values, k).mean() for k in range(24)]
-    estimate = jackknife(np.array([values.mean(), *without]))
-    assert estimate.standard >= np.std(values, ddof=1) / 24**0.5 * (1 - 1e-9)
-    assert estimate.value == values.mean()
-
-
 def test_a_model_is_as_good_unless_it_is_worse_in_most_blocks():
     random = np.random.default_rng(2)
     best = 1.0 + 0.1 * random.standard_normal(24)
     assert is_as_good(best, best)
     assert is_as_good(best + 0.1 * random.standard_normal(24), best)
     assert not is_as_good(best + 0.1, best)
-
-
-def test_steady_errors_widen_nothing_and_unsteady_ones_as_students_t():
-    assert widening(np.ones(24)) == pytest.approx(1.0)
-    # Mean squares whose standard error, relative to the mean, is the root of 2/23: chi square.
-    errors = np.array([1.0, -1.0] * 12)
-    errors = 1.0 + errors * (2.0 / 23.0) ** 0.5 * 23.0**0.5
-    assert widening(errors) == pytest.approx(T_975[23] / 1.96, rel=2e-2)
 
 
 def test_intervals_hold_on_other_errors_of_a_random_scale():

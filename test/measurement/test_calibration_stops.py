@@ -8,7 +8,7 @@ from gear_recordings import encoders
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gear_kinematics.measurement.calibration.samples import TurningPoints
+from gear_kinematics.measurement.calibration.terms import TurningPoints
 
 RADIUS = 0.25
 

@@ -1,11 +1,11 @@
 """The transmission error of recordings whose errors are known."""
 
-import math
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from gear_recordings import Samples, encoders, quantised, write_csv, write_recording
+from simulated_encoders import START, TURN, Drive, even_strokes
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.measurement.csv_files import Sources
@@ -14,9 +14,7 @@ from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
 from gear_kinematics.measurement.transmission import marked_orders, transmission_figures
 
-TURN = 2.0 * math.pi
 MS = 10**6
-START = 1_700_000_000 * 10**9
 PLAY = 3e-3
 AMPLITUDES = {19: 1.0e-3, 20: 4e-4, 2: 5e-4, 1520: 2e-4}  # by order
 RATE = 1000.0
@@ -25,23 +23,13 @@ SPEED = 0.5  # rad/s of the output
 
 def there_and_back(turns: float, times: int) -> np.ndarray:
     """Output angles at an even speed, to `turns` and back."""
-    count = round(turns * TURN / SPEED * RATE)
-    way = np.linspace(0.0, turns * TURN, count, endpoint=False)
-    return np.concatenate([np.concatenate([way, turns * TURN - way])] * times + [[0.0]])
+    seconds = turns * TURN / SPEED
+    time = np.arange(round(2 * times * seconds * RATE) + 1) / RATE
+    return even_strokes(turns * TURN, seconds)(time)
 
 
-def follow(angle: np.ndarray, play: float) -> np.ndarray:
-    """Positions of a body that is pushed along with play, from the middle of the play."""
-    place, places = float(angle[0]), []
-    for pushed in angle:
-        place = min(max(place, pushed - 0.5 * play), pushed + 0.5 * play)
-        places.append(place)
-    return np.array(places)
-
-
-def output_of(ideal: np.ndarray, amplitudes=AMPLITUDES) -> np.ndarray:
-    errors = sum(a * np.sin(order * ideal + order) for order, a in amplitudes.items())
-    return follow(ideal, PLAY) + errors
+def output_of(ideal: np.ndarray) -> np.ndarray:
+    return Drive(PLAY, AMPLITUDES).output(ideal)
 
 
 def bag_of(path, ideal, *, rotor_counts=2**16, output_counts=2**20, efforts=None, offset=1.0):
@@ -67,6 +55,7 @@ def found(recording, actuator, config):
 
 @pytest.mark.slow
 def test_lost_motion_on_reversals_is_the_play(found):
+    assert (found.offset, found.travel) == pytest.approx((1.0, 2.2 * TURN), rel=1e-3)
     assert found.lost_motion.repeats == 2
     assert abs(found.lost_motion.value - PLAY) <= found.lost_motion.uncertainty < 2e-5
 
@@ -104,18 +93,6 @@ def test_spectrum_has_its_peaks_at_these_orders(found):
 
 
 @pytest.mark.slow
-def test_steps_of_both_encoders_are_known(recording):
-    assert recording.encoders.rotor_step.size == pytest.approx(TURN / 2**16, rel=1e-6)
-    assert recording.encoders.output_step.size == pytest.approx(TURN / 2**20, rel=1e-6)
-
-
-@pytest.mark.slow
-def test_offset_of_the_encoder_is_reported(found):
-    assert found.offset == pytest.approx(1.0, abs=2e-4)
-    assert found.travel == pytest.approx(2.2 * TURN, rel=1e-3)
-
-
-@pytest.mark.slow
 def test_values_of_a_csv_row_are_simultaneous(tmp_path, config, actuator):
     ideal = there_and_back(2.2, 2)
     path = write_csv(
@@ -142,15 +119,6 @@ def test_short_motion_has_no_orders_that_it_cannot_resolve(actuator):
     assert found.orders[2].forward.uncertainty is None
     assert found.backward is None
     assert found.lost_motion is None
-
-
-def test_coarse_samples_resolve_no_high_orders(actuator):
-    angle = np.linspace(0.0, 3.0 * TURN, 3000)
-    both = encoders(-19.0 * angle, angle + np.sin(angle))
-    found = transmission_figures(both, actuator, 0.01)
-    told = {order.name for order in found.orders if order.forward}
-    assert 'satellite × 2' in told
-    assert 'teeth × 1' not in told
 
 
 @pytest.mark.slow
@@ -188,7 +156,7 @@ def test_twist_is_measured_with_both_encoders(tmp_path, config, actuator):
     """The output turns under load; only the twist of the gear counts."""
     gear_stiffness, bench_stiffness, friction = 400.0, 50.0, 0.5
     torque = 8.0 * np.sin(np.arange(8000) * TURN / 2000)
-    load = np.array(follow(torque, 2.0 * friction))  # minus friction
+    load = Drive(2.0 * friction).output(torque)  # less friction: a stop like that of play
     bench, gear = load / bench_stiffness, load / gear_stiffness
     stamps = START + np.arange(len(torque)) * MS
     rotor = Samples(stamps, -19.0 * (bench + gear), torque / -19.0)

@@ -9,9 +9,9 @@ from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.measurement.calibration.fit import check_ratio
-from gear_kinematics.measurement.calibration.normal import jackknife
-from gear_kinematics.measurement.recording import Array, Encoders, Recording
+from gear_kinematics.measurement.calibration.selection import jackknife
+from gear_kinematics.measurement.ratio import wrong_ratio
+from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 
 _BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left
@@ -65,7 +65,8 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
         RecordingError: if the recording has another gear ratio.
     """
     rotor, ratio = encoders.rotor, calibration.gear_ratio
-    check_ratio(recording, encoders, ratio)
+    if wrong := wrong_ratio(encoders, ratio):
+        raise RecordingError(f'{recording.name}: {wrong}')
     if not encoders.timed:
         calibration = replace(calibration, spans=replace(calibration.spans, speed=None))
     unknown = np.full(len(rotor.turns), np.nan)

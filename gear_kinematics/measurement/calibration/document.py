@@ -49,13 +49,13 @@ def document(fit: Fit, target: str) -> Document:
         else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
         f'{before} in what was left out of the fit, no more than by chance. Nothing is written.'
     )
-    told = list(remarks(fit))
+    sentences = list(remarks(fit))
     section = Section(
         printable(target),
         tuple(_tables(fit)),
         verdict,
         (Finding('finding', finding),),
-        tuple(map(printable, told)),
+        tuple(map(printable, sentences)),
         Figure(tuple(_panels(fit)), columns=2),
         picture_first=True,
     )
@@ -90,7 +90,7 @@ def document(fit: Fit, target: str) -> Document:
             }
             for r in fit.recordings
         ],
-        'remarks': told,
+        'remarks': sentences,
     }
     return Document('gearkin calibrate', (section,), data, verdict)
 

@@ -15,24 +15,22 @@ import numpy as np
 
 from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.gear_ratio import GearRatio
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.calibration import terms as candidates
-from gear_kinematics.measurement.calibration.normal import (
+from gear_kinematics.measurement.calibration.result import Fit, FittedRecording, FittedTerm
+from gear_kinematics.measurement.calibration.selection import (
     Block,
     NormalEquations,
+    Selection,
     blocks_of,
     first_as_good,
     is_as_good,
     jackknife,
     widening,
 )
-from gear_kinematics.measurement.calibration.result import Fit, FittedRecording, FittedTerm
-from gear_kinematics.measurement.calibration.samples import MOST_DRIFT, Recorded, Samples, thinned
-from gear_kinematics.measurement.calibration.selection import Selection
 from gear_kinematics.measurement.calibration.spectrum import Spectrum, as_fraction, spectrum
-from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio, wrong_ratio
-from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
+from gear_kinematics.measurement.calibration.terms import MOST_DRIFT, Recorded, Samples, thinned
+from gear_kinematics.measurement.ratio import RatioEstimate, fit_ratio, wrong_ratio
+from gear_kinematics.measurement.recording import Array, Encoders, RecordingError
 
 _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
@@ -56,16 +54,16 @@ def fit(
     ratio: Fraction,
     mechanism: Mechanism | None = None,
     *,
-    fit_ratio: bool = False,
+    estimate_ratio: bool = False,
 ) -> Fit:
     """Calibrate a gear.
 
     Args:
         recordings: at least one.
-        ratio: i, exact. With `fit_ratio` it need only be so near that, between samples, the output
-            turns at most half a turn more or less than by this ratio.
+        ratio: i, exact. If it is to be estimated, so near that, between samples, the output turns
+            at most half a turn more or less than by this ratio.
         mechanism: for the orders of satellite and teeth, if it is known.
-        fit_ratio: whether to estimate the ratio first.
+        estimate_ratio: whether to estimate the ratio first.
 
     Raises:
         RecordingError: if the recordings do not suffice, or have another ratio.
@@ -76,31 +74,15 @@ def fit(
             raise RecordingError(f'{recording.name}: {count} output angles are too few')
         if not np.ptp(encoders.ideal(ratio)) > 0.0:
             raise RecordingError(f'{recording.name}: the rotor does not move')
-        if not fit_ratio:
-            check_ratio(recording, encoders, ratio)
-    estimate = _estimate_ratio(recordings, ratio) if fit_ratio else None
+        if not estimate_ratio and (wrong := wrong_ratio(encoders, ratio)):
+            raise RecordingError(f'{recording.name}: {wrong}')
+    estimate = None
+    if estimate_ratio:
+        longest = max((e for _, e in recordings), key=lambda e: float(np.ptp(e.rotor.turns)))
+        # Over less, an eccentricity of the output cannot be told from another ratio.
+        estimate = fit_ratio(longest, ratio, _TURNS)
     fitting = _Fitting(recordings, estimate.ratio if estimate else ratio, mechanism)
     return fitting.result(estimate)
-
-
-def check_ratio(recording: Recording, encoders: Encoders, ratio: Fraction) -> None:
-    """Check that a recording has a ratio.
-
-    Raises:
-        RecordingError: if it clearly has another one; names it.
-    """
-    if wrong := wrong_ratio(encoders, GearRatio(ratio)):
-        raise RecordingError(f'{recording.name}: {wrong}')
-
-
-def _estimate_ratio(recordings: Sequence[Recorded], assumed: Fraction) -> RatioEstimate:
-    """The ratio from the recording with the longest travel."""
-    longest = max((e for _, e in recordings), key=lambda e: float(np.ptp(e.rotor.turns)))
-    ideal = longest.at_measured(longest.ideal(assumed))
-    output = ideal + longest.error(assumed)
-    # Over less, an eccentricity of the output cannot be told from another ratio.
-    eccentric = bool(np.ptp(output) >= _TURNS * TURN)
-    return estimate_ratio(ideal * float(assumed), output, eccentric=eccentric)
 
 
 class _Fitting:

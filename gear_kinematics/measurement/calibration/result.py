@@ -10,9 +10,14 @@ import numpy as np
 from gear_kinematics.correction import calibration_file as file
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.measurement.calibration.samples import Samples
 from gear_kinematics.measurement.calibration.spectrum import Spectrum
-from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm, Term, TorqueTerm
+from gear_kinematics.measurement.calibration.terms import (
+    OrderTerm,
+    Samples,
+    StopTerm,
+    Term,
+    TorqueTerm,
+)
 from gear_kinematics.measurement.ratio import RatioEstimate
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.share import version

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import stdtr
 
 from gear_kinematics.correction.uncertainty import COVERAGE, Component, Estimate, combined
 from gear_kinematics.measurement.compare.groups import Group
@@ -90,11 +91,21 @@ def changes_of(
     for group, other in zip(groups[1:], others, strict=True):
         if log := estimate(other - first):
             names, values = (groups[0].name, group.name), (before, before * math.exp(log.value))
-            half, chance = log.uncertainty, log.probability_of_zero()
+            half, chance = log.uncertainty, _chance(log)
             ends = () if half is None else (log.value - half, log.value + half)
             interval = tuple(map(math.exp, ends))
             changes.append(Change(quantity, *names, *values, interval, chance, free > 0))
     return changes
+
+
+def _chance(estimate: Estimate) -> float | None:
+    """Probability of a value as far from zero if the quantity is zero; None if unknown."""
+    if estimate.standard is None:
+        return None
+    if not estimate.standard:
+        return float(estimate.value == 0.0)
+    degrees = np.floor(estimate.degrees_of_freedom + 1e-6)
+    return float(2.0 * stdtr(degrees, -abs(estimate.value / estimate.standard)))
 
 
 def judged(changes: Sequence[Change]) -> list[Change]:
