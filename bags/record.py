@@ -11,6 +11,7 @@ import math
 import random
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -171,9 +172,7 @@ def record(path: Path, scenario: Scenario) -> None:
             for data in scenario.driver(number, stamp, scenario.motion(now)):
                 replay.send(data)
                 sent += 1
-        replay.wait_until(
-            lambda: sum(topic == '/rotor_state' for topic, *_ in replay.received) == sent, 5.0
-        )
+        replay.receive(Counter({'/rotor_state': sent}))
         replay.receive_until(time.monotonic() + 0.5)  # what the node still answers
         compression: Literal['zstd', 'none'] = 'zstd' if scenario.storage == 'mcap' else 'none'
         with BagWriter(path, scenario.storage, compression) as writer:

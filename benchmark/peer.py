@@ -12,7 +12,7 @@ import rclpy
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
-from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.workarounds.shutdown import shut_down
 
 DEPTH = 100_000
 """Messages that can wait at this end of a topic: more than ever do, so that no loss is ours."""
@@ -32,7 +32,7 @@ def peer(name: str, arguments: list[str] | None = None) -> Iterator[Node]:
     try:
         yield node
     finally:
-        leave(node)
+        shut_down(node)
 
 
 def report(**values: Any) -> None:

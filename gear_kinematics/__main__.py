@@ -13,7 +13,7 @@ from itertools import takewhile
 from math import inf
 from types import FrameType
 
-from gear_kinematics.ros.shared_memory import SharedMemoryError, check_shared_memory
+from gear_kinematics.ros.workarounds.shared_memory import SharedMemoryError, check_shared_memory
 
 _INTERRUPTED = 130
 """Exit code, as in shells."""

@@ -14,8 +14,8 @@ import pytest
 from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, started, wait_until
 from mounts import with_mounts
 
-from gear_kinematics.ros import shared_memory
-from gear_kinematics.ros.shared_memory import check_shared_memory
+from gear_kinematics.ros.workarounds import shared_memory
+from gear_kinematics.ros.workarounds.shared_memory import check_shared_memory
 
 pytestmark = pytest.mark.slow
 
@@ -106,7 +106,7 @@ def test_nothing_heavy_is_imported_before_signals_are_handled():
         [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=DEADLINE
     )
     imported = {name for name in done.stdout.split() if name.startswith('gear_kinematics.')}
-    names = ('__main__', 'ros', 'ros.shared_memory')
+    names = ('__main__', 'ros', 'ros.workarounds', 'ros.workarounds.shared_memory')
     assert imported == {f'gear_kinematics.{name}' for name in names}
     assert not {'numpy', 'rclpy', 'argparse', 'rich', 'yaml'} & set(done.stdout.split())
 

@@ -27,7 +27,7 @@ from gear_kinematics.report.image import Paper, format_of, to_image
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.report.text import render
-from gear_kinematics.ros.shared_memory import check_shared_memory
+from gear_kinematics.ros.workarounds.shared_memory import check_shared_memory
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
 _FORMS: Mapping[str, Callable[[Document], str]] = {

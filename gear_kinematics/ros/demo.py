@@ -1,7 +1,8 @@
 """The demo: plays the shipped bag into the node, shows its outputs live and validates them."""
 
 import math
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import replace
 from pathlib import Path
@@ -81,41 +82,32 @@ def _play(console: Console, bag: Bag, config: NodeParameters, count: int) -> lis
     task = progress.add_task('', total=count)
     bodies = 2 * len(config.branches)
     received: list[Message] = []
-    answers = Answers({_TOPICS.rotor, *outputs_of(config)})
+    topics = {_TOPICS.rotor, *outputs_of(config)}
     with Live(progress, console=console, auto_refresh=False, transient=True) as live:
 
         def show(sent: int, _total: int | None) -> None:
             progress.update(task, completed=sent)
-            live.update(Group(progress, _current(answers.latest, bodies)), refresh=True)
+            live.update(
+                Group(progress, _current(latest_complete(received, topics), bodies)), refresh=True
+            )
 
         for message in live_messages(bag, config, progress=show):
-            received.append(message)
-            answers.add(message)
+            received.append(message)  # noqa: PERF402, `show` reads the list meanwhile
     return received
 
 
-class Answers:
-    """Finds the latest rotor state to which all outputs have been received."""
+def latest_complete(messages: Sequence[Message], topics: AbstractSet[str]) -> dict[str, bytes]:
+    """Return the last messages, by topic, of a stamp that all topics have; {} if there is none.
 
-    def __init__(self, topics: AbstractSet[str]) -> None:
-        """Set the topics that have a message for each rotor state, with its stamp."""
-        self.latest: Mapping[str, bytes] = {}
-        """The messages by topic; empty until all have been received."""
-        self._topics = topics
-        self._incomplete: dict[bytes, dict[str, bytes]] = {}
-
-    def add(self, message: Message) -> None:
-        """Take a received message."""
-        topic, _, data = message
-        stamp = data[STAMP_BYTES]
-        group = self._incomplete.setdefault(stamp, {})
-        group[topic] = data
-        if group.keys() >= self._topics:
-            self.latest = group
-            # Those before it without all outputs were rejected.
-            earlier = list(self._incomplete)
-            for old in earlier[: earlier.index(stamp) + 1]:
-                del self._incomplete[old]
+    A rotor state that the node rejects has no outputs.
+    """
+    by_stamp: defaultdict[bytes, dict[str, bytes]] = defaultdict(dict)
+    for topic, _, data in reversed(messages):
+        group = by_stamp[data[STAMP_BYTES]]
+        group.setdefault(topic, data)
+        if group.keys() >= topics:
+            return group
+    return {}
 
 
 def _current(latest: Mapping[str, bytes], bodies: int) -> Table:

@@ -1,20 +1,19 @@
 """What shows the mechanism: robot_description and markers."""
 
 import time
-from collections.abc import Callable
-from typing import Any
 
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import QoSPublisherMatchedInfo
 from rclpy.node import Node
-from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import serialize_message
 from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.markers import Markers
+from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.wire import topics
 
@@ -26,30 +25,26 @@ class Display:
         self,
         node: Node,
         parameters: NodeParameters,
-        create_output: Callable[..., Publisher],
-        publish: Callable[[Publisher, Any], None],
+        outputs: Outputs,
     ) -> None:
         """Open the topics.
 
         Args:
             node: the node.
             parameters: of the node, which knows the mechanism.
-            create_output: creates a publisher of the node, from type, topic and QoS.
-            publish: publishes a message.
+            outputs: of the node.
         """
         self._mechanism, self._module = parameters.mechanism, parameters.module
-        self._publish = publish
+        self._outputs = outputs
         self._meshes = folder_uri(parameters.meshes, self._mechanism, self._module)
-        self._description = String()
-        self._description_publisher = create_output(String, topics.ROBOT_DESCRIPTION, _latched())
+        self._description = ''
+        outputs.create(topics.ROBOT_DESCRIPTION, String, _latched())
         if rate := parameters.markers_rate:
             steady = Clock(clock_type=ClockType.STEADY_TIME)
             self._timer = node.create_timer(
                 1.0 / rate, self._publish_markers, clock=steady, autostart=False
             )
-            self._marker_publisher = create_output(
-                MarkerArray, topics.MARKERS, _latched(), matched=self._on_viewers
-            )
+            outputs.create(topics.MARKERS, MarkerArray, _latched(), self._on_viewers)
 
     def update(self, parameters: NodeParameters) -> None:
         """Use names of joints and links; publishes the URDF if it has changed.
@@ -58,18 +53,18 @@ class Display:
             ValueError: if `output_joint` is empty or the name of another joint.
         """
         prefix = parameters.frame_prefix
-        text = urdf(
+        description = urdf(
             self._mechanism,
             module=self._module,
             output_joint=parameters.output_joint,
             frame_prefix=prefix,
             meshes=self._meshes,
         )
-        description = String(data=text)
         if description == self._description:
             return
         self._description = description
-        self._publish(self._description_publisher, description)
+        message = serialize_message(String(data=description))
+        self._outputs.send([(topics.ROBOT_DESCRIPTION, message)])
         self._markers = Markers(self._mechanism, module=self._module, frame_prefix=prefix)
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
@@ -83,7 +78,7 @@ class Display:
 
     def _publish_markers(self) -> None:
         if message := self._markers.due(time.monotonic()):
-            self._publish(self._marker_publisher, message)
+            self._outputs.send([(topics.MARKERS, message)])
 
 
 def _latched() -> QoSProfile:

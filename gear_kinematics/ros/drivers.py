@@ -4,17 +4,13 @@ import math
 import time
 from collections.abc import Callable
 
-from rclpy.event_handler import (
-    QoSRequestedIncompatibleQoSInfo,
-    QoSSubscriptionEventType,
-    SubscriptionEventCallbacks,
-)
-from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 
+from gear_kinematics.ros.workarounds.lost_messages import LostMessages
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 
 DEPTH = 2000
@@ -55,7 +51,7 @@ class DriverInput:
         self._subscribe()
 
     def _subscribe(self) -> None:
-        self.unheard = True
+        self.silent = True
         """Whether no message has been received yet."""
         self._publishers = 0
         self._settled_at = math.inf
@@ -68,11 +64,7 @@ class DriverInput:
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible),
         )
-        with self.subscription.handle:
-            self.losses = rclpy_implementation.EventHandle(
-                self.subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
-            )
-            """The middleware's status of lost messages."""
+        self.losses = LostMessages(self.subscription)
 
     def _on_incompatible(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
         name = self.subscription.topic_name
@@ -82,28 +74,23 @@ class DriverInput:
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
             self._node.get_logger().info(f'{name}: subscribing with best effort, as a driver does')
             self.count_losses()
-            self.losses.destroy_when_not_in_use()
+            self.losses.destroy()
             self._node.destroy_subscription(self.subscription)
             self._subscribe()
 
     def begin_to_count_losses(self) -> None:
         """Ignore losses from before and during the connection, which has just been made."""
-        self.unheard = False
+        self.silent = False
         self._settled_at = time.monotonic() + _SETTLING
 
     def count_losses(self) -> None:
-        """Poll the middleware for the messages lost since the last call, and for new drivers.
-
-        A callback for each loss, as for other events, could deadlock the thread that takes the
-        event and the one that receives: ros2/rmw_fastrtps#890.
-        """
-        with self.losses:
-            status = self.losses.take_event()
+        """Count the messages lost since the last call, and look for new drivers."""
+        lost = self.losses.take()
         now, publishers = time.monotonic(), self.subscription.get_publisher_count()
         if publishers > self._publishers:
             self._settled_at = now + _SETTLING
         self._publishers = publishers
-        if not self.unheard and now >= self._settled_at:
-            self._monitor.lost += status.total_count_change
+        if not self.silent and now >= self._settled_at:
+            self._monitor.lost += lost
         if not publishers:
-            self.unheard = True
+            self.silent = True

@@ -32,8 +32,8 @@ from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.drivers import DEPTH
-from gear_kinematics.ros.leaving import leave
-from gear_kinematics.ros.process import make_executor
+from gear_kinematics.ros.workarounds.executor import make_executor
+from gear_kinematics.ros.workarounds.shutdown import shut_down
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
@@ -200,21 +200,21 @@ class Replay:
         """
         template = JointStateTemplate([joint or 'rotor'], velocity=False, effort=False)
         message = template.encode(_PROBE_SECOND * SECOND, [0.0])
-        next_probe = 0.0
-
-        def answered() -> bool:
-            nonlocal next_probe
-            if time.monotonic() >= next_probe:
-                self.send(message)
-                next_probe = time.monotonic() + _PROBE_PERIOD
-            return self._probed == self._topics
-
-        self.wait_until(answered, timeout)
+        deadline = time.monotonic() + timeout
+        while self._probed != self._topics:
+            if time.monotonic() > deadline:
+                raise ReplayError(f'the node did not answer within {timeout:g} s')
+            self.send(message)
+            self.receive_until(time.monotonic() + _PROBE_PERIOD)
 
     def receive_until(self, moment: float) -> None:
-        """Receive until a moment of `time.monotonic()`."""
+        """Receive until a moment of `time.monotonic()`.
+
+        Raises:
+            ReplayError: if the node has ended.
+        """
         while (left := moment - time.monotonic()) > 0.0:
-            self._executor.spin_once(timeout_sec=min(left, POLL))  # no signal interrupts it
+            self._spin(min(left, POLL))
 
     def send(self, data: bytes) -> None:
         """Send a serialised JointState as rotor_state."""
@@ -224,18 +224,6 @@ class Replay:
         """Remove and return the messages in `received`."""
         taken, self.received = self.received, []
         return taken
-
-    def wait_until(self, condition: Callable[[], bool], timeout: float) -> None:
-        """Receive until a condition holds.
-
-        Raises:
-            ReplayError: after `timeout` s, or if the node has ended.
-        """
-        deadline = time.monotonic() + timeout
-        while not condition():
-            if time.monotonic() > deadline:
-                raise ReplayError(f'the node did not answer within {timeout:g} s')
-            self._spin()
 
     def receive(self, wanted: Counter[str], but: int = 0) -> bool:
         """Receive until each topic has its number of messages, except for a few.
@@ -257,13 +245,14 @@ class Replay:
                 total, deadline = self.counts.total(), now + _QUIET
             if now > deadline:
                 return False
-            self._spin()
+            self._spin(POLL)
         return True
 
-    def _spin(self) -> None:
+    def _spin(self, timeout: float) -> None:
+        """Receive a message; no signal interrupts it."""
         if not self._alive():
             raise ReplayError('the node has ended')
-        self._executor.spin_once(timeout_sec=0.01)
+        self._executor.spin_once(timeout_sec=timeout)
 
     def _recorder(self, topic: str) -> Callable[[bytes], None]:
         def record(data: bytes) -> None:
@@ -294,7 +283,7 @@ def replay_node(namespace: str) -> Iterator[Node]:
     try:
         yield node
     finally:
-        leave(node)
+        shut_down(node)
 
 
 @contextmanager
@@ -334,9 +323,12 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
 
 def outputs_of(parameters: NodeParameters) -> Collection[str]:
     """The recorded topics on which the node answers."""
-    known = isinstance(parameters.gear, Mechanism)
-    corrected = corrected_beside().values() if parameters.calibration else ()
-    return *_TOPICS[1 : 3 if known else 2], *corrected
+    outputs = [_TOPICS.output]
+    if isinstance(parameters.gear, Mechanism):
+        outputs.append(_TOPICS.poses)
+    if parameters.calibration:
+        outputs += corrected_beside().values()
+    return outputs
 
 
 def _stamped(data: bytes, received: int) -> bytes:

@@ -24,13 +24,12 @@ from gear_kinematics.shape.solids import FACE_WIDTH
 from gear_kinematics.shape.visuals import COLOURS
 
 Array = NDArray[np.float64]
-Size = tuple[float, float, float]
 
 _REPEAT_BANDWIDTH = 5e3  # bytes/s on average
 _OUTLINE_WIDTH = 0.2  # modules
 _ROSE_WIDTH = 0.03  # eccentricities
 _PETAL_POINTS = 24
-_MOST_PETALS = 100  # of a rose; more cannot be distinguished
+_MAX_PETALS = 100  # of a rose; more cannot be distinguished
 
 
 class Markers:
@@ -83,32 +82,27 @@ class Markers:
         middle, length = 0.5 * (min(axial) + max(axial)), max(axial) - min(axial) + face
         yield _cylinder('rotor', 'rotor', 'rotor', 0.4 * radius, length, middle)
         yield _cylinder('output', 'output', 'output_shaft', 0.2 * radius, length + face, middle)
-        petals = min(mechanism.oldham_petals, _MOST_PETALS)
+        petals = min(mechanism.oldham_petals, _MAX_PETALS)
         paths = roses(mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
         # With the rotor at 0, the frames of rotor and stator coincide.
         cams = solve(mechanism, 0.0).satellite_centre.tolist()
         for branch, rose, (x, y) in zip(mechanism.branches, paths, cams, strict=True):
-            z, phase = branch.axial_position, teeth.ring_phase(mechanism, branch)
-            on_satellite, on_oldham = f'satellite_{branch.name}', f'oldham_{branch.name}'
-            yield _line(
-                'ring', 'stator', 'stator', _closed(turned(ring, phase)), line, z + 0.5 * face
-            )
+            z, on_satellite = branch.axial_position, f'satellite_{branch.name}'
+            turned_ring = turned(ring, teeth.ring_phase(mechanism, branch))
+            yield _line('ring', 'stator', 'stator', _closed(turned_ring), line, z + 0.5 * face)
             # The path of the centre of the Oldham coupling.
             yield _line('rose', 'oldham', 'stator', rose, thin, z + 1.2 * face)
             cam = _cylinder('cam', 'rotor', 'rotor', radius, 1.1 * face, z)
             cam.pose.position.x, cam.pose.position.y = x, y
             yield cam
             yield _cylinder('satellite', 'satellite', on_satellite, 2.0 * radius, face, 0.0)
-            yield _line(
-                'satellite', 'satellite', on_satellite, _closed(satellite), line, 0.5 * face
-            )
-            yield _box(
-                'slot', 'stator', on_satellite, (1.8 * radius, bar, 0.1 * face), 0.55 * face
-            )
+            outline = _closed(satellite)
+            yield _line('satellite', 'satellite', on_satellite, outline, line, 0.5 * face)
+            slot, arm = (1.8 * radius, bar, 0.1 * face), (bar, 1.8 * radius, 0.2 * face)
+            yield _marker(Marker.CUBE, 'slot', 'stator', on_satellite, slot, 0.55 * face)
+            on_oldham = f'oldham_{branch.name}'
             yield _cylinder('oldham', 'oldham', on_oldham, 0.7 * radius, 0.2 * face, 0.7 * face)
-            yield _box(
-                'arm', 'output', 'output_shaft', (bar, 1.8 * radius, 0.2 * face), z + 0.9 * face
-            )
+            yield _marker(Marker.CUBE, 'arm', 'output', 'output_shaft', arm, z + 0.9 * face)
 
 
 def _closed(outline: Array) -> Array:
@@ -127,20 +121,17 @@ def _cylinder(
     return _marker(Marker.CYLINDER, kind, colour, link, (diameter, diameter, height), z)
 
 
-def _box(kind: str, colour: str, link: str, size: Size, z: float) -> Marker:
-    return _marker(Marker.CUBE, kind, colour, link, size, z)
-
-
-def _marker(shape: int, kind: str, colour: str, link: str, scale: Size, z: float) -> Marker:
+def _marker(
+    shape: int, kind: str, colour: str, link: str, scale: tuple[float, float, float], z: float
+) -> Marker:
     """Create a marker on the z axis of a link, locked to it, in the namespace `kind`."""
     red, green, blue, _ = map(float, COLOURS[colour].split())
-    x_scale, y_scale, z_scale = scale
     return Marker(
         header=Header(frame_id=link),
         ns=kind,
         type=shape,
         pose=Pose(position=Point(z=z)),
-        scale=Vector3(x=x_scale, y=y_scale, z=z_scale),
+        scale=Vector3(**dict(zip('xyz', scale, strict=True))),
         color=ColorRGBA(r=red, g=green, b=blue, a=1.0),
         frame_locked=True,
     )

@@ -1,7 +1,7 @@
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
 import time
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,13 +10,11 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
-from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
-from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
@@ -30,9 +28,9 @@ from gear_kinematics.parameters.node_parameters import branch_parameters, unknow
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
+from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
-from gear_kinematics.ros.unheard import UnheardTopic
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
@@ -80,25 +78,19 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
 
-        self._all_outputs: list[Publisher] = []
-        self._display = (
-            Display(self, parameters, self._create_output, self._publish)
-            if isinstance(self._gear, Mechanism)
-            else None
-        )
         self._messages = state_messages(parameters)
-        outputs = *self._messages.topics, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
-        publishers = {
-            topic: self._create_output(
-                _MESSAGE_TYPES[topics.TOPICS[topic].type], topic, QoSProfile(depth=DEPTH)
-            )
-            for topic in outputs
-        }
-        self._outputs = Outputs(publishers, self._note_unsent)
-        self._note_listeners()  # only outputs with subscribers are computed
-        self._diagnostics = self._create_output(
-            DiagnosticArray, topics.DIAGNOSTICS, QoSProfile(depth=10)
-        )
+        self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
+        for topic in (
+            *self._messages.topics,
+            *topics.CORRECTED_TOPICS,
+            topics.TRANSMISSION_ERROR,
+        ):
+            message_type = _MESSAGE_TYPES[topics.TOPICS[topic].type]
+            self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
+        self._note_subscribers()
+        self._outputs.create(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
+        known = isinstance(self._gear, Mechanism)
+        self._display = Display(self, parameters, self._outputs) if known else None
         self._configure()
         self.add_post_set_parameters_callback(self._configure)
         self.create_service(Trigger, '~/home', self._home)
@@ -112,7 +104,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
             ),
         )
-        self._unheard = UnheardTopic(self, topics.ROTOR_STATE, 'rotor_joint')
+        self._missing_publisher = MissingPublisher(self)
         joint = parameters.rotor_joint
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
@@ -135,37 +127,17 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             result.reason = f'{names}: {result.reason}'
         return result
 
-    def _create_output(
-        self,
-        message_type: type,
-        topic: str,
-        qos: QoSProfile,
-        matched: Callable[[QoSPublisherMatchedInfo], None] | None = None,
-    ) -> Publisher:
-        publisher = self.create_publisher(
-            message_type,
-            topic,
-            qos,
-            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
-            event_callbacks=PublisherEventCallbacks(
-                incompatible_qos=lambda _: None,  # the next report names the subscriber
-                matched=matched or (lambda _: self._note_listeners()),
-            ),
-        )
-        self._all_outputs.append(publisher)
-        return publisher
-
-    def _note_listeners(self) -> None:
-        """Update the lists of outputs with subscribers."""
-        listened_to = self._outputs.listened_to
-        self._listened_to = listened_to(self._messages.topics)
-        self._corrected_listened_to = listened_to(topics.CORRECTED_TOPICS)
-        self._error_listened_to = listened_to([topics.TRANSMISSION_ERROR])
+    def _note_subscribers(self, _event: object = None) -> None:
+        """Update the lists of outputs with subscribers, as only these are computed."""
+        subscribed = self._outputs.subscribed
+        self._subscribed_states = subscribed(self._messages.topics)
+        self._subscribed_corrections = subscribed(topics.CORRECTED_TOPICS)
+        self._subscribed_errors = subscribed([topics.TRANSMISSION_ERROR])
 
     def destroy_node(self) -> None:
         """Destroy the event handles too, which rclpy does not know."""
         for driver in self._drivers:
-            driver.losses.destroy_when_not_in_use()
+            driver.losses.destroy()
         super().destroy_node()
 
     def _read_settings(self) -> NodeParameters:
@@ -211,19 +183,19 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
-        if self._rotor_driver.unheard:
+        if self._rotor_driver.silent:
             self._rotor_driver.begin_to_count_losses()
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
-        self._outputs.send(self._messages.encode(sample, self._listened_to))
+        self._outputs.send(self._messages.encode(sample, self._subscribed_states))
         if self._calibrated:  # also without a listener, to follow the motion
             correction = self._calibrated.correct(
                 sample, segment=self._input.segment, referenced=self._input.referenced
             )
-            wanted = self._corrected_listened_to
+            wanted = self._subscribed_corrections
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
         self._monitor.published += 1
         if self._encoder.received and self._input.referenced:
@@ -231,7 +203,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
-        if self._encoder_driver.unheard:
+        if self._encoder_driver.silent:
             self._encoder_driver.begin_to_count_losses()
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
@@ -241,14 +213,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
         if self._calibrated:
             self._calibrated.compare(samples)
-        for topic in self._error_listened_to:
+        for topic in self._subscribed_errors:
             self._outputs.send((topic, self._messages.transmission_error(s)) for s in samples)
-
-    def _publish(self, publisher: Publisher, message: Any) -> None:
-        try:
-            publisher.publish(message)
-        except rclpy_implementation.RCLError as error:
-            self._note_unsent(publisher, error)
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         # For example, with history keep_all and a blocked subscriber.
@@ -290,7 +256,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         for driver in self._drivers:
             driver.count_losses()
         self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
-        self._unheard.look(self._monitor.drivers, time.monotonic())
+        self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
         now, window = time.monotonic(), self._settings.transmission_error_window
         fit = self._calibrated.fit(window) if self._calibrated else None
@@ -300,14 +266,15 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self._encoder, self._settings, now, fit
             ),
         }
-        self._publish(self._diagnostics, diagnostic_array(self, reports))
+        message = serialize_message(diagnostic_array(self, reports))
+        self._outputs.send([(topics.DIAGNOSTICS, message)])
 
     def _look_at_graph(self) -> None:
         """Check the connections with other nodes, and log new faults."""
         known = self._monitor.graph
         inputs = (driver.subscription for driver in self._drivers)
         found = self._monitor.graph = find_faults(
-            self, inputs, self._all_outputs, exclusive=topics.STATE_TOPICS
+            self, inputs, self._outputs.publishers.values(), exclusive=topics.STATE_TOPICS
         )
         for fault in (*found.errors, *found.warnings):
             if fault not in (*known.errors, *known.warnings):

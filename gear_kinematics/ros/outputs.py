@@ -1,53 +1,78 @@
-"""The outputs of the node: publishers of serialised messages."""
+"""The outputs of the node: its publishers, by topic."""
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 
 from rclpy.duration import Duration
+from rclpy.event_handler import PublisherEventCallbacks, QoSPublisherMatchedInfo
 from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rclpy.qos_overriding_options import QoSOverridingOptions
+
+from gear_kinematics.ros.workarounds.raw_publishing import raw_sender
 
 
 class Outputs:
-    """Sends serialised messages, by topic."""
+    """Creates the publishers of a node, and publishes on them."""
 
     def __init__(
         self,
-        publishers: Mapping[str, Publisher],
+        node: Node,
+        on_subscribers: Callable[[QoSPublisherMatchedInfo], None],
         on_failure: Callable[[Publisher, Exception], None],
     ) -> None:
-        """Start with publishers by topic.
+        """Start without publishers.
 
         Args:
-            publishers: the name of each topic and its publisher.
+            node: the publishing node.
+            on_subscribers: called when a subscriber has come or gone.
             on_failure: called with the publisher of a message that was not sent, and the error.
         """
-        self._publishers = publishers
+        self.publishers: dict[str, Publisher] = {}
+        self._senders: dict[str, Callable[[bytes], None]] = {}
+        self._node = node
+        self._on_subscribers = on_subscribers
         self._on_failure = on_failure
-        # `publish` checks the type and holds the handle around `publish_raw`, which takes longer
-        # than encoding. Neither is needed: these are bytes, and nobody can destroy the publisher
-        # meanwhile, as `publish_raw` keeps the GIL. Other releases may lack it.
-        self._senders: dict[str, Callable[[bytes], None]] = {
-            topic: getattr(publisher.handle, 'publish_raw', publisher.publish)
-            for topic, publisher in publishers.items()
-        }
 
-    def listened_to(self, topics: Iterable[str]) -> list[str]:
+    def create(
+        self,
+        topic: str,
+        message_type: type,
+        qos: QoSProfile,
+        on_subscribers: Callable[[QoSPublisherMatchedInfo], None] | None = None,
+    ) -> None:
+        """Create the publisher on a topic, perhaps with another callback than the common one."""
+        publisher = self._node.create_publisher(
+            message_type,
+            topic,
+            qos,
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            event_callbacks=PublisherEventCallbacks(
+                incompatible_qos=lambda _: None,  # the next report names the subscriber
+                matched=on_subscribers or self._on_subscribers,
+            ),
+        )
+        self.publishers[topic] = publisher
+        self._senders[topic] = raw_sender(publisher)
+
+    def subscribed(self, topics: Iterable[str]) -> list[str]:
         """Return those of the topics that have subscribers."""
-        return [topic for topic in topics if self._publishers[topic].get_subscription_count()]
+        return [topic for topic in topics if self.publishers[topic].get_subscription_count()]
 
     def send(self, messages: Iterable[tuple[str, bytes]]) -> None:
-        """Send messages, given with their topics, and report what fails."""
+        """Publish serialised messages, given with their topics, and report failures."""
         # All are encoded first: a listener is still awake at the second if it follows at once.
         for topic, message in list(messages):
             try:
                 self._senders[topic](message)
             except rclpy_implementation.RCLError as error:
-                self._on_failure(self._publishers[topic], error)
+                self._on_failure(self.publishers[topic], error)
 
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until reliable subscribers have received all messages; `timeout` is in s."""
         deadline = time.monotonic() + timeout
-        for publisher in self._publishers.values():
+        for publisher in self.publishers.values():
             left = max(0.0, deadline - time.monotonic())
             publisher.wait_for_all_acked(Duration(seconds=left))

@@ -88,12 +88,8 @@ def play(
         ReplayError: if there is no subscriber in time, or a topic's type is not installed.
         ValueError: if a number is out of range.
     """
-    for name, value in (
-        ('start offset', start_offset),
-        ('duration', duration),
-        ('clock', clock),
-        ('wait', wait),
-    ):
+    numbers = {'start offset': start_offset, 'duration': duration, 'clock': clock, 'wait': wait}
+    for name, value in numbers.items():
         if not value >= 0.0:
             raise ValueError(f'{name} must not be negative, but is {value:g}')
     types = {topic: source.type_of(topic) for topic in topics}

@@ -28,7 +28,7 @@ from std_msgs.msg import Header, String
 from wire import micro_ros_bytes
 
 from gear_kinematics.ros.live import replay_node
-from gear_kinematics.ros.process import make_executor
+from gear_kinematics.ros.workarounds.executor import make_executor
 
 ROOT = Path(__file__).resolve().parents[2]
 FOREIGN = [

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 from links import read
-from live import LATCHED, PATIENT, live_node, rotor_state
+from live import LATCHED, live_node
 from rclpy.qos import QoSProfile
 from shapely import affinity
 from shown_markers import MODULE, all_at, sent
@@ -143,36 +143,3 @@ def test_node_shows_the_mechanism_to_present_and_later_viewers(executor, tmp_pat
             live.peer.wait_until(lambda messages=received: messages, f'what the {viewer} sees')
             assert received[0] == expected
             live.peer.node.destroy_subscription(subscription)
-
-
-@pytest.mark.live
-def test_node_sends_no_markers_for_a_turning_rotor(tmp_path):
-    with live_node(tmp_path, *PATIENT, '-p', 'markers_rate:=1000.0') as live:
-        live.peer.connect()
-        live.peer.listen(MarkerArray, 'markers', VOLATILE)
-        received = live.peer.received['markers']
-        live.peer.wait_until(lambda: received, 'markers')
-
-        def turn():
-            live.peer.send(rotor_state(stamp := live.peer.stamp(), ['rotor'], [1e-9 * stamp]))
-
-        counts = []
-        for _ in range(2):  # reports are a second apart
-            live.peer.report(meanwhile=turn)
-            counts.append((len(live.peer.received['output_state']), len(received)))
-        (outputs, markers), (more_outputs, as_many_markers) = counts
-        assert more_outputs > outputs
-        assert as_many_markers == markers
-
-
-@pytest.mark.live
-def test_changed_prefix_reaches_viewers(tmp_path):
-    with live_node(tmp_path) as live:
-        live.peer.listen(MarkerArray, 'markers', LATCHED)
-        received = live.peer.received['markers']
-        live.peer.wait_until(lambda: received, 'markers')
-        assert live.peer.set(frame_prefix='left_').successful
-        live.peer.wait_until(
-            lambda: {m.header.frame_id[:5] for m in received[-1].markers} == {'left_'},
-            'the new prefix',
-        )

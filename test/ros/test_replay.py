@@ -10,22 +10,21 @@ import time
 from collections import Counter
 from contextlib import contextmanager
 from dataclasses import replace
-from itertools import count, islice, pairwise
+from itertools import count, pairwise
 from pathlib import Path
 
 import pytest
 from live import DEADLINE, Participant, rotor_bytes
 from rclpy.qos import QoSProfile
-from replaying import SECOND, decode, stamp_of
+from replaying import BOUND, SECOND, compare_messages, decode, stamp_of, valid_samples
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
-from gear_kinematics.bag.schedule import due_messages
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros import live
-from gear_kinematics.ros.live import ReplayError, live_messages, replay_node
+from gear_kinematics.ros.live import ReplayError, live_messages
 from gear_kinematics.ros.replay import play
 
 pytestmark = pytest.mark.live
@@ -133,115 +132,73 @@ def stamps(heard) -> list[int]:
 # The process and a listener.
 
 
-def test_the_rotor_topic_is_played_whole_in_order_and_in_its_time(bag_path, recorded, listener):
-    name = next(names)
-    heard, clock = listener.listen(name), listener.listen('/clock', Clock)
-    with playing(bag_path, {ROTOR: name}) as process:
-        listener.wait_until(lambda: len(heard) >= COUNT, 'every message')
-    assert process.sent == COUNT
-    assert data_of(heard) == recorded
-    assert_took(heard, process, DURATION)
+def test_topics_are_played_whole_in_order_and_in_time_once_there_is_a_subscriber(
+    bag_path, recorded, listener
+):
+    rotor, output = next(names), next(names)
+    clock = listener.listen('/clock', Clock)
+    with playing(bag_path, {ROTOR: rotor, OUTPUT: output}) as process:
+        listener.wait_until(lambda: listener.node.count_publishers(rotor), 'the publisher')
+        heard = listener.listen(rotor), listener.listen(output)
+        listener.wait_until(lambda: len(heard[0]) + len(heard[1]) >= COUNT * 1.1, 'every message')
+    assert process.sent == COUNT * 1.1
+    assert data_of(heard[0]) == recorded
+    assert data_of(heard[1]) == recorded[::10]
+    assert_took(heard[0], process, DURATION)
     assert clock == []
 
 
-def test_twice_the_rate_takes_half_the_time(tmp_path, listener):
-    times = [SECOND // 2 * number for number in range(5)]
-    path = write_bag(tmp_path / 'sparse', rotor_states(times), {ROTOR: JOINT_STATE})
-    slow, fast = next(names), next(names)
-    heard = {name: listener.listen(name) for name in (slow, fast)}
-    with (
-        playing(path, {ROTOR: slow}, rate=1.0) as slow_process,
-        playing(path, {ROTOR: fast}, rate=2.0) as fast_process,
-    ):
-        listener.wait_until(lambda: all(len(h) == 5 for h in heard.values()), 'every message')
-    assert_took(heard[slow], slow_process, 2.0)
-    assert_took(heard[fast], fast_process, 1.0)
+def test_part_of_a_bag_is_played_at_half_the_rate_with_its_time_on_clock(
+    bag_path, recorded, listener
+):
+    name = next(names)
+    heard, clock = listener.listen(name), listener.listen('/clock', Clock)
+    part = {'start_offset': 0.2, 'duration': 0.7}
+    with playing(bag_path, {ROTOR: name}, **part, rate=0.5, clock=100.0) as process:
+        listener.wait_until(lambda: len(heard) >= 351, 'every message')
+    assert process.sent == 351
+    assert data_of(heard) == recorded[100:451]
+    assert_took(heard, process, 2.0 * 0.7)
+    messages = [decode(data, 'rosgraph_msgs/msg/Clock').clock for data in data_of(clock)]
+    times = [message.sec * SECOND + message.nanosec for message in messages]
+    # The clock is discovered late, and a busy machine publishes less often.
+    assert 10 < len(times) <= 0.5 + 100.0 * 2.0 * 0.7
+    assert all(a < b for a, b in pairwise(times))
+    assert times[0] >= 1.2 * SECOND
+    assert times[-1] <= 1.9 * SECOND
+    assert times[-1] - times[0] > 0.3 * 0.7 * SECOND
 
 
-@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_loop_repeats_until_a_signal(number, bag_path, recorded, listener):
+def test_a_loop_repeats_until_a_signal(bag_path, recorded, listener):
     name = next(names)
     heard = listener.listen(name)
     # A rate at which the queue of a listener on a busy machine does not overflow.
     with playing(bag_path, {ROTOR: name}, loop=True) as process:
         listener.wait_until(lambda: len(heard) >= 2.5 * COUNT, 'the third round')
-        process.send_signal(number)
+        process.send_signal(signal.SIGINT)
     assert len(heard) <= process.sent
     assert data_of(heard) == (recorded * (len(heard) // COUNT + 1))[: len(heard)]
     back = [k for k, (a, b) in enumerate(pairwise(stamps(heard)), start=1) if b < a]
     assert back == list(range(COUNT, len(heard), COUNT))
 
 
-def test_a_signal_ends_a_long_silence(tmp_path, listener):
+@pytest.mark.parametrize('subscribed', [True, False])
+def test_a_signal_ends_a_long_silence_and_the_wait_for_a_subscriber(
+    tmp_path, listener, subscribed
+):
     states = rotor_states([SECOND, 3600 * SECOND])
     path = write_bag(tmp_path / 'silence', states, {ROTOR: JOINT_STATE})
     name = next(names)
-    heard = listener.listen(name)
+    heard = listener.listen(name) if subscribed else []
     with playing(path, {ROTOR: name}) as process:
-        listener.wait_until(lambda: heard, 'the first message')
-        process.send_signal(signal.SIGINT)
-    assert process.sent == 1
-
-
-def test_start_offset_and_duration_cut_out_a_part(bag_path, recorded, listener):
-    name = next(names)
-    heard = listener.listen(name)
-    with playing(bag_path, {ROTOR: name}, start_offset=0.3, duration=0.1) as process:
-        listener.wait_until(lambda: len(heard) >= 51, 'every message')
-    assert process.sent == 51
-    assert data_of(heard) == recorded[150:201]
-
-
-def test_several_topics_are_played_in_their_order(bag_path, recorded, listener):
-    rotor, output = next(names), next(names)
-    heard = listener.listen(rotor), listener.listen(output)
-    with playing(bag_path, {ROTOR: rotor, OUTPUT: output}, rate=5.0) as process:
-        listener.wait_until(lambda: len(heard[0]) + len(heard[1]) >= COUNT * 1.1, 'every message')
-    assert process.sent == COUNT * 1.1
-    assert data_of(heard[0]) == recorded
-    assert data_of(heard[1]) == recorded[::10]
-
-
-def test_the_clock_is_published_on_request_and_increases_with_the_time_of_the_bag(
-    bag_path, listener
-):
-    name = next(names)
-    heard, clock = listener.listen(name), listener.listen('/clock', Clock)
-    with playing(bag_path, {ROTOR: name}, clock=100.0, rate=0.5):
-        listener.wait_until(lambda: len(heard) == COUNT, 'every message')
-    messages = [decode(data, 'rosgraph_msgs/msg/Clock').clock for data in data_of(clock)]
-    times = [message.sec * SECOND + message.nanosec for message in messages]
-    # The clock is discovered late, and a busy machine publishes less often.
-    assert 10 < len(times) <= 0.5 + 100.0 * 2.0 * DURATION
-    assert all(a < b for a, b in pairwise(times))
-    assert times[0] >= SECOND
-    assert times[-1] <= SECOND + DURATION * SECOND
-    assert times[-1] - times[0] > 0.3 * DURATION * SECOND
-
-
-def test_the_first_message_waits_for_the_subscriber(bag_path, recorded, listener):
-    name = next(names)
-    with playing(bag_path, {ROTOR: name}, rate=10.0):
-        listener.wait_until(lambda: listener.node.count_publishers(name), 'the publisher')
-        heard = listener.listen(name)
-        listener.wait_until(lambda: len(heard) >= COUNT, 'every message')
-    assert data_of(heard) == recorded
-
-
-def test_a_signal_ends_the_wait(bag_path, listener):
-    name = next(names)
-    with playing(bag_path, {ROTOR: name}) as process:
-        listener.wait_until(lambda: listener.node.count_publishers(name), 'the publisher')
-        process.send_signal(signal.SIGINT)
-    assert process.sent == 0
+        listener.wait_until(
+            lambda: heard if subscribed else listener.node.count_publishers(name), 'the start'
+        )
+        process.send_signal(signal.SIGTERM)
+    assert process.sent == subscribed
 
 
 # In this process.
-
-
-def test_the_node_offers_no_services():
-    with replay_node('') as node:
-        assert not list(node.services)
 
 
 def test_without_a_wait_no_subscriber_is_needed(bag_path):
@@ -280,42 +237,6 @@ class Scripted:
         yield from (message for message in self._messages if message[0] in topics)
         if self._error:
             raise self._error
-
-
-def schedule(times, topics=(ROTOR,), **options) -> list[tuple[float, int]]:
-    source = Scripted([(ROTOR, round(time * SECOND), b'') for time in times])
-    options = {'rate': 1.0} | options
-    found = islice(due_messages(source, topics, **options), 10)
-    return [(pytest.approx(due, abs=1e-9), received / SECOND) for due, (_, received, _) in found]
-
-
-@pytest.mark.parametrize(
-    ('options', 'expected'),
-    [
-        ({}, [(0.0, 5.0), (1.0, 6.0), (1.5, 6.5), (4.0, 9.0)]),
-        ({'rate': 2.0}, [(0.0, 5.0), (0.5, 6.0), (0.75, 6.5), (2.0, 9.0)]),
-        ({'start_offset': 0.5}, [(0.0, 6.0), (0.5, 6.5), (3.0, 9.0)]),
-        ({'start_offset': 1.0, 'duration': 0.5}, [(0.0, 6.0), (0.5, 6.5)]),
-        ({'duration': 0.0}, [(0.0, 5.0)]),
-    ],
-    ids=str,
-)
-def test_due_times(options, expected):
-    assert schedule([5.0, 6.0, 6.5, 9.0], **options) == expected
-
-
-@pytest.mark.parametrize(
-    ('times', 'options', 'due'),
-    [
-        ([5.0, 6.0, 7.0], {}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
-        ([5.0, 6.0, 7.0], {'rate': 2.0}, [0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5]),
-        ([5.0, 6.0, 7.0], {'start_offset': 0.5}, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9]),
-        ([5.0], {'rate': 4.0}, [0, 0.25, 0.5, 0.75, 1, 1.25, 1.5, 1.75, 2, 2.25]),
-    ],
-    ids=str,
-)
-def test_a_loop_restarts_after_a_mean_period(times, options, due):
-    assert [moment for moment, _ in schedule(times, loop=True, **options)] == due
 
 
 @pytest.mark.parametrize(
@@ -370,6 +291,7 @@ def by_topic(messages) -> dict[str, list[bytes]]:
     ('name', 'settings', 'rate'),
     [
         ('driver_faults', 'actuator', 1.0),
+        ('servo_point_to_point', 'actuator', 1000.0),
         ('constant_speed_3000rpm', 'actuator', 1000.0),
         ('single_turn_encoder', 'single_turn', 1000.0),
     ],
@@ -389,25 +311,41 @@ def test_a_live_node_publishes_what_it_published_when_recorded(name, settings, r
     assert seen[-1] == len(recorded[ROTOR])
 
 
-def test_live_messages_with_another_topic_joint_and_prefix():
-    data = [rotor_bytes(SECOND + k, ['m1'], [1.0]) for k in range(20)]
-    source = Scripted(
-        [('/m', SECOND + k, d) for k, d in enumerate(data)], types={'/m': JOINT_STATE}
-    )
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('pattern', 'topic', 'joint', 'count'),
+    [
+        ('feetech_servos', '/servo/out/state', 'q0', 954),
+        ('pr2_joints/*.bag', '/joint_states', 'laser_tilt_mount_joint', 1325),  # of ROS 1
+    ],
+)
+def test_a_live_node_publishes_what_a_real_recording_calls_for(
+    shared_path, record_property, pattern, topic, joint, count
+):
+    [path] = shared_path('data/bags').glob(pattern)
+    settings = config(rotor_joint=joint)
+    with Bag(path) as bag:
+        found = by_topic(live_messages(bag, settings, rotor_topic=topic, rate=1000.0))
+    samples, rejected = valid_samples(found[ROTOR], joint=joint)
+    assert (len(samples), rejected) == (count, {})
+    worst = compare_messages(samples, found[OUTPUT], found[POSES])
+    record_property('worst_angle', worst.angle)
+    record_property('worst_position', worst.position)
+    assert worst.angle <= BOUND
+    assert worst.position <= BOUND
+
+
+def test_live_messages_with_another_topic_joint_and_prefix_add_missing_stamps():
+    times = [SECOND + k for k in range(20)]
+    little, big = (rotor_bytes(0, ['m1'], [1.0], little_endian=order) for order in (True, False))
+    messages = [('/m', time, big if time % 2 else little) for time in times]
+    source = Scripted(messages, types={'/m': JOINT_STATE})
     settings = config(rotor_joint='', frame_prefix='left_')
     found = by_topic(live_messages(source, settings, rotor_topic='/m'))
-    assert found[ROTOR] == data
+    for topic in (ROTOR, OUTPUT):
+        assert stamps([(0.0, data) for data in found[topic]]) == times
     assert [decode(d, JOINT_STATE).name for d in found[OUTPUT]] == [['left_output_shaft']] * 20
     assert [decode(d, TYPES[POSES]).header.frame_id for d in found[POSES]] == ['left_stator'] * 20
-
-
-@pytest.mark.parametrize('little_endian', [True, False])
-def test_live_messages_add_missing_stamps(little_endian):
-    times = [SECOND, SECOND + 7]
-    data = rotor_bytes(0, position=[1.0], little_endian=little_endian)
-    found = by_topic(live_messages(Scripted([(ROTOR, t, data) for t in times]), config()))
-    for topic in (ROTOR, OUTPUT):
-        assert stamps([(0.0, d) for d in found[topic]]) == times
 
 
 def test_a_slow_consumer_loses_nothing():

@@ -73,7 +73,7 @@ class Run(NamedTuple):
     """Those of them that were dropped."""
 
     def answered(self, name) -> list[int]:
-        """Give the numbers of the driver's messages that were answered."""
+        """Return the numbers of the driver's messages that were answered."""
         states, _ = self.outputs[name]
         return [number_of(state) for state in states]
 

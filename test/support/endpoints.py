@@ -1,4 +1,4 @@
-"""A driver and a listener as processes of their own, on any host, told what to do through pipes.
+"""A driver and a listener as processes of their own, on any host, controlled through pipes.
 
 A line on stdin names a method of theirs and its arguments, and a line on stdout is what it
 returned, both in JSON. They end with their stdin.
@@ -26,7 +26,7 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from gear_kinematics.ros.leaving import leave
+from gear_kinematics.ros.workarounds.shutdown import shut_down
 
 PERIOD = SECOND // 100  # ns
 STEP = 0.3  # rad within the period
@@ -51,18 +51,18 @@ class Report(NamedTuple):
 
 
 def reading(number: int, encoder: str) -> float:
-    """Give the position in the driver's message of this number. The rotor turns steadily."""
+    """Return the position in the driver's message of this number. The rotor turns steadily."""
     angle = STEP * number
     return math.remainder(angle, math.tau) if encoder == 'single_turn' else angle
 
 
 def rotor_message(number: int, encoder: str) -> bytes:
-    """Give the driver's message of this number."""
+    """Return the driver's message of this number."""
     return rotor_bytes(START + number * PERIOD, position=[reading(number, encoder)])
 
 
 def number_of(output: bytes) -> int:
-    """Give the number of the driver's message with the stamp that an output begins with."""
+    """Return the number of the driver's message with the stamp that an output begins with."""
     seconds, nanoseconds = struct.unpack_from('<iI', output, 4)
     return (seconds * SECOND + nanoseconds - START) // PERIOD
 
@@ -75,7 +75,7 @@ class Endpoint:
         self._node = Node(name)
 
     def close(self) -> None:
-        leave(self._node)
+        shut_down(self._node)
 
 
 class Driver(Endpoint):
@@ -146,18 +146,18 @@ class Listener(Endpoint):
         self._thread.start()
 
     def newest(self) -> int:
-        """Give the number of the newest message that is answered on every topic, or -1."""
+        """Return the number of the newest message that is answered on every topic, or -1."""
         return min(number_of(data[-1]) if data else -1 for data in self._outputs.values())
 
     def outputs(self, first: int) -> list[list[str]]:
-        """Give the answers on every topic from that to the driver's `first` on, as digits."""
+        """Return the answers on every topic from that to the driver's `first` on, as digits."""
         return [
             [data.hex() for data in messages if number_of(data) >= first]
             for messages in self._outputs.values()
         ]
 
     def report(self) -> Report | None:
-        """Give the node's newest report."""
+        """Return the node's newest report."""
         return self._report
 
     def home(self) -> str:
@@ -178,7 +178,7 @@ class Remote:
         self._process = process
 
     def __call__(self, method: str, *arguments) -> Any:
-        """Let it do something and give what that returns."""
+        """Let it do something and return what that returns."""
         print(json.dumps([method, *arguments]), file=self._process.stdin, flush=True)
         answer = self._process.stdout.readline()
         assert answer, f'the process ended in {method}'

@@ -1,6 +1,7 @@
 """A driver, listener and client beside a live gear_state_publisher, and messages to send to it."""
 
 import itertools
+import json
 import os
 import re
 import time
@@ -25,8 +26,8 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from gear_kinematics.ros.leaving import leave
 from gear_kinematics.ros.live import running_node
+from gear_kinematics.ros.workarounds.shutdown import shut_down
 
 DEADLINE = 60.0  # s: far beyond anything but a failure
 SECOND = 1_000_000_000  # ns
@@ -36,6 +37,7 @@ PATIENT = '-p', 'input_timeout:=1000.0'
 """Arguments of a node whose driver may fall silent, as every one does on a busy machine."""
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
+
 _typestore = get_typestore(Stores.ROS2_JAZZY)
 _namespaces = (f'/live_{os.getpid()}_{number}' for number in itertools.count())
 
@@ -44,6 +46,11 @@ class LogLine(NamedTuple):
     level: str
     time: float
     text: str
+
+
+def parameter(name, value) -> tuple[str, str]:
+    """Return the arguments of a node that set a parameter."""
+    return '-p', f'{name}:={json.dumps(value)}'
 
 
 def rotor_state(stamp, names=('rotor',), position=(), velocity=(), effort=(), frame_id=''):
@@ -90,7 +97,7 @@ def rotor_bytes(
 
 
 def stamp_of(message) -> int:
-    """Give a message's stamp, ns."""
+    """Return a message's stamp, ns."""
     return message.header.stamp.sec * SECOND + message.header.stamp.nanosec
 
 
@@ -108,7 +115,7 @@ class Participant:
     def close(self) -> None:
         """Leave."""
         self._executor.shutdown()
-        leave(self.node)
+        shut_down(self.node)
 
     def wait_until(self, condition, what: str):
         """Receive until a condition holds, and return what it gave."""
@@ -163,11 +170,10 @@ class Peer(Listener):
         self._parameters = AsyncParameterClient(self.node, f'{namespace}/gear_state_publisher')
 
     def connect(self, *, probes=True, joint='rotor') -> None:
-        """Wait until the node hears the driver and, found out by probes, this peer hears it.
+        """Wait until the node receives from the driver, and this peer receives its outputs.
 
-        The node's publishers and this peer's subscriptions find each other one after the other,
-        so a count of endpoints at one end says nothing of the other end. The probes have the
-        stamps from 1 ns on.
+        Publishers and subscriptions discover each other one by one, so a count of endpoints at
+        one end says nothing of the other end: probes are sent, with stamps from 1 ns on.
         """
         self.wait_until(self._driver.get_subscription_count, 'a subscription to rotor_state')
         if not probes:
@@ -194,7 +200,7 @@ class Peer(Listener):
         )
 
     def stamp(self) -> int:
-        """Give the stamp of the next message, a millisecond after the last."""
+        """Return the stamp of the next message, a millisecond after the last."""
         return next(self._stamps)
 
     def send(self, *messages) -> None:
@@ -228,11 +234,15 @@ class Peer(Listener):
         since=None,
         node='gear_state_publisher',
     ):
-        """Wait for the first report on this peer's node that meets a condition, and take it.
+        """Wait for the first report on this peer's node that meets a condition.
 
-        It was published after the time `since`, ns, which is now unless given: what is still on
-        its way tells of what was before. `meanwhile` is done again and again until then. `node`
-        names another one in the namespace.
+        Args:
+            condition: of its status.
+            what: for the message if there is none in time.
+            meanwhile: called repeatedly while waiting.
+            since: time after which it was published, ns; None for now, as a report that is still
+                on its way is about what was before.
+            node: another one in the namespace.
         """
         name = f'{self.namespace}/{node}'
         since = since or time.time_ns()
@@ -251,7 +261,7 @@ class Peer(Listener):
         return self.wait_until(found, what)
 
     def status(self, *arguments, **options):
-        """Wait for a report in the same way, and take its status as level, message and values."""
+        """Wait for a report in the same way; returns level, message and values of its status."""
         _, status = self.report(*arguments, **options)
         values = {pair.key: pair.value for pair in status.values}
         return status.level[0], status.message, values
@@ -277,12 +287,9 @@ class Peer(Listener):
 
     def set(self, **values):
         """Set parameters through the service, one by one; returns the result of the last."""
-        return self.set_all([Parameter(name, value=value) for name, value in values.items()])[-1]
-
-    def set_all(self, parameters):
-        """Set parameters through the service; returns every result."""
         self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        return self._result(self._parameters.set_parameters(parameters)).results
+        parameters = [Parameter(name, value=value) for name, value in values.items()]
+        return self._result(self._parameters.set_parameters(parameters)).results[-1]
 
     def set_atomically(self, parameters):
         """Set all of some parameters or none of them through the service; returns the result."""
@@ -291,16 +298,21 @@ class Peer(Listener):
 
     def get(self, *names) -> list:
         """Get the values of parameters through the service."""
-        values = self._read(self._parameters.get_parameters, list(names)).values
-        return [rclpy.parameter.parameter_value_to_python(value) for value in values]
+        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
+        future, until = None, 0.0
 
-    def list_parameters(self) -> list[str]:
-        """Get the names of all parameters through the service."""
-        return list(self._read(self._parameters.list_parameters, [], 0).result.names)
+        def answered():
+            # Again and again: a service that has not discovered this peer yet loses the request.
+            nonlocal future, until
+            if time.monotonic() > until:
+                future = self._parameters.get_parameters(list(names))
+                until = time.monotonic() + 2.0
+            return future.done()
 
-    def describe(self, *names) -> list:
-        """Get the descriptors of parameters through the service."""
-        return self._read(self._parameters.describe_parameters, list(names)).descriptors
+        self.wait_until(answered, 'an answer')
+        return [
+            rclpy.parameter.parameter_value_to_python(value) for value in future.result().values
+        ]
 
     def description(self) -> str:
         """Listen to robot_description from now on and take what was latched."""
@@ -310,16 +322,6 @@ class Peer(Listener):
 
     def _keep_report(self, message, about) -> None:
         self._reports.append((about['source_timestamp'], message))
-
-    def _read(self, request, *arguments):
-        """Request until an answer comes: a service that has not found this peer yet loses it."""
-        self.wait_until(self._parameters.services_are_ready, 'the parameter services')
-        for patience in (1.0, 2.0, 4.0):  # s
-            future, until = request(*arguments), time.monotonic() + patience
-            self.wait_until(lambda f=future, t=until: f.done() or time.monotonic() > t, 'a while')
-            if future.done():
-                return future.result()
-        return self._result(request(*arguments))
 
     def _result(self, future):
         self.wait_until(future.done, 'an answer')
@@ -334,11 +336,11 @@ class Live(NamedTuple):
     log: Path
 
     def text(self) -> str:
-        """Give what the process has written."""
+        """Return what the process has written."""
         return self.log.read_text(encoding='utf-8')
 
     def lines(self, level: str = '') -> list[LogLine]:
-        """Give the log lines of a level so far."""
+        """Return the log lines of a level so far."""
         found = re.findall(r'^\[(\w+)\] \[([\d.]+)\] \[[^\]]*\]: (.*)$', self.text(), re.MULTILINE)
         lines = (LogLine(name, float(moment), text) for name, moment, text in found)
         return [line for line in lines if line.level == level or not level]
@@ -368,7 +370,7 @@ def live_node(folder: Path, *arguments: str, namespace: str = '', **topics: str)
 
 @contextmanager
 def connected(folder: Path, *arguments: str, namespace: str = ''):
-    """Run the node, and give a peer that is connected with it."""
+    """Run the node and yield a peer that is connected with it."""
     with live_node(folder, *arguments, namespace=namespace) as live:
         live.peer.connect()
         yield live.peer

@@ -71,7 +71,7 @@ class Host:
             os.close(here)
 
     def run(self, *command: str, **options) -> str:
-        """Run a program to its end and give what it prints.
+        """Run a program to its end and return what it prints.
 
         Raises:
             NoNetworkError: if it fails.
@@ -83,7 +83,7 @@ class Host:
         return done.stdout
 
     def card(self) -> dict:
-        """Give the state and the counters of the card, by iproute2's names."""
+        """Return the state and the counters of the card, by iproute2's names."""
         [card] = json.loads(self.run('ip', '-json', '-statistics', 'link', 'show', 'dev', CARD))
         return card
 
@@ -144,7 +144,7 @@ class Cable:
             self._wait_for_carrier()
 
     def _wait_for_carrier(self) -> None:
-        """Wait until the kernel tells of the carrier, which takes it up to a second.
+        """Wait until the kernel reports the carrier, which takes it up to a second.
 
         Before, it sends nothing there, and middleware that starts does not see the card.
         """

@@ -19,13 +19,13 @@ MODULE = 0.0005
 
 
 def sent(mechanism: Mechanism, prefix: str = '') -> list[Marker]:
-    """Give the markers as they are sent, in the frames of their links."""
+    """Return the markers as they are sent, in the frames of their links."""
     data = Markers(mechanism, module=MODULE, frame_prefix=prefix).due(0.0)
     return deserialize_message(data, MarkerArray).markers
 
 
 def all_at(mechanism: Mechanism, rotor_angle: float) -> list[Marker]:
-    """Give the markers where a viewer shows them, with poses in the stator's frame.
+    """Return the markers where a viewer shows them, with poses in the stator's frame.
 
     The links are where URDF and mechanism_joint_states put them, as robot_state_publisher does.
     """

@@ -1,4 +1,10 @@
-"""Shutdown of ROS that cannot hang."""
+"""Shutdown of ROS that does not hang in Fast DDS.
+
+Destroying a node waits, without a time limit, until no discovery callback runs. Fast DDS 2.14, if
+built with glibc before 2.30 as the wheels are, then hangs if one does run: its infinite deadline
+overflows when it is converted to another clock, pthread_cond_timedwait refuses it without
+releasing the lock that the callback needs to return, and Fast DDS tries again.
+"""
 
 import ctypes
 import os
@@ -7,7 +13,7 @@ from contextlib import suppress
 import rclpy
 from rclpy.node import Node
 
-_PATIENCE = 5  # s; a discovery callback takes microseconds
+_TIMEOUT = 5  # s; a discovery callback takes microseconds
 # Mangled names of C++ functions.
 _GET_PARTICIPANT = '_ZN16rmw_fastrtps_cpp22get_domain_participantEP10rmw_node_s'
 _SET_LISTENER = (
@@ -16,7 +22,7 @@ _SET_LISTENER = (
 )
 
 
-def leave(node: Node) -> None:
+def shut_down(node: Node) -> None:
     """Destroy the only node of a context, and shut the context down."""
     with suppress(OSError, AttributeError):  # another middleware, or another version
         _end_discovery(node)
@@ -25,12 +31,7 @@ def leave(node: Node) -> None:
 
 
 def _end_discovery(node: Node) -> None:
-    """Wait until no discovery callback runs in Fast DDS, and prevent further ones.
-
-    Destroying the node does the same, but without a time limit. Fast DDS 2.14, if built with glibc
-    before 2.30 as the wheels are, then hangs if a callback runs: its infinite deadline overflows
-    when it is converted to another clock, pthread_cond_timedwait refuses it without releasing the
-    lock that the callback needs to return, and Fast DDS tries again.
+    """Wait, with a time limit, until no discovery callback runs, and prevent further ones.
 
     Raises:
         OSError: if rmw_fastrtps is not in use.
@@ -47,4 +48,4 @@ def _end_discovery(node: Node) -> None:
     set_listener.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int64]
     with node.handle:
         participant = get_participant(get_rmw_node(node.handle.pointer))
-        set_listener(participant, None, _PATIENCE)
+        set_listener(participant, None, _TIMEOUT)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from live import live_node, rotor_state, stamp_of
 
-from gear_kinematics.ros import middleware
-from gear_kinematics.ros.middleware import use_profile
+from gear_kinematics.ros.workarounds import fastdds_profile
+from gear_kinematics.ros.workarounds.fastdds_profile import use_profile
 
 pytestmark = pytest.mark.live
 
@@ -54,7 +54,7 @@ def test_profile_can_be_switched_off(monkeypatch):
 
 def test_other_middleware_gets_no_profile(monkeypatch):
     monkeypatch.setattr(
-        middleware, 'get_rmw_implementation_identifier', lambda: 'rmw_cyclonedds_cpp'
+        fastdds_profile, 'get_rmw_implementation_identifier', lambda: 'rmw_cyclonedds_cpp'
     )
     use_profile()
     assert VARIABLE not in os.environ

@@ -1,4 +1,7 @@
-"""The profile of Fast DDS that the node uses unless there is another one."""
+"""The profile of Fast DDS that the node uses unless there is another one.
+
+By default, Fast DDS 2.14 wakes up a thread for every message to every reliable subscriber.
+"""
 
 import os
 from pathlib import Path

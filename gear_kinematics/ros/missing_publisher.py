@@ -1,0 +1,103 @@
+"""Suggests another topic of joint states while that of the rotor has no publisher."""
+
+from contextlib import suppress
+from difflib import get_close_matches
+
+from rclpy.impl.implementation_singleton import rclpy_implementation
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.subscription import Subscription
+from sensor_msgs.msg import JointState
+
+from gear_kinematics.wire.cdr import MalformedMessageError
+from gear_kinematics.wire.joint_reader import joints_of
+from gear_kinematics.wire.nearest import listed
+from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE
+
+_PATIENCE = 5
+"""Seconds without a publisher after which the other topics are subscribed to."""
+_MAX_TOPICS = 20
+
+
+class MissingPublisher:
+    """Logs a suggestion once in each time without a publisher."""
+
+    def __init__(self, node: Node) -> None:
+        """Start with the node that subscribes to the rotor's topic."""
+        self._node = node
+        self._topic = node.resolve_topic_name(ROTOR_STATE)
+        self._missing_for = 0  # s
+        self._suggested = False
+        self._subscriptions: dict[str, Subscription] = {}
+        self._joints: dict[str, list[str]] = {}
+        """The joints by topic, of those with a message."""
+
+    def update(self, publishers: int) -> None:
+        """Take the number of publishers on the rotor's topic; to be called once a second."""
+        if publishers:
+            self._missing_for, self._suggested = 0, False
+            self._unsubscribe()
+            return
+        self._missing_for += 1
+        if self._suggested or self._missing_for < _PATIENCE:
+            return
+        if not self._subscriptions:
+            self._subscribe()
+        else:  # a second later, so that there are messages
+            self._node.get_logger().warning(self._suggestion())
+            self._suggested = True
+            self._unsubscribe()
+
+    def _subscribe(self) -> None:
+        """Subscribe to the other topics of joint states, except those of the node itself."""
+        own = {self._topic, *(publisher.topic_name for publisher in self._node.publishers)}
+        topics = [
+            name
+            for name, types in self._node.get_topic_names_and_types()
+            if JOINT_STATE in types and name not in own and self._node.count_publishers(name)
+        ]
+        qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        for topic in sorted(topics)[:_MAX_TOPICS]:
+
+            def note(data: bytes, topic: str = topic) -> None:
+                if topic not in self._joints:
+                    self._joints[topic] = []
+                    with suppress(MalformedMessageError):
+                        self._joints[topic] = joints_of(data)
+
+            with suppress(rclpy_implementation.RCLError):  # a security policy may forbid it
+                self._subscriptions[topic] = self._node.create_subscription(
+                    JointState, topic, note, qos, raw=True
+                )
+
+    def _unsubscribe(self) -> None:
+        for subscription in self._subscriptions.values():
+            self._node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+        self._joints.clear()
+
+    def _suggestion(self) -> str:
+        """Name the topics, and the arguments for the one that is meant, if that is clear."""
+        joint = self._node.get_parameter('rotor_joint').value
+        topics = [f'{topic} ({self._described(topic)})' for topic in self._subscriptions]
+        text = f'{self._topic} has no publisher; there are: {listed(topics)}'
+        candidates = [topic for topic, joints in self._joints.items() if joint in joints]
+        candidates = candidates or [topic for topic, joints in self._joints.items() if joints]
+        if len(candidates) > 1:
+            candidates = get_close_matches(self._topic, sorted(candidates), n=1)
+        if not candidates:
+            return text
+        [topic] = candidates
+        arguments = f'-r {ROTOR_STATE}:={topic}'
+        joints = self._joints[topic]
+        if joint not in joints and (joint or len(joints) > 1):
+            # However far the nearest name is.
+            [nearest] = get_close_matches(joint, joints, n=1, cutoff=0.0)
+            arguments += f' -p rotor_joint:={nearest}'
+        return f'{text}; did you mean `--ros-args {arguments}`?'
+
+    def _described(self, topic: str) -> str:
+        joints = self._joints.get(topic)
+        if not joints:
+            return 'no message yet' if joints is None else 'no joints'
+        return f'joint {joints[0]}' if len(joints) == 1 else f'joints {listed(joints)}'
