@@ -30,8 +30,8 @@ from gear_kinematics.bag import Bag, BagWriter, Message, in_batches
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.share import share_directory
-from gear_kinematics.validation.fleet import Task, validate_bag
-from gear_kinematics.validation.output_topics import Tolerances
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.validate_bag import validate_bag
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _SOURCE = 'servo_point_to_point'
@@ -107,7 +107,7 @@ def _ways(storage: str) -> dict[str, Callable[[Path], object]]:
 
 def _validate(bag: Path) -> None:
     config = default_config()
-    task = Task(bag, NodeParameters.load(config), str(config), Tolerances())
+    task = Task(bag, NodeParameters.load(config), str(config))
     report = validate_bag(task)
     if report.verdict != Verdict.PASS:
         raise RuntimeError(f'the bag does not validate: {report}')

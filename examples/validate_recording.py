@@ -7,15 +7,15 @@ import sys
 from pathlib import Path
 
 from gear_kinematics.parameters import NodeParameters, default_config
-from gear_kinematics.validation.fleet import Task, validate_bag
-from gear_kinematics.validation.output_topics import Tolerances
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.validate_bag import validate_bag
 
 ROOT = Path(__file__).parents[1]
 
 
 def test_recording(bag: Path, config: Path) -> None:
-    report = validate_bag(Task(bag, NodeParameters.load(config), str(config), Tolerances()))
-    assert report.passed, report.error or '; '.join(report.findings)
+    report = validate_bag(Task(bag, NodeParameters.load(config), str(config)))
+    assert report.passed, report.error or '; '.join(finding.text for finding in report.findings)
 
 
 if __name__ == '__main__':

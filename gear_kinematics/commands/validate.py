@@ -13,11 +13,12 @@ from gear_kinematics.commands.output import (
     message_progress,
     warn_of_shared_memory,
 )
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.fleet import WORK, Task, unusable, validate_bag
-from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
+from gear_kinematics.validation.task import Task, Tolerances
+from gear_kinematics.validation.validate_bag import WORK, unusable, validate_bag
 
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
@@ -90,20 +91,22 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
+    file = arguments.config_path(options, bag)
     config = arguments.load_config(options, bag)
+    calibration = calibrations.find(options, config, bag)
     return Task(
         bag,
         config,
-        str(arguments.config_path(options, bag)),
-        tolerances,
-        options.allow_offset,
-        options.strict,
-        options.rotor_topic,
-        options.output_topic,
-        options.poses_topic,
-        calibrations.load(options, config, bag),
-        str(calibrations.find(options, config, bag) or ''),
-        options.debug,
+        config=str(file),
+        tolerances=tolerances,
+        allow_offset=options.allow_offset,
+        strict=options.strict,
+        rotor_topic=options.rotor_topic,
+        output_topic=options.output_topic,
+        poses_topic=options.poses_topic,
+        calibration=Calibration.load(calibration, config.gear) if calibration else None,
+        calibration_file=str(calibration or ''),
+        debug=options.debug,
     )
 
 

@@ -19,8 +19,8 @@ from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros.live import live_messages, outputs_of
 from gear_kinematics.share import share_directory
-from gear_kinematics.validation.output_topics import Tolerances
 from gear_kinematics.validation.report import BagReport
+from gear_kinematics.validation.task import Task, Tolerances
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import decode_pose_arrays
 from gear_kinematics.wire.cdr import STAMP_BYTES
@@ -56,17 +56,19 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
             soft_wrap=not console.is_terminal,
         )
         published = _play(console, bag, config, count)
-    eccentricity = config.eccentricity
-    validator = Validator(
+    task = Task(
+        Path(BAG),
         config,
-        tolerances=Tolerances(TOLERANCE, TOLERANCE * eccentricity),
+        tolerances=Tolerances(TOLERANCE, TOLERANCE * config.eccentricity),
         strict=True,
-        solver=matrix_method.solve,  # not the node's own formulas
         calibration=calibration,
-        corrected=corrected_beside() if calibration else {},
+        calibration_file=config.calibration,
     )
+    corrected = corrected_beside() if calibration else {}
+    # Not the node's own formulas.
+    validator = Validator(task, corrected=corrected, solver=matrix_method.solve)
     validator.feed(published)
-    return validator.report(BAG)
+    return validator.report()
 
 
 def _play(console: Console, bag: Bag, config: NodeParameters, count: int) -> list[Message]:

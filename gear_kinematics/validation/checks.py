@@ -5,21 +5,14 @@ example.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from numpy.typing import NDArray
 
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.validation.report import InputReport
+from gear_kinematics.validation.report import Finding, InputReport
 
 Columns = Mapping[str, NDArray[Any]]
-
-
-class Judgement(NamedTuple):
-    """A sentence of the report, and whether the bag fails because of it."""
-
-    text: str
-    fails: bool = False
 
 
 class Check:
@@ -42,7 +35,7 @@ class Check:
             poses: of body_poses: `stamp` (ns) and `error` of the position (m), each (n,).
         """
 
-    def judge(self, rotor: InputReport) -> Iterator[Judgement]:
+    def judge(self, rotor: InputReport) -> Iterator[Finding]:
         """Yield the findings about the whole recording."""
         raise NotImplementedError
 
@@ -50,12 +43,12 @@ class Check:
 class MostlyRejected(Check):
     """Fails a bag if the node rejects most of its inputs."""
 
-    def judge(self, rotor: InputReport) -> Iterator[Judgement]:
+    def judge(self, rotor: InputReport) -> Iterator[Finding]:
         """Yield the causes of rejection."""
         rejected = sum(rotor.rejected.values())
         if 2 * rejected > rotor.messages:
             causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())
-            yield Judgement(
+            yield Finding(
                 f'{rejected} of {rotor.messages} messages of {rotor.topic} were rejected '
                 f'({causes}): too few are left to pass',
                 fails=True,
@@ -65,11 +58,11 @@ class MostlyRejected(Check):
 class InputCounts(Check):
     """Explains the counts of the input that are not 0."""
 
-    def judge(self, rotor: InputReport) -> Iterator[Judgement]:
+    def judge(self, rotor: InputReport) -> Iterator[Finding]:
         """Yield a sentence for each count."""
         for count, sentence in _SENTENCES.items():
             if getattr(rotor, count):
-                yield Judgement(sentence.format(rotor=rotor))
+                yield Finding(sentence.format(rotor=rotor))
 
 
 _SENTENCES = {

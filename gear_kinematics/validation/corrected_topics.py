@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Corrector
-from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.state.rotor_input import RotorSamples
-from gear_kinematics.validation.matching import Columns
 from gear_kinematics.validation.output_topics import STATE_UNITS, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
@@ -30,8 +28,8 @@ class RecomputedCorrection:
         self._last: int | None = None
         self._holes = 0
 
-    def columns(self, samples: RotorSamples) -> Columns:
-        """Compute the correction at the next samples, as columns (n,) by field."""
+    def at(self, samples: RotorSamples) -> Correction:
+        """Compute the correction at the next samples, (n,)."""
         stamp = samples.stamp
         first = stamp[:1] if self._last is None else self._last
         period = np.diff(stamp, prepend=first)
@@ -39,37 +37,16 @@ class RecomputedCorrection:
         holes = self._holes + np.cumsum(after_hole)
         if len(stamp):
             self._last, self._holes = int(stamp[-1]), int(holes[-1])
-        correction = self._corrector.correct_batch(*samples[:5], samples.segment + holes)
-        return correction._asdict()
+        return self._corrector.correct_batch(*samples[:5], samples.segment + holes)
 
 
-class CorrectedTopic(JointStateTopic):
-    """A topic of the corrected output; samples have the columns of `RecomputedCorrection`."""
-
-    def _compare(self, rows: Array, samples: Columns) -> None:
-        stamp = samples['stamp']
-        self._note_strangers(rows, stamp)
-        turns = samples['turns'] + (self._unseen.of(samples['stretch']) if self._unseen else 0.0)
-        rotor_angle = TURN * turns + samples['angle']
-        least, most = np.stack(self._expected(samples | {'turns': turns}), axis=-1)
-        recorded = self._states.values[rows, : least.shape[-1]]
-        # Any value between them is as expected.
-        nearest = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
-        self._add_errors(rows, stamp, rotor_angle, recorded, nearest)
-
-    def _expected(self, samples: Columns) -> Sequence[tuple[Array, Array]]:
-        """The least and the greatest value of each field; NaN where it is absent."""
-        raise NotImplementedError
-
-
-class CorrectedState(CorrectedTopic):
-    """corrected_state."""
+class CorrectedState(JointStateTopic):
+    """corrected_state; samples have the fields of `Correction`, too."""
 
     units: ClassVar[Mapping[str, str]] = STATE_UNITS
 
-    def _expected(self, samples: Columns) -> Sequence[tuple[Array, Array]]:
-        ideal = self._ideal_angle(samples['turns'], samples['angle'])
-        position = ideal + self.offset + samples['deviation']
+    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:
+        position = self._ideal_angle(turns, samples['angle']) + samples['deviation']
         history = samples['unknown_history']
         ratio = self._gear.gear_ratio
         rate = ratio.output_rate(samples['velocity'] * (1.0 + samples['slope']))
@@ -82,17 +59,17 @@ class CorrectedState(CorrectedTopic):
         )
 
 
-class CorrectedInterval(CorrectedTopic):
-    """corrected_interval."""
+class CorrectedInterval(JointStateTopic):
+    """corrected_interval; samples have the fields of `Correction`, too."""
 
     units: ClassVar[Mapping[str, str]] = {'half width': 'rad'}
 
-    def _expected(self, samples: Columns) -> Sequence[tuple[Array, Array]]:
+    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:  # noqa: ARG002
         half_width = samples['half_width']
         return ((half_width - samples['unknown_history'], half_width),)
 
 
-CORRECTED: Mapping[str, type[CorrectedTopic]] = {
+CORRECTED: Mapping[str, type[JointStateTopic]] = {
     CORRECTED_STATE: CorrectedState,
     CORRECTED_INTERVAL: CorrectedInterval,
 }
@@ -102,7 +79,7 @@ CORRECTED: Mapping[str, type[CorrectedTopic]] = {
 def why_unjudged(calibration: Calibration | None, *, single_turn: bool) -> str:
     """Return why the corrected output cannot be judged; an empty text if it can."""
     if not calibration:
-        return '--calibration names its calibration'
+        return 'no calibration is given'
     if single_turn and calibration.period > 1:
         return 'a recording does not tell when a single-turn encoder was referenced'
     return ''

@@ -1,4 +1,4 @@
-"""Causes of deviations: an offset, another mechanism, another order of poses, unseen turns."""
+"""Causes of deviations: an offset, another mechanism, unit or shaft, another order of poses."""
 
 import math
 from collections.abc import Iterator
@@ -13,23 +13,23 @@ from gear_kinematics.correction.uncertainty import student_t
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.report.document import counted
+from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
-Stretches = NDArray[np.int64]
 
-_MOST_TEETH = 1000
-_ENOUGH_TURNING = 0.1  # rad of the rotor, to determine a ratio
-_MOST_BLOCKS, _LEAST_BLOCKS = 32, 4
-"""Number of blocks, of which there are at least half as many once there are enough samples."""
+_MAX_TEETH = 1000
+_MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
+_MAX_BLOCKS, _MIN_BLOCKS = 32, 4
+"""Numbers of blocks; with many samples there are at least half of the greatest number."""
 _ROUNDING = 1e-9
 """Relative rounding of the sums."""
-_CLEAR = 2.0
-"""Expanded uncertainties from which on a deviation is clear."""
-_MOST_BODIES = 6  # up to which all orders are tried
-_KEPT = 65_536
-"""Stretches, of which samples that still wait for their outputs are in the last few thousand."""
+_CLEAR_DEVIATION = 2.0
+"""In expanded uncertainties."""
+_MAX_BODIES = 6
+"""Number of bodies up to which all orders are tried."""
+_MAX_SCATTER = 1e-5
+"""Greatest deviation of all values together from a constant factor, relative to them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Measured:
 
     def is_near(self, other: float) -> bool:
         """Whether another value is no clear deviation."""
-        return abs(self.value - other) <= _CLEAR * self.uncertainty
+        return abs(self.value - other) <= _CLEAR_DEVIATION * self.uncertainty
 
 
 class AngleFit:
@@ -84,7 +84,7 @@ class AngleFit:
         if blocks[0] < len(self._blocks):
             sums[0] += self._blocks[-1]
         self._blocks = np.concatenate([self._blocks[: blocks[0]], sums])
-        while len(self._blocks) > _MOST_BLOCKS:
+        while len(self._blocks) > _MAX_BLOCKS:
             self._blocks = np.add.reduceat(self._blocks, np.arange(0, len(self._blocks), 2))
             self._size *= 2
 
@@ -104,7 +104,7 @@ class AngleFit:
         with np.errstate(over='ignore', invalid='ignore'):
             n, x, y, xx, xy, _ = self._blocks.T
             within = xx - x * x / n
-            if not within.sum() >= self.count * (_ENOUGH_TURNING / _MOST_BLOCKS) ** 2:
+            if not within.sum() >= self.count * (_MIN_TURNING / _MAX_BLOCKS) ** 2:
                 return None
             found = _ratio_of_sums(xy - x * y / n, within)
         return None if found is None or found.is_near(0.0) else found
@@ -113,7 +113,7 @@ class AngleFit:
 def _ratio_of_sums(above: Array, below: Array) -> Measured | None:
     """Return the quotient of two sums over blocks."""
     blocks = len(above)
-    if blocks < _LEAST_BLOCKS:
+    if blocks < _MIN_BLOCKS:
         return None
     with np.errstate(over='ignore', invalid='ignore', divide='ignore'):
         value = float(above.sum() / below.sum())
@@ -137,7 +137,7 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
     if offset is not None:
         return (
             f'the recorded output angle is off by a constant {offset:.12g} rad, as after homing; '
-            '--allow-offset accepts it'
+            'allow_offset accepts it'
         )
     slope = fit.slope()
     if slope is None:
@@ -161,7 +161,7 @@ def _another_ratio(gear: Gear, slope: Measured) -> str:
             'the sign is flipped: the recorded output turns the other way (rotor_direction?), '
             f'with a ratio of {ratio}'
         )
-    spread = _CLEAR * slope.uncertainty
+    spread = _CLEAR_DEVIATION * slope.uncertainty
     if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope.value), spread)):
         ring, satellite = pair
         flipped = ' with the sign flipped' if slope.value > 0.0 else ''
@@ -180,10 +180,59 @@ def _tooth_pair(mechanism: Mechanism, slope: float, uncertainty: float) -> tuple
         return None
     zk, zs = mechanism.ring_teeth, mechanism.satellite_teeth
     return min(
-        tooth_pairs(-1 / least, -1 / greatest, max(_MOST_TEETH, 2 * zk)),
+        tooth_pairs(-1 / least, -1 / greatest, max(_MAX_TEETH, 2 * zk)),
         key=lambda pair: abs(pair[0] - zk) + abs(pair[1] - zs),
         default=None,
     )
+
+
+class FactorFit:
+    """The constant factor between recorded and expected values of a field, from running sums."""
+
+    def __init__(self) -> None:
+        self._sums = np.zeros(3)  # of expected², expected · recorded, recorded²
+
+    def update(self, recorded: Array, expected: Array) -> None:
+        """Add values (n,); those that are not finite are left out."""
+        usable = np.isfinite(recorded) & np.isfinite(expected)
+        x, y = expected[usable], recorded[usable]
+        with np.errstate(over='ignore'):
+            self._sums += (x @ x, x @ y, y @ y)
+
+    def factor(self) -> float | None:
+        """Return recorded / expected; None if it is not constant, or 1."""
+        with np.errstate(all='ignore'):  # garbage has no factor
+            xx, xy, yy = self._sums
+            factor = float(xy / xx)
+            scatter = yy - factor * xy
+        if not (abs(factor - 1.0) > _MAX_SCATTER and scatter <= _MAX_SCATTER**2 * yy):
+            return None
+        return factor if math.isfinite(factor) else None
+
+
+def describe_factor(field: str, factor: float, ratio: GearRatio) -> str:
+    """Say by which factor the velocity or the effort is wrong, and why.
+
+    Args:
+        field: `velocity` or `effort`.
+        factor: recorded / expected.
+        ratio: of the gear.
+    """
+    of_rotor = float(ratio) if field == 'velocity' else 1.0 / float(ratio)
+    reasons = {
+        -1.0: 'the sign is flipped',
+        of_rotor: 'it is that of the rotor',
+        -of_rotor: 'it is that of the rotor, with the sign flipped',
+    }
+    if field == 'velocity':
+        reasons |= {
+            math.degrees(1.0): 'it is in degrees per second',
+            60.0 / TURN: 'it is in revolutions per minute',
+            1.0 / TURN: 'it is in revolutions per second',
+        }
+    near = (text for known, text in reasons.items() if math.isclose(factor, known, rel_tol=1e-4))
+    reason = next(near, '')
+    return f'the recorded {field} is {factor:.6g} times the expected one{reason and ": "}{reason}'
 
 
 class PoseOrder:
@@ -203,108 +252,26 @@ class PoseOrder:
     def update(self, recorded: Array, expected: Array, error: Array, stamp: Stamps) -> None:
         """Add positions (n, bodies, 3) and the greatest error of each message (n,), m."""
         wrong = np.flatnonzero(error > self._tolerance)
-        if not len(wrong) or len(self._bodies) > _MOST_BODIES:
+        if not len(wrong) or len(self._bodies) > _MAX_BODIES:
             return
         worst = int(np.argmax(np.where(np.isfinite(error), error, -1.0)))
         for order in permutations(range(len(self._bodies))):
-            if self._fits(recorded[worst], expected[worst, list(order)]):
-                fits = self._fits(recorded[wrong], expected[wrong][:, list(order)])
+            if self._fits(recorded[worst], expected[worst, order]):
+                fits = self._fits(recorded[wrong], expected[wrong][:, order])
                 count, first = self._found.get(order, (0, int(stamp[worst])))
                 self._found[order] = count + int(np.count_nonzero(fits)), first
                 return
 
-    def findings(self, messages: int) -> Iterator[str]:
+    def causes(self, messages: int) -> Iterator[Finding]:
         """Describe the orders found in a number of messages."""
         for order, (count, first) in self._found.items():
             names = ', '.join(self._bodies[k] for k in order)
+            text = f'the poses are in another order: {names}'
             if count == messages:
-                yield f'the poses are in another order: {names}'
+                yield Finding(text, cause=True)
             else:
-                yield (
-                    f'in {count} of {messages} messages the poses are in another order: {names}; '
-                    f'one is at stamp {first}'
-                )
+                text = f'in {count} of {messages} messages {text}; one is at stamp {first}'
+                yield Finding(text, cause=True, stamp=first)
 
     def _fits(self, recorded: Array, expected: Array) -> NDArray[np.bool_]:
         return np.asarray(np.abs(recorded - expected).max(axis=(-2, -1)) <= self._tolerance)
-
-
-class UnseenTurns:
-    """The turns by which recorded outputs differ from recomputed ones, stretch by stretch.
-
-    Within a stretch of the recording the turns are certain, so the difference is constant; see
-    `RotorSamples.segment`. It is taken from the first output that differs by whole turns, and is
-    0 in a stretch without one.
-    """
-
-    def __init__(self, ratio: GearRatio, tolerance: float) -> None:
-        """Start without stretches.
-
-        Args:
-            ratio: of the gear with the encoder.
-            tolerance: rad of the output, within which turns are whole.
-        """
-        self._ratio = ratio
-        self._tolerance = abs(float(self._ratio)) / TURN * tolerance  # turns of the rotor
-        self._stretches = np.zeros(0, np.int64)  # ascending
-        self._turns = np.zeros(0)
-        self.first = 0
-        """Turns before the first stretch that has an output."""
-        self.changes = 0
-        """Stretches whose turns differ from those of the previous one."""
-
-    def of(self, stretch: Stretches, otherwise: Array | float = 0.0) -> Array:
-        """The turns to add in stretches (n,), or `otherwise` where they are not known."""
-        if not len(self._stretches):
-            return np.zeros(len(stretch)) + otherwise
-        at = np.minimum(np.searchsorted(self._stretches, stretch), len(self._stretches) - 1)
-        return np.where(self._stretches[at] == stretch, self._turns[at], otherwise)
-
-    def learn_from_angles(self, stretch: Stretches, recorded: Array, expected: Array) -> None:
-        """Learn from output angles that include whole turns, (n,), rad."""
-        self._learn(stretch, (recorded - expected) * float(self._ratio) / TURN)
-
-    def learn_from_poses(self, stretch: Stretches, recorded: Array, expected: Array) -> None:
-        """Learn from output angles within their turn, (n,), rad.
-
-        The output repeats after `numerator` turns of the rotor, and any multiple of 1/`numerator`
-        of its turn corresponds to whole turns of the rotor, of which the least is taken.
-        """
-        steps = (recorded - expected) * self._ratio.numerator / TURN
-        inverse = pow(self._ratio.denominator, -1, abs(self._ratio.numerator))
-        whole = np.round(steps)
-        turns = whole * inverse % abs(self._ratio.numerator)
-        self._learn(stretch, turns + (steps - whole) / self._ratio.denominator)
-
-    def _learn(self, stretch: Stretches, turns: Array) -> None:
-        whole = np.round(turns)
-        # Numbers too large to have a fraction are garbage.
-        wrong = np.maximum(np.abs(turns - whole), np.spacing(np.abs(turns)))
-        fits = (wrong <= self._tolerance) & ~np.isin(stretch, self._stretches)
-        stretches, rows = np.unique(stretch[fits], return_index=True)
-        if not len(stretches):
-            return
-        found = whole[fits][rows]
-        if not len(self._stretches):
-            self.first = int(found[0])
-        before = self._turns[-1:] if len(self._turns) else found[:1]
-        self.changes += int(np.count_nonzero(np.diff(found, prepend=before)))
-        stretches = np.append(self._stretches, stretches)
-        latest = np.argsort(stretches)[-_KEPT:]  # an output can come late
-        self._stretches = stretches[latest]
-        self._turns = np.append(self._turns, found)[latest]
-
-    def findings(self) -> list[str]:
-        """Describe the learned turns in sentences."""
-        said = []
-        if self.first:
-            said.append(
-                f'the turns of the single-turn encoder before the recording, {self.first}, '
-                'are taken from the outputs'
-            )
-        if self.changes:
-            said.append(
-                'the turns of the single-turn encoder are taken from the outputs again after '
-                f'{counted(self.changes, "gap")}'
-            )
-        return said

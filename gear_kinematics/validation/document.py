@@ -1,7 +1,7 @@
 """A validation as a document."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from gear_kinematics.report.document import (
@@ -14,9 +14,9 @@ from gear_kinematics.report.document import (
     printable,
 )
 from gear_kinematics.validation.figure import figure, moving
+from gear_kinematics.validation.findings import faults, field_name, findings
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.tables import bag_name, summary, tables
-from gear_kinematics.validation.wording import field_faults, field_name, findings, topic_faults
 
 SCHEMA = 'gear_kinematics/report'
 VERSION = 1
@@ -59,37 +59,34 @@ def _section(report: BagReport) -> Section:
 
 def _bag(report: BagReport) -> dict[str, Any]:
     """Return the JSON content about a bag; docs/report.schema.json describes it."""
-    content = asdict(report)
+    content = asdict(replace(report, series=(), lanes=(), mechanism=None))
     for drawn in ('series', 'lanes', 'mechanism', 'module'):
         del content[drawn]
+    for found in ('findings', 'causes'):
+        content[found] = [finding.text for finding in getattr(report, found)]
     for topic, written in zip(report.topics, content['topics'], strict=True):
+        written['faults'] = [fault.text for fault in topic.faults]
         written['passed'] = topic.passed
         for field, values in zip(topic.fields, written['fields'], strict=True):
             values |= {'passed': field.passed, 'budget_used': field.budget_used}
     return content
 
 
-# Test cases
-
-
 def _cases(report: BagReport) -> Iterator[Case]:
-    parts = list(_parts(report))
+    """Yield the test cases of JUnit: the bag, its input, and each topic and field."""
+    found = tuple(faults(report))
     if report.verdict == Verdict.UNUSABLE:
         # Even without an error, the suite must not look as if it passed.
         yield Case('bag', (printable(report.error or 'the bag is unusable'),), 'error')
-    elif report.verdict == Verdict.FAIL and not any(part.faults for part in parts):
-        faults = tuple(finding.text for finding in findings(report))
-        yield Case('bag', faults or ('the bag fails',))
+    elif report.verdict == Verdict.FAIL and not found:
+        yield Case('bag', tuple(one.text for one in findings(report)) or ('the bag fails',))
     else:
         yield Case('bag')
-    yield from parts
-
-
-def _parts(report: BagReport) -> Iterator[Case]:
     if report.rotor:
         # Never fails by itself: its faults appear as wrong or missing outputs.
         yield Case(printable(f'input {report.rotor.topic}'))
     for topic in report.topics:
-        yield Case(printable(topic.topic), tuple(topic_faults(topic, report)))
-        for field in topic.fields:
-            yield Case(field_name(topic, field), tuple(field_faults(field, report)))
+        for name in (topic.topic, *(field_name(topic, field) for field in topic.fields)):
+            yield Case(
+                printable(name), tuple(printable(one.text) for one in found if one.topic == name)
+            )

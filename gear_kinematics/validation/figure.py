@@ -1,6 +1,7 @@
 """The curves of a validation, and the mechanism that moves with them."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,93 +17,75 @@ from gear_kinematics.report.document import (
 )
 from gear_kinematics.report.drawn import DrawnBranch, DrawnMechanism, MovingMechanism
 from gear_kinematics.shape.outlines import NAMES, bodies
-from gear_kinematics.validation.report import (
-    BagReport,
-    Curve,
-    FieldReport,
-    Lane,
-    Series,
-    TopicReport,
-)
-from gear_kinematics.validation.wording import field_name, seconds
+from gear_kinematics.validation.findings import field_name
+from gear_kinematics.validation.report import BagReport, Curve, FieldReport, Lane, Series
 
 _TIME = 'time [s]'
 _MARGIN = 0.02
 """How far marks may lie outside of the curves / their length."""
 
 
+class _Compared(NamedTuple):
+    """A field that was compared, with its curve."""
+
+    name: str
+    field: FieldReport
+    series: Series
+    curve: Curve
+
+    def value_panel(self) -> Panel:
+        """Draw what was recorded over what was expected."""
+        lines = (
+            _line(self.series, 'expected', Pen.MODEL, self.curve.expected),
+            _line(self.series, 'recorded', Pen.FIRST, self.curve.recorded),
+        )
+        title = f'{self.name}: {printable(self.curve.part)}' if self.curve.part else self.name
+        return Panel(title, _TIME, printable(f'{self.field.name} [{self.field.unit}]'), lines)
+
+    def error_panel(self, title: str) -> Panel:
+        """Draw the error within its tolerance."""
+        line = _line(self.series, 'error', Pen.SECOND, self.curve.error)
+        tolerance, levels = self.field.tolerance, []
+        if tolerance:
+            levels.append((tolerance, 'tolerance'))
+            if (line.y < 0.0).any():
+                levels.append((-tolerance, ''))
+        label = printable(f'error [{self.field.unit}]')
+        return Panel(title, _TIME, label, (line,), levels=tuple(levels), scale='symlog')
+
+
 def figure(report: BagReport) -> Figure | None:
     """Return the panels of a bag over time, with what failed first; None if there is nothing."""
-    curves = list(_curves(report))
-    if not curves and not report.lanes:
+    compared = [
+        _Compared(field_name(topic, field), field, series, curve)
+        for topic in report.topics
+        for series in report.series
+        if series.topic == topic.topic and series.time
+        for field in topic.fields
+        for curve in series.curves
+        if curve.field == field.name
+    ]
+    if not compared and not report.lanes:
         return None
-    failed = [found for found in curves if not found[1].passed]
-    passed = [found for found in curves if found[1].passed]
-    panels = [panel for found in (*failed, *passed[:1]) for panel in _both(*found)]
+    failed = [one for one in compared if not one.field.passed]
+    passed = [one for one in compared if one.field.passed]
+    panels = []
+    for one in (*failed, *passed[:1]):
+        panels += [one.value_panel(), one.error_panel('')]
     if report.lanes:
         place = 0 if not failed and any(lane.fails for lane in report.lanes) else 2
-        panels.insert(place, _lanes(report.lanes, curves[0][2].time if curves else ()))
-    panels += [_error(*found) for found in passed[1:] if not failed and found[1].unit == 'm']
-    panels += [_rotor(report.series[0])] if curves else []
+        panels.insert(place, _lanes(report.lanes, compared[0].series.time if compared else ()))
+    if not failed:
+        panels += [one.error_panel(one.name) for one in passed[1:] if one.field.unit == 'm']
+    if compared:
+        series = report.series[0]
+        line = _line(series, 'rotor angle', Pen.FAINT, series.rotor_angle)
+        panels.append(Panel('', _TIME, 'rotor angle [rad]', (line,)))
     return Figure(tuple(panels), stacked=True)
 
 
-def _curves(report: BagReport) -> Iterator[tuple[TopicReport, FieldReport, Series, Curve]]:
-    """Yield each field that was compared, with its curve."""
-    for topic in report.topics:
-        for series in report.series:
-            for field in topic.fields:
-                for curve in series.curves:
-                    if (series.topic, curve.field) == (topic.topic, field.name) and series.time:
-                        yield topic, field, series, curve
-
-
-def _both(
-    topic: TopicReport, field: FieldReport, series: Series, curve: Curve
-) -> tuple[Panel, Panel]:
-    """Return the panels of a field: recorded over expected, and below it the error."""
-    time = np.asarray(series.time, np.float64)
-    lines = (
-        Line('expected', Pen.MODEL, time, np.asarray(curve.expected, np.float64)),
-        Line('recorded', Pen.FIRST, time, np.asarray(curve.recorded, np.float64)),
-    )
-    name = field_name(topic, field)
-    title = f'{name}: {printable(curve.part)}' if curve.part else name
-    values = Panel(title, _TIME, _label(field.name, field.unit), lines)
-    return values, _error(topic, field, series, curve, title='')
-
-
-def _error(
-    topic: TopicReport,
-    field: FieldReport,
-    series: Series,
-    curve: Curve,
-    title: str | None = None,
-) -> Panel:
-    errors = np.asarray(curve.error, np.float64)
-    line = Line('error', Pen.SECOND, np.asarray(series.time, np.float64), errors)
-    levels = []
-    if field.tolerance:
-        levels.append((field.tolerance, 'tolerance'))
-        if (errors < 0.0).any():
-            levels.append((-field.tolerance, ''))
-    return Panel(
-        field_name(topic, field) if title is None else title,
-        _TIME,
-        _label('error', field.unit),
-        (line,),
-        levels=tuple(levels),
-        scale='symlog',
-    )
-
-
-def _label(name: str, unit: str) -> str:
-    return printable(f'{name} [{unit}]')
-
-
-def _rotor(series: Series) -> Panel:
-    time, angle = (np.asarray(v, np.float64) for v in (series.time, series.rotor_angle))
-    return Panel('', _TIME, 'rotor angle [rad]', (Line('rotor angle', Pen.FAINT, time, angle),))
+def _line(series: Series, name: str, pen: Pen, values: Sequence[float]) -> Line:
+    return Line(name, pen, np.asarray(series.time, float), np.asarray(values, float))
 
 
 def _lanes(lanes: Sequence[Lane], time: Sequence[float]) -> Panel:
@@ -162,7 +145,7 @@ def _worst_moment(report: BagReport) -> float | None:
         for field in topic.fields:
             stamps = (field.first_non_finite, field.first_absent, field.worst_stamp)
             if not field.passed and (known := [s for s in stamps if s is not None]):
-                return seconds(known[-1], report)
+                return report.seconds(known[-1])
     return next((lane.spans[0][0] for lane in report.lanes if lane.fails), None)
 
 

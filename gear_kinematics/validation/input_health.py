@@ -10,8 +10,8 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
 
-_GAP = 5.0  # median periods
-_LONGEST = 10  # listed gaps
+_MIN_GAP = 5.0  # median periods
+_MAX_LISTED = 10  # listed gaps
 _PERIODS_FOR_MEDIAN = 65_536
 
 
@@ -93,9 +93,9 @@ class InputHealth:
         self._waiting.clear()
         if not self._median and len(period):
             self._median = float(np.median(period))
-        long = np.flatnonzero(period > _GAP * self._median)
+        long = np.flatnonzero(period > _MIN_GAP * self._median)
         self.gaps.add_spans(stamp[long] - np.round(SECOND * period[long]).astype(int), stamp[long])
-        longest = long[np.argsort(-period[long], kind='stable')[:_LONGEST]]
+        longest = long[np.argsort(-period[long], kind='stable')[:_MAX_LISTED]]
         self._longest += [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in longest]
         self._longest.sort(key=lambda gap: -gap.seconds)
-        del self._longest[_LONGEST:]
+        del self._longest[_MAX_LISTED:]

@@ -5,53 +5,51 @@ message is looked up only where a run ends. Memory is bounded by a window of sam
 """
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.kinematics import Gear, MotionState
 from gear_kinematics.report.document import counted
-from gear_kinematics.validation.diagnosis import UnseenTurns
-from gear_kinematics.validation.field_errors import FieldErrors
+from gear_kinematics.validation.fields import FieldErrors, SeriesRecorder
 from gear_kinematics.validation.occurrences import Occurrences
-from gear_kinematics.validation.recorder import NO_INPUT, Completeness, Missing, RecordedInputs
-from gear_kinematics.validation.report import TopicReport
-from gear_kinematics.validation.series import RecordedField, SeriesRecorder
+from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
+from gear_kinematics.validation.report import Finding, Lane, TopicReport
+from gear_kinematics.validation.task import Tolerances
+from gear_kinematics.validation.unseen_turns import UnseenTurns
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[Any]
-Columns = dict[str, Array]
-"""Columns of samples (n,): stamp, turns, angle, velocity, effort, stretch; see `RotorSamples`."""
+Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
+MALFORMED = 'malformed'
+"""The fault of messages that cannot be decoded, and have no stamp."""
+
+SAMPLES = [
+    ('stamp', np.int64),
+    ('received', np.int64),
+    ('turns', np.float64),
+    ('angle', np.float64),
+    ('velocity', np.float64),
+    ('effort', np.float64),
+    ('segment', np.int64),
+]
+"""Columns of the samples with which outputs are compared; see `RotorSamples`."""
 
 
-class Window:
-    """The samples with which messages can still be matched; columns by name, (n, ...)."""
+class Expectation(NamedTuple):
+    """How the outputs are recomputed and judged."""
 
-    def __init__(self) -> None:
-        self.columns: Columns = {}
-
-    def __len__(self) -> int:
-        return len(self.columns['stamp']) if self.columns else 0
-
-    def append(self, **columns: Array) -> None:
-        """Add samples; one of the columns is `stamp`."""
-        old = self.columns
-        self.columns = {
-            name: np.concatenate([old[name], column]) if old else column
-            for name, column in columns.items()
-        }
-
-    def rows(self, index: Array | slice) -> Columns:
-        """Return some of the samples."""
-        return {name: column[index] for name, column in self.columns.items()}
-
-    def drop(self, count: int) -> None:
-        """Drop the oldest samples."""
-        self.columns = {name: column[count:] for name, column in self.columns.items()}
+    gear: Gear
+    tolerances: Tolerances
+    solver: Solver
+    """Recomputes the motion of a mechanism."""
+    unseen: UnseenTurns | None
+    """Unseen turns, if the rotor has a single-turn encoder."""
 
 
 class Matcher:
@@ -129,56 +127,60 @@ class Matcher:
 
 
 class Faults:
-    """Counts the faults of messages themselves, and keeps the first of each."""
+    """Counts messages by their fault, and keeps the first of each."""
 
     def __init__(self) -> None:
-        self._found: dict[str, tuple[int, str]] = {}
+        self._found: dict[str, tuple[int, int]] = {}  # number, first stamp
 
-    def add(self, fault: str, times: Array, moment: str = 'at stamp') -> None:
-        """Add the stamps, or other times as `moment` says, of messages with a fault, ns."""
-        if len(times):
-            count, first = self._found.get(fault, (0, f'{moment} {times[0]}'))
-            self._found[fault] = count + len(times), first
+    def add(self, fault: str, stamps: Array) -> None:
+        """Add the stamps of messages with a fault, or for `MALFORMED` when they were received."""
+        if len(stamps):
+            count, first = self._found.get(fault, (0, int(stamps[0])))
+            self._found[fault] = count + len(stamps), first
 
-    def sentences(self) -> tuple[str, ...]:
+    def findings(self) -> Iterator[Finding]:
         """Describe each fault."""
-        return tuple(
-            f'{fault}: {counted(count, "message")}, the first {first}'
-            for fault, (count, first) in self._found.items()
-        )
+        for fault, (count, first) in self._found.items():
+            stamp = None if fault == MALFORMED else first
+            moment = f'received at {first}' if stamp is None else f'at stamp {first}'
+            text = f'{fault}: {counted(count, "message")}, the first {moment}'
+            yield Finding(text, stamp=stamp)
 
 
 class OutputTopic:
-    """One output topic: matches its messages, holds back late ones and collects their faults."""
+    """One output topic: matches its messages, keeps late ones for a batch, collects faults."""
 
-    def __init__(self, unseen: UnseenTurns | None, *errors: FieldErrors) -> None:
+    missing: Missing
+    """Its missing messages, which the `Completeness` of the topics finds."""
+
+    def __init__(self, name: str, expectation: Expectation, *errors: FieldErrors) -> None:
         """Start without messages.
 
         Args:
-            unseen: unseen turns, if the rotor has a single-turn encoder.
+            name: of the topic in the recording.
+            expectation: of the outputs.
             errors: of the fields.
         """
+        self.name = name
         self.errors = errors
-        self.series = SeriesRecorder(
-            {field.name: RecordedField(field.tolerance, field.parts) for field in errors}
-        )
+        self.series = SeriesRecorder(errors)
         self.matcher = Matcher()
         self.compared: dict[str, Array] = {}
-        """Columns of the last compared batch, for checks and plots."""
-        self._unseen = unseen
+        """Columns of the last compared batch, for the checks."""
+        self._gear, self._tolerances, self._solver, self._unseen = expectation
         self._unrecorded = 0  # messages whose input was not recorded
         self._faults = Faults()
         self._late: tuple[list[bytes], list[int]] = [], []
 
     def take(
-        self, messages: list[bytes], received: list[int], window: Window, inputs: RecordedInputs
+        self, messages: list[bytes], received: list[int], window: Array, inputs: RecordedInputs
     ) -> None:
         """Compare new messages with the samples of the window.
 
         Args:
             messages: serialised.
             received: times of reception, ns.
-            window: the latest samples.
+            window: the latest samples, (n,), with the columns of `SAMPLES`.
             inputs: the latest inputs, valid or not.
         """
         late = len(self._late[0])
@@ -186,9 +188,9 @@ class OutputTopic:
         stamps, malformed = self._decode(messages)
         self.matcher.see(stamps[late:])
         times = np.array(received, np.int64)
-        self._faults.add('malformed', times[malformed], 'received at')
+        self._faults.add(MALFORMED, times[malformed])
         usable = np.flatnonzero(~malformed)
-        index = self.matcher.match(stamps[usable], window.columns['stamp'])
+        index = self.matcher.match(stamps[usable], window['stamp'])
         found = index >= 0
         # A message can be recorded before its input: it waits for one batch.
         unmatched = usable[~found]
@@ -197,24 +199,29 @@ class OutputTopic:
         lacking = inputs.lack(times[given_up], stamps[given_up])
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.extra.add(stamps[given_up[~lacking]])
-        self._compare(usable[found], window.rows(index[found]))
+        self._compare(usable[found], window.take(index[found]))  # faster than by an index
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
+        """Decode messages for `_compare`; return their stamps and which ones are malformed."""
         raise NotImplementedError
 
-    def _compare(self, rows: Array, samples: Columns) -> None:
+    def _compare(self, rows: Array, samples: Array) -> None:
+        """Compare some of the decoded messages with their samples."""
         raise NotImplementedError
 
-    def report(self, topic: str, missing: Missing) -> TopicReport:
-        """Return the report so far.
+    def causes(self) -> Iterator[Finding]:
+        """Yield what explains the errors."""
+        yield from ()
 
-        Args:
-            topic: name of the topic.
-            missing: its missing messages.
-        """
-        matcher = self.matcher
+    def notes(self) -> Iterator[Finding]:
+        """Yield what fails nothing."""
+        yield from ()
+
+    def report(self) -> TopicReport:
+        """Return the report so far."""
+        matcher, missing = self.matcher, self.missing
         return TopicReport(
-            topic,
+            self.name,
             messages=matcher.messages,
             compared=matcher.compared,
             missing=missing.inputs.count,
@@ -225,45 +232,20 @@ class OutputTopic:
             first_missing=missing.inputs.first,
             first_extra=matcher.extra.first,
             first_out_of_order=matcher.out_of_order.first,
-            faults=self._faults.sentences(),
+            faults=tuple(self._faults.findings()),
             left_out=dict(missing.left_out + Counter({NO_INPUT: self._unrecorded})),
         )
 
-
-class Group(NamedTuple):
-    """Outputs that are recorded from the same time on."""
-
-    names: Sequence[str]
-    """Of the rotor's topic and those of the outputs."""
-    outputs: Sequence[OutputTopic]
-    absences: Completeness
-
-    def why_missing(self) -> Iterator[str]:
-        """Say why messages may be missing, in sentences."""
-        rotor, *names = self.names
-        missing = dict(zip(names, self.absences.topics, strict=True))
-        for topic, of_topic in missing.items():
-            if of_topic.ended_early is not None:
-                yield (
-                    f'{topic} ends {of_topic.ended_early:.3f} s before {rotor}: '
-                    'the node may have ended'
-                )
-        counts = {topic: of_topic.inputs.count for topic, of_topic in missing.items()}
-        lost = [topic for topic, count in counts.items() if count]
-        if len(names) == 1 or not lost:
-            return
-        unanswered = self.absences.unanswered
-        if set(counts.values()) == {unanswered}:
-            yield (
-                f'{counted(unanswered, "message")} of {rotor} without any output: the node did '
-                'not receive them, or was blocked'
-            )
-        elif len(lost) < len(names) and not unanswered:
-            whole = [topic for topic in names if topic not in lost]
-            lacking = ', '.join(
-                f'{counted(counts[topic], "message")} of {topic}' for topic in lost
-            )
-            yield (
-                f'{lacking} missing, but none of {", ".join(whole)}: the node '
-                'had the inputs, and the messages were lost on their way to the recording'
-            )
+    def lanes(self, start: int) -> list[Lane]:
+        """Return when something happened, with the time 0 at a stamp, ns."""
+        events = {
+            'missing': self.missing.inputs,
+            'extra': self.matcher.extra,
+            'out of order': self.matcher.out_of_order,
+        }
+        for errors in self.errors:
+            events[f'{errors.name} not finite'] = errors.non_finite
+            events[f'{errors.name} absent'] = errors.absent
+        return [
+            found.lane(self.name, event, start) for event, found in events.items() if found.count
+        ]

@@ -3,9 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.validation.report import Lane
+from gear_kinematics.wire.cdr import SECOND
+
 Stamps = NDArray[np.int64]
 
-_MOST = 400
+_MAX_SPANS = 400
 """Spans that are kept; with more, neighbours are merged."""
 
 
@@ -34,7 +37,7 @@ class Occurrences:
         self.count += len(starts)
         self._merge(np.stack([starts, ends], axis=1))
 
-    def take_over(self, others: 'Occurrences') -> None:
+    def add_all(self, others: 'Occurrences') -> None:
         """Add those of another object."""
         if self.first is None:
             self.first = others.first
@@ -42,12 +45,24 @@ class Occurrences:
         self.apart = max(self.apart, others.apart)
         self._merge(others.spans)
 
+    def lane(self, topic: str, event: str, start: int, *, fails: bool = True) -> Lane:
+        """Return them for the plot.
+
+        Args:
+            topic: on which they happened.
+            event: what happened.
+            start: stamp at the time 0, ns.
+            fails: whether the bag fails because of them.
+        """
+        spans = [(first / SECOND, last / SECOND) for first, last in (self.spans - start).tolist()]
+        return Lane(topic, event, self.count, spans, fails)
+
     def _merge(self, added: NDArray[np.int64]) -> None:
         spans = np.concatenate([self.spans, added])
         spans = _joined(spans[np.argsort(spans[:, 0], kind='stable')], self.apart)
-        while len(spans) > _MOST:
+        while len(spans) > _MAX_SPANS:
             gaps = np.sort(spans[1:, 0] - spans[:-1, 1])
-            self.apart = max(2 * self.apart, int(gaps[len(spans) - _MOST - 1]))
+            self.apart = max(2 * self.apart, int(gaps[len(spans) - _MAX_SPANS - 1]))
             spans = _joined(spans, self.apart)
         self.spans = spans
 

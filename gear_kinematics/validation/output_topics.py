@@ -1,18 +1,24 @@
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, ClassVar, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.kinematics import Gear, Mechanism, MotionState
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.validation.diagnosis import AngleFit, PoseOrder, UnseenTurns
-from gear_kinematics.validation.factor import FactorFit, describe
-from gear_kinematics.validation.field_errors import FieldErrors
-from gear_kinematics.validation.matching import Columns, Faults, OutputTopic
-from gear_kinematics.validation.series import FieldSamples
+from gear_kinematics.validation.diagnosis import (
+    AngleFit,
+    FactorFit,
+    PoseOrder,
+    describe_factor,
+    diagnose,
+)
+from gear_kinematics.validation.fields import FieldErrors, FieldSamples
+from gear_kinematics.validation.matching import Expectation, Faults, OutputTopic
+from gear_kinematics.validation.report import Finding
+from gear_kinematics.validation.unseen_turns import UnseenTurns
 from gear_kinematics.wire.batches import (
     FIELDS,
     PoseArrays,
@@ -22,17 +28,6 @@ from gear_kinematics.wire.batches import (
 
 Array = NDArray[Any]
 
-Solver = Callable[..., MotionState]
-
-
-class Tolerances(NamedTuple):
-    """Greatest accepted errors."""
-
-    angle: float = 1e-9
-    """rad for angles, rad/s for the velocity, N·m for the effort."""
-    position: float = 1e-9
-    """m."""
-
 
 class JointStateTopic(OutputTopic):
     """An output topic of JointStates with one joint; its fields are compared one by one."""
@@ -40,20 +35,10 @@ class JointStateTopic(OutputTopic):
     units: ClassVar[Mapping[str, str]]
     """Units of the fields by their names."""
 
-    def __init__(
-        self,
-        joint: str,
-        gear: Gear,
-        tolerances: Tolerances,
-        solver: Solver,
-        unseen: UnseenTurns | None,
-    ) -> None:
-        super().__init__(
-            unseen,
-            *(FieldErrors(name, unit, tolerances.angle) for name, unit in self.units.items()),
-        )
-        self._gear = gear
-        self._solver = solver
+    def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
+        tolerance = expectation.tolerances.angle
+        errors = (FieldErrors(field, unit, tolerance) for field, unit in self.units.items())
+        super().__init__(name, expectation, *errors)
         self.joint = joint
         self.offset = 0.0
         """Known offset of the recorded angle, rad."""
@@ -62,17 +47,28 @@ class JointStateTopic(OutputTopic):
         self._states = decode_joint_states(messages, self.joint)
         return self._states.stamp, self._states.malformed
 
-    def _note_strangers(self, rows: Array, stamp: Array) -> None:
-        """Count the messages without the joint."""
+    def _compare(self, rows: Array, samples: Array) -> None:
+        stamp, recorded = samples['stamp'], self._states.values[rows, : len(self.units)]
+        if self.offset and 'position' in self.units:
+            recorded = np.column_stack([recorded[:, 0] - self.offset, recorded[:, 1:]])
         self._faults.add(f'no joint {self.joint!r}', stamp[~self._states.joint_found[rows]])
+        turns = samples['turns'] + self._unseen_turns(samples, recorded)
+        least, most = np.stack(self._expected(samples, turns), axis=-1)
+        # Any value between them is as expected.
+        nearest = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
+        rotor_angle = TURN * turns + samples['angle']
+        self._add_errors(rows, stamp, rotor_angle, recorded, nearest)
+
+    def _unseen_turns(self, samples: Array, recorded: Array) -> Array | float:  # noqa: ARG002
+        """The turns of the rotor to add to those of the samples, (n,)."""
+        return self._unseen.of(samples['segment']) if self._unseen else 0.0
+
+    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:
+        """The least and the greatest value of each field; NaN where it is absent."""
+        raise NotImplementedError
 
     def _add_errors(
-        self,
-        rows: Array,
-        stamp: Array,
-        rotor_angle: Array,
-        recorded: Array,
-        expected: Array,
+        self, rows: Array, stamp: Array, rotor_angle: Array, recorded: Array, expected: Array
     ) -> None:
         """Add what was recorded and expected of the fields, (n, fields); NaN is not expected."""
         signed = recorded - expected
@@ -109,147 +105,143 @@ class OutputState(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = STATE_UNITS
 
-    def __init__(self, *arguments: Any) -> None:
-        """Take the arguments of `JointStateTopic`."""
-        super().__init__(*arguments)
+    def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
+        super().__init__(name, joint, expectation)
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
-        self.position = self.errors[0]
 
-    def _compare(self, rows: Array, samples: Columns) -> None:
-        stamp, stretch = samples['stamp'], samples['stretch']
-        self._note_strangers(rows, stamp)
-        recorded = self._states.values[rows] - (self.offset, 0.0, 0.0)
-        unseen_turns: Array | float = 0.0
-        if self._unseen:
-            expected = self._ideal_angle(samples['turns'], samples['angle'])
-            self._unseen.learn_from_angles(stretch, recorded[:, 0], expected)
-            unseen_turns = self._unseen.of(stretch)
-        turns = samples['turns'] + unseen_turns
+    def _unseen_turns(self, samples: Array, recorded: Array) -> Array | float:
+        if not self._unseen:
+            return 0.0
+        expected = self._ideal_angle(samples['turns'], samples['angle'])
+        self._unseen.learn_from_angles(samples['segment'], recorded[:, 0], expected)
+        return self._unseen.of(samples['segment'])
+
+    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:
+        ratio = self._gear.gear_ratio
         angle = self._ideal_angle(turns, samples['angle'])
-        rotor_angle = TURN * turns + samples['angle']
-        velocity = self._gear.gear_ratio.output_rate(samples['velocity'])
-        effort = float(self._gear.gear_ratio) * samples['effort']
-        needed = np.stack([angle, velocity, effort], axis=-1)
-        self._add_errors(rows, stamp, rotor_angle, recorded, needed)
-        for column, fit in enumerate(self._factors.values(), 1):
-            fit.update(recorded[:, column], needed[:, column])
-        error = recorded[:, 0] - needed[:, 0]
+        velocity, effort = ratio.output_rate(samples['velocity']), float(ratio) * samples['effort']
+        return (angle, angle), (velocity, velocity), (effort, effort)
+
+    def _add_errors(
+        self, rows: Array, stamp: Array, rotor_angle: Array, recorded: Array, expected: Array
+    ) -> None:
+        super()._add_errors(rows, stamp, rotor_angle, recorded, expected)
+        for column, factor in enumerate(self._factors.values(), 1):
+            factor.update(recorded[:, column], expected[:, column])
+        error = recorded[:, 0] - expected[:, 0]
         usable = np.isfinite(error)
-        self.fit.update(rotor_angle[usable], recorded[usable, 0], error[usable])
+        stamp, rotor_angle, error = stamp[usable], rotor_angle[usable], error[usable]
+        output_angle = recorded[usable, 0]
+        self.fit.update(rotor_angle, output_angle, error)
         self.compared = {
-            'stamp': stamp[usable],
-            'rotor_angle': rotor_angle[usable],
-            'output_angle': recorded[usable, 0],
-            'error': error[usable],
+            'stamp': stamp,
+            'rotor_angle': rotor_angle,
+            'output_angle': output_angle,
+            'error': error,
         }
 
-    def factors(self) -> Iterator[str]:
-        """Describe constant factors of the velocity and the effort, in sentences."""
+    def causes(self) -> Iterator[Finding]:
+        """Yield what explains errors of the angle, or else of the velocity and the effort."""
+        if not self.errors[0].report().passed:
+            if text := diagnose(self._gear, self.fit, self._tolerances.angle):
+                yield Finding(text, cause=True)
+            return
         for field, fit in self._factors.items():
             if (factor := fit.factor()) is not None:
-                yield describe(field, factor, self._gear.gear_ratio)
+                yield Finding(describe_factor(field, factor, self._gear.gear_ratio), cause=True)
 
 
 class BodyPoses(OutputTopic):
     """body_poses."""
 
     def __init__(
-        self,
-        frame_id: str,
-        mechanism: Mechanism,
-        tolerances: Tolerances,
-        solver: Solver,
-        unseen: UnseenTurns | None,
+        self, name: str, frame_id: str, mechanism: Mechanism, expectation: Expectation
     ) -> None:
         branches = [branch.name for branch in mechanism.branches]
+        tolerances = expectation.tolerances
         self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
         coordinates = [f'{body} {axis}' for body in self._bodies for axis in 'xyz']
-        self._position = FieldErrors('position', 'm', tolerances.position, coordinates)
+        self.position = FieldErrors('position', 'm', tolerances.position, coordinates)
         self._orientation = FieldErrors('orientation', 'rad', tolerances.angle, self._bodies)
-        super().__init__(unseen, self._position, self._orientation)
+        super().__init__(name, expectation, self.position, self._orientation)
         self._mechanism = mechanism
-        self._solver = solver
         self.frame_id = frame_id
         self._axial = np.array([b.axial_position for b in mechanism.branches] * 2)
         self._order = PoseOrder(self._bodies, tolerances.position)
-        self._turned_round = Faults()
+        self._negated = Faults()
         # Learned from this topic alone, which is less certain than from output_state.
         self._own_unseen = UnseenTurns(mechanism.gear_ratio, tolerances.angle)
 
-    @property
-    def worst_error(self) -> float:
-        """Greatest position error, m."""
-        return self._position.worst
+    def causes(self) -> Iterator[Finding]:
+        """Yield the other orders of the poses."""
+        return self._order.causes(self.matcher.compared)
 
-    def order(self) -> Iterator[str]:
-        """Describe poses in another order, in sentences."""
-        return self._order.findings(self.matcher.compared)
-
-    def turned_round(self) -> tuple[str, ...]:
-        """Describe quaternions with the other sign, in sentences."""
-        return self._turned_round.sentences()
+    def notes(self) -> Iterator[Finding]:
+        """Yield quaternions with the other sign."""
+        return self._negated.findings()
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))
         return self._arrays.stamp, self._arrays.malformed
 
-    def _compare(self, rows: Array, samples: Columns) -> None:
+    def _compare(self, rows: Array, samples: Array) -> None:
         arrays, stamp = self._arrays, samples['stamp']
         for k, frame_id in enumerate(arrays.frame_ids):
             if frame_id != self.frame_id.encode():
                 name = frame_id.decode(errors='replace')
-                strangers = stamp[arrays.frame[rows] == k]
-                self._faults.add(f'frame {name!r}, not {self.frame_id!r}', strangers)
+                framed = stamp[arrays.frame[rows] == k]
+                self._faults.add(f'frame {name!r}, not {self.frame_id!r}', framed)
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
-        turns = samples['turns'] + self._unseen_turns(poses, samples)
+        turns = samples['turns'] + self._unseen_turns(samples, poses)
         state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
         rotor_angle = TURN * turns + samples['angle']
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
         planar = np.hypot(*np.moveaxis(poses[..., :2] - centres, -1, 0))
         position = np.hypot(planar, poses[..., 2] - self._axial).max(axis=1)
-        self._position.update(position, stamp, rotor_angle)
+        self.position.update(position, stamp, rotor_angle)
         axial = np.broadcast_to(self._axial[:, np.newaxis], (*centres.shape[:2], 1))
         expected = np.append(centres, axial, axis=-1)
         self._order.update(poses[..., :3], expected, position, stamp)
-        # A quaternion and its negative are the same rotation.
-        half = 0.5 * state.output_turn_angle[:, np.newaxis]
-        sine, cosine = np.sin(half), np.cos(half)
-        sign = np.where(poses[..., 5] * sine + poses[..., 6] * cosine < 0.0, -1.0, 1.0)
-        off = np.maximum(
-            np.abs(poses[..., 5] - sign * sine), np.abs(poses[..., 6] - sign * cosine)
-        )
-        tilt = np.maximum(np.abs(poses[..., 3]), np.abs(poses[..., 4]))
-        orientation = 2.0 * np.maximum(off, tilt).max(axis=1)
+        angle = state.output_turn_angle[:, np.newaxis]
+        orientation = _orientation_error(poses[..., 3:], angle)
         self._orientation.update(orientation, stamp, rotor_angle)
-        self._turned_round.add(
+        self._negated.add(
             'orientations with w < 0, the same rotations as those with w > 0 of this node',
             stamp[(poses[..., 6] < 0.0).any(axis=1)],
         )
         self.compared = {'stamp': stamp, 'error': position}
-        angle = state.output_turn_angle[:, np.newaxis]
         recorded = 2.0 * np.arctan2(poses[..., 5], poses[..., 6])
         shape = len(rows), 3 * len(self._bodies)
         self.series.update(
             stamp,
             rotor_angle,
             _samples(poses[..., :3].reshape(shape), expected.reshape(shape), position),
-            _samples(
-                recorded - TURN * np.round((recorded - angle) / TURN),
-                np.broadcast_to(angle, recorded.shape),
-                orientation,
-            ),
+            _samples(recorded - TURN * np.round((recorded - angle) / TURN), angle, orientation),
         )
 
-    def _unseen_turns(self, poses: Array, samples: Columns) -> Array | float:
+    def _unseen_turns(self, samples: Array, poses: Array) -> Array | float:
         if not self._unseen:
             return 0.0
-        stretch = samples['stretch']
-        self._own_unseen.learn_from_poses(
-            stretch,
-            2.0 * np.arctan2(poses[:, 0, 5], poses[:, 0, 6]),
-            self._solver(
-                self._mechanism, samples['angle'], rotor_turns=samples['turns']
-            ).output_turn_angle,
-        )
-        return self._unseen.of(stretch, otherwise=self._own_unseen.of(stretch))
+        segment = samples['segment']
+        state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
+        recorded = 2.0 * np.arctan2(poses[:, 0, 5], poses[:, 0, 6])
+        self._own_unseen.learn_from_poses(segment, recorded, state.output_turn_angle)
+        return self._unseen.of(segment, otherwise=self._own_unseen.of(segment))
+
+
+def _orientation_error(quaternions: Array, angle: Array) -> Array:
+    """Return the greatest error of the bodies, (n,), rad.
+
+    Args:
+        quaternions: recorded, (n, bodies, 4).
+        angle: expected about the z axis, (n, 1), rad.
+    """
+    x, y, z, w = np.moveaxis(quaternions, -1, 0)
+    sine, cosine = np.sin(0.5 * angle), np.cos(0.5 * angle)
+    # A quaternion and its negative are the same rotation.
+    sign = np.where(z * sine + w * cosine < 0.0, -1.0, 1.0)
+    about_z = np.maximum(np.abs(z - sign * sine), np.abs(w - sign * cosine))
+    tilt = np.maximum(np.abs(x), np.abs(y))
+    error: Array = 2.0 * np.maximum(about_z, tilt).max(axis=1)
+    return error

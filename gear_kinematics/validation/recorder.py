@@ -6,12 +6,15 @@ and the recorder has settled; an output counts as extra only if its input would 
 """
 
 from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from gear_kinematics.report.document import counted
 from gear_kinematics.validation.occurrences import Occurrences
+from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -21,14 +24,14 @@ SETTLING = 'while the recorder settled'
 AFTER = 'after the last output'
 NO_INPUT = 'whose input was not recorded'
 
-_SETTLED = 1_000_000_000  # ns after which a recorder has settled
-_QUIET = 150_000_000  # ns without a loss after which it has settled earlier
-_END = 500_000_000  # ns by which outputs may end before their inputs
+_SETTLING_TIME = 1_000_000_000  # ns after which a recorder has settled
+_QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlier
+_MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5
 """Median periods between inputs; beyond, an input between them was not recorded."""
 _SILENCE = 2.5  # median periods between inputs; beyond, the recorder lost all topics
-_KEPT = 32_768  # stamps of inputs
-_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
+_MAX_STAMPS = 32_768  # of inputs
+_MAX_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
 _ALWAYS = -(2**62)  # ns
 
 
@@ -95,10 +98,10 @@ class Missing:
         """
         if self._last_answered is None or last_received is None:
             self._count_tail()
-            self.inputs.take_over(self._unjudged)
+            self.inputs.add_all(self._unjudged)
             self.left_out.clear()
             return
-        late = self._tail_received is not None and last_received - self._tail_received > _END
+        late = self._tail_received is not None and last_received - self._tail_received > _MAX_END
         if late:
             self.ended_early = (last_received - self._last_answered) * 1e-9
         if late or strict:
@@ -107,33 +110,34 @@ class Missing:
             self.left_out[AFTER] += self._tail.count
 
     def _count_tail(self) -> None:
-        self.inputs.take_over(self._tail)
+        self.inputs.add_all(self._tail)
         self._tail, self._tail_received = Occurrences(), None
 
 
 class Completeness:
-    """Finds missing outputs on several topics with the same inputs."""
+    """Finds missing outputs on topics with the same inputs, recorded from the same time on."""
 
-    def __init__(self, topics: int, *, strict: bool) -> None:
+    def __init__(self, rotor: str, topics: Sequence[str], *, strict: bool) -> None:
         """Start with no input.
 
         Args:
-            topics: number of output topics.
+            rotor: name of the rotor's topic.
+            topics: names of the output topics.
             strict: whether to judge everything, as if the recorder lost nothing.
         """
-        self.topics = tuple(Missing() for _ in range(topics))
-        self.unanswered = 0
-        """Inputs without an output on any topic, up to the last one with an output."""
-        self._behind = 0  # further ones without, behind that
+        self.topics = {topic: Missing() for topic in topics}
+        self._rotor = rotor
+        self._unanswered = Missing()  # inputs without an output on any topic
         self._strict = strict
         self._start = _ALWAYS if strict else None
         self._first: list[Inputs] = []  # until the recorder has certainly settled
         self._last_received: int | None = None
 
-    def begin(self, received: int) -> None:
-        """Set the time from which all topics are recorded, ns."""
-        if self._start is None:
-            self._start = received
+    def begin(self, begun: Mapping[str, int]) -> None:
+        """Take the times from which topics are recorded, ns, by their names."""
+        names = self._rotor, *self.topics
+        if self._start is None and begun.keys() >= set(names):
+            self._start = max(begun[name] for name in names)
 
     def update(self, inputs: Inputs) -> None:
         """Process the next inputs."""
@@ -144,7 +148,7 @@ class Completeness:
         if self._start is None:
             self._take(inputs, cause=BEFORE)
             return
-        before, settled = received < self._start, received > self._start + _SETTLED
+        before, settled = received < self._start, received > self._start + _SETTLING_TIME
         self._take(inputs.where(before), cause=BEFORE)
         self._first.append(inputs.where(~(before | settled)))
         if settled.any():
@@ -154,18 +158,45 @@ class Completeness:
     def close(self) -> None:
         """Judge the inputs that are still waiting, after the last input."""
         self._settle()
-        for topic in self.topics:
+        for topic in self.topics.values():
             topic.close(self._last_received, strict=self._strict)
+
+    def causes(self) -> Iterator[Finding]:
+        """Yield why messages may be missing."""
+        for name, topic in self.topics.items():
+            if topic.ended_early is not None:
+                yield Finding(
+                    f'{name} ends {topic.ended_early:.3f} s before {self._rotor}: '
+                    'the node may have ended',
+                    cause=True,
+                )
+        missing = {name: topic.inputs.count for name, topic in self.topics.items()}
+        lost = [
+            f'{counted(count, "message")} of {name}' for name, count in missing.items() if count
+        ]
+        complete = [name for name, count in missing.items() if not count]
+        if len(missing) == 1 or not lost:
+            return
+        unanswered = self._unanswered.inputs.count
+        if set(missing.values()) == {unanswered}:
+            yield Finding(
+                f'{counted(unanswered, "message")} of {self._rotor} without any output: '
+                'the node did not receive them, or was blocked',
+                cause=True,
+            )
+        elif complete and not unanswered:
+            yield Finding(
+                f'{", ".join(lost)} missing, but none of {", ".join(complete)}: the node had the '
+                'inputs, and the messages were lost on their way to the recording',
+                cause=True,
+            )
 
     def _take(self, inputs: Inputs, cause: str = '') -> None:
         if not cause:
-            answered = np.flatnonzero(inputs.answered.any(axis=1))
-            end = int(answered[-1]) + 1 if len(answered) else 0
-            if end:
-                self.unanswered += self._behind + end - len(answered)
-                self._behind = 0
-            self._behind += len(inputs.stamp) - end
-        for topic, answered in zip(self.topics, inputs.answered.T, strict=True):
+            self._unanswered.update(
+                inputs.received, inputs.stamp, np.asarray(inputs.answered.any(axis=1))
+            )
+        for topic, answered in zip(self.topics.values(), inputs.answered.T, strict=True):
             topic.update(inputs.received, inputs.stamp, answered, cause)
 
     def _settle(self) -> None:
@@ -191,7 +222,7 @@ def _settled(inputs: Inputs) -> int:
     losses += zip(received[silent].tolist(), received[silent + 1].tolist(), strict=True)
     settled, last = _ALWAYS, int(received[0])
     for begin, end in sorted(losses):
-        if begin - last > _QUIET:
+        if begin - last > _QUIET_TIME:
             break
         settled = last = max(last, end)
     return settled
@@ -219,8 +250,8 @@ class RecordedInputs:
             if self._first_age is None:
                 self._first_age = int(received[0] - stamp[0])
         stamps = np.concatenate([self._stamps, stamp, rejected])
-        self._complete = self._complete and len(stamps) <= _KEPT
-        self._stamps = stamps[-_KEPT:]
+        self._complete = self._complete and len(stamps) <= _MAX_STAMPS
+        self._stamps = stamps[-_MAX_STAMPS:]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Whether the inputs of outputs (n,), ns, were not recorded."""
@@ -239,6 +270,6 @@ class RecordedInputs:
         too_late = after == len(known)
         return np.asarray(
             in_hole
-            | (too_early & (np.abs(age - self._first_age) < _DELAY))
-            | (too_late & (np.abs(age - self._last_age) < _DELAY))
+            | (too_early & (np.abs(age - self._first_age) < _MAX_DELAY))
+            | (too_late & (np.abs(age - self._last_age) < _MAX_DELAY))
         )

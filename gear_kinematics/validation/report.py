@@ -11,6 +11,21 @@ from gear_kinematics.report.document import Verdict
 
 
 @dataclass(frozen=True, slots=True)
+class Finding:
+    """A sentence about a recording, and what it is about."""
+
+    text: str
+    fails: bool = False
+    """Whether the bag fails because of it, whatever the numbers are."""
+    cause: bool = False
+    """Whether it explains why the bag fails."""
+    topic: str = ''
+    """The topic, or topic and field, that it is about; empty if it names them itself."""
+    stamp: int | None = None
+    """The moment that it is about."""
+
+
+@dataclass(frozen=True, slots=True)
 class FieldReport:
     """Comparison of one field of an output topic with the recomputed one."""
 
@@ -71,7 +86,7 @@ class TopicReport:
     """Stamp of the first message without an input."""
     first_out_of_order: int | None = None
     """Stamp of the first message out of order."""
-    faults: tuple[str, ...] = ()
+    faults: tuple[Finding, ...] = ()
     """Other faults, such as wrong frame ids or joint names, with their number and first stamp."""
     left_out: dict[str, int] = field(default_factory=dict)
     """Inputs without an output and outputs without an input because of the recorder, by cause."""
@@ -184,10 +199,8 @@ class BagReport:
     """Number on the three topics."""
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
-    findings: tuple[str, ...] = ()
-    """Sentences about a constant offset, another mechanism or the health of the input."""
-    causes: tuple[str, ...] = ()
-    """Those findings that explain why the bag fails."""
+    findings: tuple[Finding, ...] = ()
+    """About a constant offset, another mechanism or the health of the input."""
     series: tuple[Series, ...] = ()
     """Of the output topics with anything to compare."""
     lanes: tuple[Lane, ...] = ()
@@ -196,6 +209,17 @@ class BagReport:
     """The mechanism for which the outputs were recomputed."""
     module: float = 0.0
     """Module of its teeth, m, for the drawing."""
+
+    @property
+    def causes(self) -> list[Finding]:
+        """Those findings that say why the bag fails: what fails it by itself, then the causes."""
+        failing = [finding for finding in self.findings if finding.fails]
+        return failing + [finding for finding in self.findings if finding.cause]
+
+    def seconds(self, stamp: int) -> float | None:
+        """Return the time of a stamp since the first stamp of the input, s, if there is one."""
+        first = self.rotor.first_stamp if self.rotor else None
+        return None if first is None else (stamp - first) / 1e9
 
     @property
     def passed(self) -> bool:

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from gear_kinematics.report.document import OUTCOME, Cell, Layout, Table, Tone, number, printable
+from gear_kinematics.validation.findings import angle, field_name, findings, is_beyond, moment
 from gear_kinematics.validation.report import BagReport, FieldReport, Gap, InputReport, TopicReport
-from gear_kinematics.validation.wording import angle, field_name, findings, is_beyond, moment
 
 
 def bag_name(report: BagReport) -> str:

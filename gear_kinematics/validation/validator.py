@@ -1,6 +1,6 @@
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.bag import Message, ReportProgress, TopicMessages, in_batches, sort_by_topic
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
@@ -20,26 +20,32 @@ from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation import checks
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
-    CorrectedTopic,
     RecomputedCorrection,
     why_unjudged,
 )
-from gear_kinematics.validation.diagnosis import UnseenTurns, diagnose
 from gear_kinematics.validation.input_health import InputHealth
-from gear_kinematics.validation.lanes import lanes
-from gear_kinematics.validation.matching import WINDOW, Group, OutputTopic, Window
+from gear_kinematics.validation.matching import (
+    SAMPLES,
+    WINDOW,
+    Expectation,
+    OutputTopic,
+    Solver,
+)
 from gear_kinematics.validation.occurrences import Occurrences
-from gear_kinematics.validation.output_topics import BodyPoses, OutputState, Solver, Tolerances
-from gear_kinematics.validation.recorder import Completeness, Inputs, Missing, RecordedInputs
-from gear_kinematics.validation.report import BagReport
+from gear_kinematics.validation.output_topics import BodyPoses, JointStateTopic, OutputState
+from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
+from gear_kinematics.validation.report import BagReport, Finding, Lane
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.unseen_turns import UnseenTurns
 from gear_kinematics.wire.cdr import MalformedMessageError, joint_state_layout, pose_array_layout
 
 Array = NDArray[Any]
 
 _FRAME = 'stator'
-_TOPICS, _TOLERANCES = Topics(), Tolerances()
-_Batch = tuple[TopicMessages, ...]
-"""Messages in the order of `Topics`, then those of the corrected output."""
+_TOPICS = Topics()
+_NOT_CORRECTED: Mapping[str, str] = MappingProxyType({})
+_Batch = Mapping[str, TopicMessages]
+"""Messages by the names of their topics."""
 
 
 class Validator:
@@ -47,70 +53,60 @@ class Validator:
 
     def __init__(
         self,
-        parameters: NodeParameters,
-        *,
+        task: Task,
         topics: Topics = _TOPICS,
-        tolerances: Tolerances = _TOLERANCES,
-        allow_offset: bool = False,
-        strict: bool = False,
+        corrected: Mapping[str, str] = _NOT_CORRECTED,
         solver: Solver = solve,
-        calibration: Calibration | None = None,
-        corrected: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         """Prepare for a recording.
 
         Args:
-            parameters: of the node.
+            task: how to validate it.
             topics: names of the topics; that of poses that are not recorded is empty.
-            tolerances: greatest accepted errors.
-            allow_offset: whether to accept a constant offset of the output angle, as after homing.
-            strict: whether to judge all missing and extra messages, even if the recorder may have
-                caused them; see `recorder`.
-            solver: recomputes the motion: `solve`, or that of the matrix method.
-            calibration: of the node; without it, the corrected output is not judged.
             corrected: the recorded ones of CORRECTED_TOPICS, each with its name in the recording.
+            solver: recomputes the motion: `solve`, or that of the matrix method.
 
         Raises:
             ValueError: if the parameters describe no gear.
         """
-        self._parameters = parameters
+        self._task = task
+        self._parameters = parameters = task.parameters
         self._prefix_open = not parameters.frame_prefix
         self._topics = topics
-        self._names = *topics, *corrected.values()
-        self._tolerances = tolerances
-        self._offset_open = allow_offset
-        self._solver = solver
-        self._strict = strict
+        self._corrected = corrected
+        self._offset_open = task.allow_offset
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
         self._health = InputHealth(parameters.max_rotor_speed)
         self._rejected = Occurrences()
-        self._window = Window()
-        self._inputs = RecordedInputs(strict=strict)
+        self._inputs = RecordedInputs(strict=task.strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         single_turn = parameters.single_turn
-        self._unseen = UnseenTurns(gear.gear_ratio, tolerances.angle) if single_turn else None
+        self._unseen = UnseenTurns(gear.gear_ratio, task.tolerances.angle) if single_turn else None
+        self._expectation = Expectation(gear, task.tolerances, solver, self._unseen)
+        self._groups: list[Completeness] = []
+        self._outputs: dict[str, OutputTopic] = {}
         prefix = parameters.frame_prefix
-        common = tolerances, solver, self._unseen
         joint = prefix + parameters.output_joint
-        self.output = OutputState(joint, gear, *common)
+        self.output = OutputState(topics.output, joint, self._expectation)
         self.poses = None
-        outputs: tuple[OutputTopic, ...] = (self.output,)
+        outputs: list[OutputTopic] = [self.output]
         if isinstance(gear, Mechanism) and topics.poses:
-            self.poses = BodyPoses(prefix + _FRAME, gear, *common)
-            outputs = self.output, self.poses
-        names = topics[: 1 + len(outputs)]
-        self._groups = [Group(names, outputs, Completeness(len(outputs), strict=strict))]
+            self.poses = BodyPoses(topics.poses, prefix + _FRAME, gear, self._expectation)
+            outputs.append(self.poses)
+        self._judge(outputs)
         self._unjudged = 0  # messages of the corrected output
-        self._why_unjudged = why_unjudged(calibration, single_turn=single_turn)
+        self._why_unjudged = why_unjudged(task.calibration, single_turn=single_turn)
         self._correction = None
-        if calibration and corrected and not self._why_unjudged:
-            self._correction = RecomputedCorrection(calibration)
+        columns = list(SAMPLES)
+        if task.calibration and corrected and not self._why_unjudged:
+            self._correction = RecomputedCorrection(task.calibration)
+            columns += [(name, np.float64) for name in Correction._fields]
             for topic, name in corrected.items():
-                output = CORRECTED[topic](joint, gear, *common)
-                absences = Completeness(1, strict=strict)
-                self._groups.append(Group((topics.rotor, name), (output,), absences))
-        self._findings: list[str] = []
+                self._judge([CORRECTED[topic](name, joint, self._expectation)])
+        self._window = np.zeros(0, columns)
+        """The latest samples."""
+        self._findings: list[Finding] = []
         self._checks = [make(parameters) for make in checks.CHECKS]
 
     def feed(
@@ -128,23 +124,21 @@ class Validator:
         """
         for recorded in in_batches(messages, progress=progress, total=total):
             batch = self._empty_batch()
-            sort_by_topic(recorded, dict(zip(self._names, batch, strict=True)))
+            sort_by_topic(recorded, batch)
             self._take(batch)
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
-    def report(self, bag: str = '', *, error: str | None = None) -> BagReport:
+    def report(self, error: str | None = None) -> BagReport:
         """Return the report on all messages; must be called once, at the end.
 
         Args:
-            bag: name of the bag.
             error: damage at which reading ended, if any.
         """
         self._close()
         rotor = self._health.report(self._input, self._topics.rotor)
-        start = rotor.first_stamp or 0
         topics = tuple(
-            output.report(name, missing)
-            for name, output, missing in self._judged()
+            output.report()
+            for name, output in self._outputs.items()
             # Without a calibration, the node publishes nothing on the topics of the correction.
             if output.matcher.messages or name in self._topics
         )
@@ -152,54 +146,61 @@ class Validator:
             error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
-        judgements = [found for check in self._checks for found in check.judge(rotor)]
-        failed = [judgement.text for judgement in judgements if judgement.fails]
+        checked = [finding for check in self._checks for finding in check.judge(rotor)]
+        failed = any(finding.fails for finding in checked)
         passed = all(topic.passed for topic in topics) and not failed
-        causes, notes = tuple(self._causes()), tuple(self._notes())
-        inputs = self._topics.rotor, self._health.gaps, self._rejected
-        series = (output.series.series(name, start) for name, output, _ in self._judged())
+        series = (
+            output.series.series(name, rotor.first_stamp or 0)
+            for name, output in self._outputs.items()
+        )
         return BagReport(
-            bag=bag,
+            bag=str(self._task.bag),
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
+            config=self._task.config,
             gear_ratio=str(self._gear.gear_ratio),
             error=error,
             messages=rotor.messages + sum(topic.messages for topic in topics),
             rotor=rotor,
             topics=topics,
-            findings=(*self._findings, *causes, *notes, *(found.text for found in judgements)),
-            causes=(*failed, *causes),
+            findings=(*self._compared(), *self._causes(), *self._notes(), *checked),
             series=tuple(found for found in series if found),
-            lanes=tuple(lanes(inputs, self._judged(), rotor.first_stamp)),
+            lanes=() if rotor.first_stamp is None else tuple(self._lanes(rotor.first_stamp)),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters.module,
         )
 
+    def _judge(self, outputs: Sequence[OutputTopic]) -> None:
+        """Compare outputs that are recorded from the same time on."""
+        names = [output.name for output in outputs]
+        group = Completeness(self._topics.rotor, names, strict=self._task.strict)
+        self._groups.append(group)
+        for output in outputs:
+            output.missing = group.topics[output.name]
+            self._outputs[output.name] = output
+
     @np.errstate(all='ignore')
     def _take(self, batch: _Batch) -> None:
-        there = any(messages.data for messages in batch)
+        there = any(messages.data for messages in batch.values())
         if self._prefix_open and there:
-            self._settle_prefix(batch)
+            self._find_prefix(batch)
         if self._offset_open and there:
-            self._settle_offset(batch)
-        recorded = dict(zip(self._names, batch, strict=False))
-        for topic, messages in recorded.items():
+            self._find_offset(batch)
+        for topic, messages in batch.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        for names, _, absences in self._groups:
-            if self._begun.keys() >= set(names):
-                absences.begin(max(self._begun[name] for name in names))
-        self._add_samples(recorded[self._topics.rotor])
-        for name, output, _ in self._judged():
-            messages = recorded[name]
-            output.take(messages.data, messages.received, self._window, self._inputs)
+        for group in self._groups:
+            group.begin(self._begun)
+        self._add_samples(batch[self._topics.rotor])
+        for name, output in self._outputs.items():
+            output.take(batch[name].data, batch[name].received, self._window, self._inputs)
         if not self._correction:
-            self._unjudged += sum(len(messages.data) for messages in batch[len(self._topics) :])
+            self._unjudged += sum(len(batch[name].data) for name in self._corrected.values())
         poses = self.poses.compared if self.poses else {}
         for check in self._checks:
             check.update(self.output.compared, poses)
-        done = np.all([output.matcher.matched for _, output, _ in self._judged()], axis=0)
-        settled = len(done) if done.all() else int(np.argmin(done))
-        self._drop(max(settled, len(done) - WINDOW))
+        done = np.all([output.matcher.matched for output in self._outputs.values()], axis=0)
+        answered = len(done) if done.all() else int(np.argmin(done))
+        self._drop(max(answered, len(done) - WINDOW))
 
     def _add_samples(self, messages: TopicMessages) -> None:
         """Add the rotor's samples to the window."""
@@ -207,27 +208,28 @@ class Validator:
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._rejected.add(samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        self._window.append(
-            stamp=samples.stamp,
-            received=samples.received,
-            turns=samples.turns,
-            angle=samples.angle,
-            velocity=samples.velocity,
-            effort=samples.effort,
-            stretch=samples.segment,
-            **(self._correction.columns(samples) if self._correction else {}),
-        )
-        for _, output, _ in self._judged():
+        waiting = len(self._window)
+        window = np.empty(waiting + len(samples.stamp), self._window.dtype)
+        window[:waiting], new = self._window, window[waiting:]
+        for name, _ in SAMPLES:
+            new[name] = getattr(samples, name)
+        if self._correction:
+            for name, values in self._correction.at(samples)._asdict().items():
+                new[name] = values
+        self._window = window
+        for output in self._outputs.values():
             output.matcher.extend(len(samples.stamp))
 
     def _drop(self, count: int) -> None:
-        oldest = self._window.rows(slice(count))
-        for _, outputs, absences in self._groups:
-            answered = np.column_stack([output.matcher.matched[:count] for output in outputs])
-            absences.update(Inputs(oldest['received'], oldest['stamp'], answered))
-        for _, output, _ in self._judged():
+        """Drop the oldest samples, whose outputs are there or count as missing."""
+        oldest = self._window[:count]
+        for group in self._groups:
+            matchers = [self._outputs[name].matcher for name in group.topics]
+            answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
+            group.update(Inputs(oldest['received'], oldest['stamp'], answered))
+        for output in self._outputs.values():
             output.matcher.drop(count)
-        self._window.drop(count)
+        self._window = self._window[count:]
 
     def _close(self) -> None:
         """Count waiting samples and messages as missing and extra, at the end."""
@@ -235,18 +237,18 @@ class Validator:
             self._take(self._empty_batch())
         self._drop(len(self._window))
         for group in self._groups:
-            group.absences.close()
+            group.close()
 
-    def _settle_prefix(self, batch: _Batch) -> None:
+    def _find_prefix(self, batch: _Batch) -> None:
         """Adopt the frame prefix of the first output, if any."""
         joint = self._parameters.output_joint
-        _, output, poses, *_ = batch
-        for (data, *_), layout_of, name in (
-            (poses.data or [b''], pose_array_layout, _FRAME),
-            (output.data or [b''], joint_state_layout, joint),
+        for topic, layout_of, name in (
+            (self._topics.poses, pose_array_layout, _FRAME),
+            (self._topics.output, joint_state_layout, joint),
         ):
             with suppress(MalformedMessageError):
-                recorded = layout_of(data).texts[-1].decode(errors='replace')
+                data = batch[topic].data or [b'']
+                recorded = layout_of(data[0]).texts[-1].decode(errors='replace')
                 if not recorded.endswith(name):
                     continue
                 self._prefix_open = False
@@ -254,12 +256,13 @@ class Validator:
                     self._parameters = replace(self._parameters, frame_prefix=prefix)
                     if self.poses:
                         self.poses.frame_id = prefix + _FRAME
-                    for topic in self._of_joint():
-                        topic.joint = prefix + joint
-                    self._findings.append(f'frame_prefix {prefix!r} is taken from the outputs')
+                    for output in self._of_joint():
+                        output.joint = prefix + joint
+                    text = f'frame_prefix {prefix!r} is taken from the outputs'
+                    self._findings.append(Finding(text))
                 return
 
-    def _settle_offset(self, batch: _Batch) -> None:
+    def _find_offset(self, batch: _Batch) -> None:
         """Determine the offset to accept, if any, from the first batch with outputs.
 
         Homing moves the rotor's zero and therefore the poses; if there are some, and they agree
@@ -269,80 +272,75 @@ class Validator:
         if not trial.output.fit.count:
             return
         self._offset_open = False
-        offset = trial.output.fit.offset(self._tolerances.angle)
+        offset = trial.output.fit.offset(self._task.tolerances.angle)
         if offset is None:
             return
         direction, zero = self._parameters.rotor_direction, self._parameters.rotor_zero
         zero -= direction * self._gear.gear_ratio.rotor_angle(offset)
-        moved = replace(self._parameters, rotor_zero=zero)
         if abs(zero) > LARGEST_ANGLE:  # garbage, not homing
             return
-        if self._trial(batch, moved).worst_position <= trial.worst_position:
+        moved = replace(self._parameters, rotor_zero=zero)
+        if _position_error(self._trial(batch, moved)) <= _position_error(trial):
             self._input.parameters = moved
         else:
-            for topic in self._of_joint():
-                topic.offset = offset
-        self._findings.append(
-            f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
-        )
-
-    @property
-    def judges_correction(self) -> bool:
-        """Whether there were messages of the corrected output that are judged."""
-        return any(
-            isinstance(output, CorrectedTopic) and output.matcher.messages > 0
-            for _, output, _ in self._judged()
-        )
-
-    @property
-    def worst_position(self) -> float:
-        """The greatest error of a body's position, m; 0 without poses."""
-        return self.poses.worst_error if self.poses else 0.0
+            for output in self._of_joint():
+                output.offset = offset
+        text = f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
+        self._findings.append(Finding(text))
 
     def _trial(self, batch: _Batch, parameters: NodeParameters) -> 'Validator':
-        trial = Validator(
-            parameters,
-            topics=self._topics,
-            tolerances=self._tolerances,
-            solver=self._solver,
-            strict=self._strict,
-        )
-        trial._take(batch[: len(self._topics)])
+        """Return what validates a batch with other parameters."""
+        task = replace(self._task, parameters=parameters, allow_offset=False)
+        trial = Validator(task, self._topics, solver=self._expectation.solver)
+        trial._take({name: batch[name] for name in self._topics})
         return trial
 
-    def _of_joint(self) -> Iterator[OutputState | CorrectedTopic]:
-        for _, output, _ in self._judged():
-            if isinstance(output, (OutputState, CorrectedTopic)):
+    def _of_joint(self) -> Iterator[JointStateTopic]:
+        for output in self._outputs.values():
+            if isinstance(output, JointStateTopic):
                 yield output
 
-    def _judged(self) -> Iterator[tuple[str, OutputTopic, Missing]]:
-        """Yield name, comparison and missing messages of each output."""
-        for (_, *names), outputs, absences in self._groups:
-            yield from zip(names, outputs, absences.topics, strict=True)
-
     def _empty_batch(self) -> _Batch:
-        return tuple(TopicMessages() for _ in self._names)
+        return {name: TopicMessages() for name in (*self._topics, *self._corrected.values())}
 
-    def _causes(self) -> Iterator[str]:
+    def _compared(self) -> Iterator[Finding]:
+        """Yield with what the outputs are compared, as far as it is not the obvious."""
+        if isinstance(self._gear, Mechanism) and not self.poses:
+            yield Finding(f'no poses are recorded: {self.output.name} alone is compared')
+        judged = (self._outputs.get(name) for name in self._corrected.values())
+        if any(output.matcher.messages > 0 for output in judged if output):
+            file = self._task.calibration_file
+            yield Finding(f'the corrected output is compared with that of {file}')
+        yield from self._findings
+
+    def _causes(self) -> Iterator[Finding]:
         """Yield what explains the errors and the missing messages."""
-        if not self.output.position.passed:
-            found = diagnose(self._gear, self.output.fit, self._tolerances.angle)
-            if found:
-                yield found
-        else:
-            yield from self.output.factors()
-        if self.poses:
-            yield from self.poses.order()
+        for output in self._outputs.values():
+            yield from output.causes()
+        rotor = self._topics.rotor
         if self._input.mostly_rejected and self._input.missing_joint:
-            yield f'{self._topics.rotor}: {self._input.missing_joint}'
+            yield Finding(f'{rotor}: {self._input.missing_joint}', cause=True)
         for group in self._groups:
-            yield from group.why_missing()
+            yield from group.causes()
 
-    def _notes(self) -> Iterator[str]:
+    def _notes(self) -> Iterator[Finding]:
         """Yield what fails nothing."""
-        if self.poses:
-            yield from self.poses.turned_round()
+        for output in self._outputs.values():
+            yield from output.notes()
         if self._unseen:
-            yield from self._unseen.findings()
+            yield from self._unseen.notes()
         if self._unjudged:
-            yield f'the corrected output is not judged: {self._why_unjudged}'
+            yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
+
+    def _lanes(self, start: int) -> Iterator[Lane]:
+        """Yield a lane for everything that happened on the topics, with the time 0 at a stamp."""
+        for event, found in (('gaps', self._health.gaps), ('rejected', self._rejected)):
+            if found.count:
+                yield found.lane(self._topics.rotor, event, start, fails=False)
+        for output in self._outputs.values():
+            yield from output.lanes(start)
+
+
+def _position_error(validator: Validator) -> float:
+    """The greatest error of a body's position, m; 0 without poses."""
+    return validator.poses.position.max_error if validator.poses else 0.0

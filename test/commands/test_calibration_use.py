@@ -83,7 +83,7 @@ def test_without_a_calibration_the_rest_is_validated_and_the_report_says_so(comp
     capsys.readouterr()
     assert main(['validate', str(computed)]) == 0
     shown = capsys.readouterr().out
-    assert 'the corrected output is not judged: --calibration names its calibration' in shown
+    assert 'the corrected output is not judged: no calibration is given' in shown
     assert '/corrected_state position' not in shown
 
 

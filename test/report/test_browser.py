@@ -242,7 +242,7 @@ def test_first_screen_has_verdict_cause_mechanism_and_the_curve_that_failed(open
         assert box['y'] >= 0, part
         assert box['y'] + box['height'] <= WIDE['height'], part
     expect(tab.locator('h1 .badge')).to_have_text('failed')
-    expect(tab.locator('.first')).to_have_text(samples.FAILING.causes[0])
+    expect(tab.locator('.first')).to_have_text(samples.FAILING.causes[0].text)
     # At the worst moment, 2.5 s from the start; the legend is above the curves.
     expect(tab.locator('.motion output')).to_have_text('2.5000 s')
     area, legend = plot(tab), tab.locator('.legend').last.bounding_box()

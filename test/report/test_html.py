@@ -141,7 +141,9 @@ def test_tables_show_what_is_bad():
 
 
 def test_damage_faults_and_findings_are_told():
-    tree = parse(to_html([replace(samples.DAMAGED, findings=('It ran slow.',), series=())]))
+    tree = parse(
+        to_html([replace(samples.DAMAGED, findings=(samples.Finding('It ran slow.'),), series=())])
+    )
     assert [item.text for item in tree.find_class('first')] == [samples.DAMAGED.error]
     assert [item.text for item in tree.iter('li')] == ['It ran slow.']
     assert tree.xpath('//ul/@class') == ['remarks unusable']
@@ -159,7 +161,7 @@ def test_page_begins_with_cause_and_figure_and_ends_with_folded_tables():
         ('dl', 'inline'),
         ('details', None),
     ]
-    assert section.find_class('first')[0].text == samples.FAILING.causes[0]
+    assert section.find_class('first')[0].text == samples.FAILING.causes[0].text
     findings, tables = section.findall('details')
     assert findings.find('summary').text == '10 more findings'
     assert len(findings.findall('.//li')) == 10

@@ -111,7 +111,9 @@ def test_unusable_bag_is_an_error_and_keeps_what_was_readable():
 
 
 def test_failing_bag_is_red_even_if_no_part_of_it_fails():
-    (suite,) = parse(replace(samples.PASSING, verdict=Verdict.FAIL, findings=('another gear',)))
+    (suite,) = parse(
+        replace(samples.PASSING, verdict=Verdict.FAIL, findings=(samples.Finding('another gear'),))
+    )
     assert outcomes(suite)[0] == ('bag', 'failure: another gear')
     (suite,) = parse(samples.EMPTY)
     assert outcomes(suite) == [('bag', 'failure: the bag fails')]

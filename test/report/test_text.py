@@ -8,10 +8,10 @@ import pytest
 import report_samples as samples
 from rich.console import Console
 
-from gear_kinematics.report.document import Verdict
+from gear_kinematics.report.document import Verdict, number
 from gear_kinematics.report.text import render
-from gear_kinematics.validation import wording
 from gear_kinematics.validation.document import document
+from gear_kinematics.validation.findings import faults, field_name, findings
 
 ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
 
@@ -98,8 +98,8 @@ def test_pipe_tells_the_health_of_the_input():
 
 def test_every_fault_is_a_sentence_that_names_and_locates_it():
     cause, note = samples.FAILING.findings
-    assert [finding.text for finding in wording.findings(samples.FAILING)] == [
-        cause,
+    assert [finding.text for finding in findings(samples.FAILING)] == [
+        cause.text,
         '/output_state: 11 messages missing, the first at stamp 1700000001123456789',
         '/output_state: 8 messages too many, the first at stamp 1700000001123456790',
         '/output_state: 1 message out of order',
@@ -112,16 +112,17 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
         '/output_state effort: 1 sample with the field in input or output only',
         '/body_poses: no message could be compared',
         '/body_poses: 4008 messages missing',
-        note,
+        note.text,
     ]
 
 
 @pytest.mark.parametrize('report', samples.ALL, ids=lambda report: ascii(report.bag))
 def test_sentences_tell_a_fault_wherever_a_part_fails_and_nowhere_else(report):
     for topic in report.topics:
-        fields_passed = [not wording.field_faults(field, report) for field in topic.fields]
+        at_fault = {fault.topic for fault in faults(report)}
+        fields_passed = [field_name(topic, field) not in at_fault for field in topic.fields]
         assert fields_passed == [field.passed for field in topic.fields]
-        whole = not wording.topic_faults(topic, report)
+        whole = topic.topic not in at_fault
         assert (whole and all(fields_passed)) == topic.passed
 
 
@@ -134,7 +135,7 @@ def test_pipe_is_neither_wrapped_nor_decorated():
 
 
 def test_damage_is_told_before_the_findings_and_what_was_readable_after_it():
-    lines = piped(replace(samples.DAMAGED, findings=('slow',))).splitlines()
+    lines = piped(replace(samples.DAMAGED, findings=(samples.Finding('slow'),))).splitlines()
     assert lines[:3] == [
         'logs/power_cut.mcap: verdict: unusable',
         f'logs/power_cut.mcap: error: {samples.DAMAGED.error}',
@@ -192,8 +193,8 @@ def test_terminal_cuts_nothing_off(width):
     assert max(map(len, text.splitlines())) <= width
     # What is broken is broken at the edge, or in a cell of the summary.
     assert long.bag in text.replace('\n', '')
-    for number in ('1700000002623456789 ns', '0.00032 %', '4.3e-19', '13.2 rad'):
-        assert number in text
+    for value in ('1700000002623456789 ns', '0.00032 %', '4.3e-19', '13.2 rad'):
+        assert value in text
     # A name gives way, a number never.
     topic = replace(samples.OUTPUT, topic='/left/arm' * 5)
     text = visible(replace(samples.PASSING, topics=(topic,)), width=width)
@@ -229,7 +230,7 @@ def test_offset_from_the_first_sample_is_told_when_it_is_known():
     [(0.0, '0'), (3.21e-15, '3.21e-15'), (1e-9, '1e-9'), (2e8, '2e8'), (float('inf'), 'inf')],
 )
 def test_numbers_are_short(value, written):
-    assert wording.number(value) == written
+    assert number(value) == written
 
 
 def test_zero_tolerance_is_used_up_by_any_error():
@@ -243,7 +244,7 @@ def test_not_a_number_is_the_worst_of_all():
     topic = replace(samples.OUTPUT, fields=(position, effort))
     (row,) = document([replace(samples.NOT_FINITE, topics=(topic,))]).summary.rows
     assert [cell.text for cell in row][:4] == ['logs/nan', 'failed', '4000', 'nan']
-    assert wording.field_faults(effort, samples.NOT_FINITE)
+    assert any(fault.topic == '/output_state effort' for fault in faults(samples.NOT_FINITE))
 
 
 def test_nothing_to_compare_uses_no_budget():

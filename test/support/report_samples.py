@@ -7,18 +7,19 @@ import numpy as np
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.fields import FieldErrors, FieldSamples, SeriesRecorder
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import (
     BagReport,
     Curve,
     FieldReport,
+    Finding,
     Gap,
     InputReport,
     Lane,
     Series,
     TopicReport,
 )
-from gear_kinematics.validation.series import FieldSamples, RecordedField, SeriesRecorder
 
 START = 1_700_000_000_123_456_789
 """Stamp of the first sample, ns."""
@@ -130,7 +131,10 @@ FAILING = replace(
             out_of_order=1,
             first_missing=START + 1_000_000_000,
             first_extra=START + 1_000_000_001,
-            faults=(f'joint name "shaft" in 3 messages, the first at stamp {START}',),
+            faults=(
+                Finding(f'joint name "shaft" in 3 messages, the first at stamp {START}',
+                        stamp=START),
+            ),
             fields=(
                 replace(POSITION, max_error=2e-3, rms_error=7.1e-4),
                 replace(POSITION, name='velocity', unit='rad/s', non_finite=5),
@@ -140,11 +144,12 @@ FAILING = replace(
         replace(POSES, compared=0, missing=4008, messages=0, fields=()),
     ),
     findings=(
-        'The recorded angles have the ratio of the tooth pair 60/58, not of the configured 80/76.',
-        'The turns of the encoder were not known between 1.8 s and the end.',
-    ),
-    causes=(
-        'The recorded angles have the ratio of the tooth pair 60/58, not of the configured 80/76.',
+        Finding(
+            'The recorded angles have the ratio of the tooth pair 60/58, not of the configured '
+            '80/76.',
+            cause=True,
+        ),
+        Finding('The turns of the encoder were not known between 1.8 s and the end.'),
     ),
     series=series(2e-3),
     lanes=(
@@ -176,11 +181,10 @@ HOSTILE_NAMES = replace(
     error=HOSTILE,
     rotor=replace(ROTOR, topic=HOSTILE, joint=HOSTILE, rejected={HOSTILE: 1}),
     topics=(
-        replace(OUTPUT, topic=HOSTILE, faults=(HOSTILE,),
+        replace(OUTPUT, topic=HOSTILE, faults=(Finding(HOSTILE),),
                 fields=(replace(POSITION, name=HOSTILE, unit=HOSTILE, max_error=1.0),)),
     ),
-    findings=(HOSTILE,),
-    causes=(HOSTILE,),
+    findings=(Finding(HOSTILE, cause=True),),
     series=(
         Series(HOSTILE, [0.0, 1.0], [0.0, 1.0], (Curve(HOSTILE, HOSTILE, *[[0.0, 1.0]] * 3),)),
     ),
@@ -193,8 +197,8 @@ UNPRINTABLE = replace(
     config=CONTROL,
     error=CONTROL,
     rotor=replace(ROTOR, topic=CONTROL, joint=CONTROL, rejected={CONTROL: 1}),
-    topics=(replace(OUTPUT, topic=CONTROL, faults=(CONTROL,)),),
-    findings=(CONTROL,),
+    topics=(replace(OUTPUT, topic=CONTROL, faults=(Finding(CONTROL),)),),
+    findings=(Finding(CONTROL),),
 )
 
 EMPTY = BagReport('', Verdict.FAIL)
@@ -253,7 +257,7 @@ def of_300_000_messages() -> BagReport:
         ('/output_state', ('position', 'velocity', 'effort')),
         ('/body_poses', ('position', 'orientation')),
     ):
-        recorder = SeriesRecorder({name: RecordedField(1e-9) for name in names})
+        recorder = SeriesRecorder([FieldErrors(name, '', 1e-9) for name in names])
         lost = Occurrences()
         lost.add(stamp[random.random(count) < 0.1])
         for start in range(0, count, 5000):

@@ -28,8 +28,8 @@ from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.fleet import on_this_machine
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.validation.fleet import WORK, Task, validate_bag
-from gear_kinematics.validation.output_topics import Tolerances
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.validate_bag import WORK, validate_bag
 
 SHIPPED = [
     'constant_speed_3000rpm',
@@ -49,7 +49,7 @@ def task(path: Path, **options) -> Task:
     folder = BAGS / path.name
     beside = folder / 'actuator.yaml'
     config = beside if beside.exists() else default_config()
-    return Task(path, NodeParameters.load(config), str(config), Tolerances(), **options)
+    return Task(path, NodeParameters.load(config), str(config), **options)
 
 
 # One bag.
@@ -69,36 +69,19 @@ def test_a_shipped_bag_is_reported():
     assert {total for _, total in told} == {report.messages}
 
 
-def cut(path: Path) -> None:
-    shutil.copy(BAGS / 'servo_point_to_point' / 'servo_point_to_point_0.mcap', path)
-    os.truncate(path, path.stat().st_size // 2)
-
-
 def of_wrong_type(path: Path) -> None:
     write_bag(path, [], TYPES | {ROTOR: 'std_msgs/msg/String'})
 
 
-def without_messages(path: Path) -> None:
-    write_bag(path, [])
-
-
-def with_bad_metadata(path: Path) -> None:
-    path.mkdir()
-    (path / 'metadata.yaml').write_text('- {\n', encoding='utf-8')
-
-
-BAD_BAGS = [
-    (lambda _: None, 'no such file'),
-    (Path.touch, 'the file is empty'),
-    (lambda path: path.write_bytes(b'\x00garbage\xff' * 1000), 'not a bag of a known kind'),
-    (Path.mkdir, 'neither metadata.yaml nor'),
-    (with_bad_metadata, 'metadata.yaml: '),
-    (of_wrong_type, 'no topic rotor_state of type sensor_msgs/msg/JointState'),
-    (without_messages, 'no usable rotor states'),
-]
-
-
-@pytest.mark.parametrize(('make', 'error'), BAD_BAGS)
+@pytest.mark.parametrize(
+    ('make', 'error'),
+    [
+        (lambda _: None, 'no such file'),
+        (lambda path: path.write_bytes(b'\x00garbage\xff' * 1000), 'not a bag of a known kind'),
+        (of_wrong_type, 'no topic rotor_state of type sensor_msgs/msg/JointState'),
+        (lambda path: write_bag(path, []), 'no usable rotor states'),
+    ],
+)
 def test_a_bad_bag_is_reported_as_unusable_in_one_line(make, error, tmp_path):
     make(tmp_path / 'bad.mcap')
     report = validate_bag(task(tmp_path / 'bad.mcap'))
@@ -108,7 +91,7 @@ def test_a_bad_bag_is_reported_as_unusable_in_one_line(make, error, tmp_path):
     assert '\n' not in report.error
 
 
-BROKEN = """import gear_kinematics.validation.fleet as fleet
+BROKEN = """import gear_kinematics.validation.validate_bag as fleet
 honest = fleet.find_topics
 def find_topics(bag, *_, **__):
     return 1 // (bag.path.name != 'driver_faults') and honest(bag)
@@ -140,7 +123,8 @@ def test_an_unexpected_error_makes_one_bag_unusable_and_no_other(options):
 
 def test_a_bag_that_is_cut_off_is_reported_as_far_as_it_goes(tmp_path):
     path = tmp_path / 'cut.mcap'
-    cut(path)
+    shutil.copy(BAGS / 'servo_point_to_point' / 'servo_point_to_point_0.mcap', path)
+    os.truncate(path, path.stat().st_size // 2)
     readable = []
     with Bag(path) as bag, pytest.raises(BagError):
         readable.extend(bag.messages(bag.topics))

@@ -16,7 +16,7 @@ def test_instants_and_spans_are_kept_apart():
 def test_nothing_is_no_occurrence():
     found = Occurrences()
     found.add(np.zeros(0, np.int64))
-    found.take_over(Occurrences())
+    found.add_all(Occurrences())
     assert (found.count, found.first, found.spans.tolist()) == (0, None, [])
 
 
@@ -48,7 +48,7 @@ def test_of_many_the_nearest_are_joined_and_all_counted():
 def test_those_of_another_are_taken_over():
     one, other = Occurrences(), Occurrences()
     other.add(np.array([7, 9]))
-    one.take_over(other)
+    one.add_all(other)
     assert (one.count, one.first, one.spans.tolist()) == (2, 7, [[7, 7], [9, 9]])
-    one.take_over(other)
+    one.add_all(other)
     assert (one.count, one.first) == (4, 7)

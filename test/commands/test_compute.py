@@ -1,0 +1,200 @@
+"""gearkin compute as a user or a CI job runs it."""
+
+import signal
+import sqlite3
+from contextlib import closing
+
+import pytest
+from blocked_bags import (
+    BAGS,
+    DEADLINE,
+    GEARKIN,
+    BlockedBag,
+    facts,
+    gearkin,
+    gearkin_here,
+    refusal,
+    running_gearkin,
+)
+from gear_recordings import old_recording
+from live import rotor_bytes
+from shipped_bags import CONFIGS, JOINT_STATE
+
+from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.parameters import NodeParameters
+
+SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'
+SAMPLES = 300
+EXACT = ('--tolerance-angle', '0', '--tolerance-position', '0')
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('name', 'options'),
+    [
+        ('rotor_only', []),
+        ('rotor_only', ['--storage', 'sqlite3', '--compression', 'zstd']),
+        ('wrong', ['--compression', 'zstd']),
+        ('namespaced', []),
+    ],
+)
+def test_a_computed_bag_validates_without_error(name, options, bags, tmp_path):
+    out = tmp_path / 'out'
+    done = gearkin_here('compute', bags / name, out, *options)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert done.stdout == (
+        f'{out}: {SAMPLES} outputs for {SAMPLES} rotor states, 0 other messages copied\n'
+    )
+    done = gearkin_here('validate', '-v', out, *EXACT)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    namespace = '/arm' if name == 'namespaced' else ''
+    for topic in ('output_state', 'body_poses'):
+        assert found[f'{namespace}/{topic}: compared'] == str(SAMPLES)
+
+
+@pytest.mark.slow
+def test_of_a_gear_with_only_a_ratio_the_output_alone_is_computed_and_validated(
+    other_gear, bags, tmp_path
+):
+    out = tmp_path / 'out'
+    assert (
+        gearkin_here('compute', bags / 'rotor_only', out, '--config', other_gear).returncode == 0
+    )
+    with Bag(out) as bag:
+        assert set(bag.topics) == {'/rotor_state', '/output_state'}
+    done = gearkin_here('validate', '-v', out, '--config', other_gear, *EXACT)
+    assert (done.returncode, done.stderr) == (0, '')
+    found = facts(done.stdout)
+    assert found['gear ratio'] == '1457/26'
+    assert found['/output_state: compared'] == str(SAMPLES)
+    assert not any('body_poses' in fact for fact in found)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('bad', 'code'), [(0, 0), (5, 0), (6, 1)])
+def test_of_a_recording_mostly_rejected_compute_tells_and_gives_code_1(bad, code, tmp_path):
+    with BagWriter(source := tmp_path / 'source') as writer:
+        writer.add_topic('/rotor_state', JOINT_STATE)
+        for k in range(10):
+            position = 1e17 if k < bad else 1.0
+            writer.write('/rotor_state', k, rotor_bytes(k + 1, position=[position]))
+    done = gearkin_here('compute', source, tmp_path / 'out')
+    assert done.returncode == code
+    assert f'{10 - bad} outputs for 10 rotor states' in done.stdout
+    complaint = f'gearkin: {source}: most messages on /rotor_state were rejected\n'
+    assert done.stderr == (complaint if code else '')
+    with Bag(tmp_path / 'out') as bag:
+        assert bag.message_count == 10 + 2 * (10 - bad)
+
+
+@pytest.mark.slow
+def test_compute_says_what_it_left_out_and_what_it_did_not_understand(tmp_path):
+    types = [('/rotor_state', JOINT_STATE), ('/grip', 'a/msg/Grip'), ('/nod', 'a/msg/Nod')]
+    messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0])), ('/nod', 2, b'who knows')]
+    bag = old_recording(tmp_path / 'b.db3', types, messages)
+    undefined = 'copied without a definition of the type'
+    for number, (options, said) in enumerate((
+        ([], [f'{undefined}: /grip, /nod']),
+        (['--topics', '/nod'], ['left out: /grip', f'{undefined}: /nod']),
+        (['--topics'], ['left out: /grip, /nod']),
+    )):  # fmt: skip
+        out = tmp_path / f'out {number}'
+        done = gearkin_here('compute', bag, out, *options)
+        assert (done.returncode, done.stderr) == (0, '')
+        assert done.stdout.splitlines() == [
+            f'{out}: 1 outputs for 1 rotor states, {1 - number // 2} other messages copied',
+            *said,
+        ]
+
+
+@pytest.mark.slow
+def test_compute_says_how_to_do_without_a_topic_that_cannot_be_copied(tmp_path):
+    types = [('/rotor_state', JOINT_STATE), ('/text', 'std_msgs/msg/String')]
+    messages = [('/rotor_state', 1, rotor_bytes(1, position=[1.0]))]
+    bag = old_recording(tmp_path / 'b.db3', types, messages)
+    with closing(sqlite3.connect(bag)) as rows, rows:
+        rows.execute("UPDATE topics SET serialization_format = 'json' WHERE id = 2")
+    given = ('compute', bag, tmp_path / 'out')
+    done = gearkin_here(*given)
+    assert (done.returncode, done.stdout) == (2, '')
+    assert done.stderr == (
+        f"gearkin: {bag}: /text cannot be copied: its messages are 'json', not CDR; "
+        '--topics says which topics to copy\n'
+    )
+    assert gearkin_here(*given, '--topics').returncode == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    'outputs', [(), ('--output-topic', '/x/shaft', '--poses-topic', '/y/bodies')]
+)
+def test_a_computed_bag_validates_without_repeating_its_topics(outputs, tmp_path):
+    bag, out = tmp_path / 'two', tmp_path / 'out'
+    with BagWriter(bag) as writer:
+        for place, topic in enumerate(('/left', '/right'), 1):
+            writer.add_topic(topic, JOINT_STATE)
+            for stamp in range(10**9, 2 * 10**9, 10**7):
+                angle = place * stamp * 1e-9
+                writer.write(topic, stamp, rotor_bytes(stamp, ('motor',), (angle,)))
+    assert 'name it with --rotor-topic' in refusal('compute', bag, out, '--joint', 'motor')
+    words = ('--rotor-topic', '/right', '--joint', 'motor', *outputs)
+    assert gearkin_here('compute', bag, out, *words).returncode == 0
+    assert gearkin_here('validate', out).returncode == 0
+    # Named topics stand back where another one is asked for.
+    assert gearkin_here('validate', out, '--rotor-topic', '/left').returncode != 0
+
+
+def test_compute_uses_the_config_beside_the_bag(tmp_path):
+    out = tmp_path / 'out'
+    assert gearkin_here('compute', SINGLE_TURN, out).returncode == 0
+    assert gearkin_here('validate', out).returncode == 0
+    assert gearkin_here('validate', out, '--config', CONFIGS / 'actuator.yaml').returncode == 1
+    given = NodeParameters.load(SINGLE_TURN / 'actuator.yaml')
+    assert NodeParameters.load(out / 'actuator.yaml') == given
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_computation_leaves_nothing(number, tmp_path):
+    folder = tmp_path / 'results'
+    folder.mkdir()
+    with (
+        BlockedBag(SERVO, tmp_path / 'blocked') as blocked,
+        running_gearkin('compute', blocked.path, folder / 'out') as process,
+    ):
+        blocked.reader()
+        assert list(folder.iterdir())  # it has begun to write
+        process.send_signal(number)
+        output, errors = process.communicate(timeout=DEADLINE)
+    assert (process.returncode, output, errors) == (130, '', '')
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('name', 'out', 'cause'),
+    [
+        ('good', 'there', 'there: exists already'),
+        ('good', 'nowhere/out', 'No such file or directory'),
+        ('garbage.mcap', 'out', 'garbage.mcap: not a bag of a known kind'),
+        ('missing', 'out', 'missing: no such file or folder'),
+        ('left_and_right', 'out', 'left_and_right: which topic is rotor_state? /left/rotor_state'),
+    ],
+)
+def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags, tmp_path):
+    (tmp_path / 'there').mkdir()
+    assert cause in refusal('compute', bags / name, tmp_path / out)
+    assert list(tmp_path.rglob('*')) == [tmp_path / 'there']
+
+
+@pytest.mark.slow
+def test_compute_needs_neither_ros_nor_dask_nor_plotly(bags, tmp_path):
+    missing = 'for name in ("rclpy", "distributed", "dask", "plotly"): sys.modules[name] = None'
+    done = gearkin(
+        'compute',
+        bags / 'rotor_only',
+        tmp_path / 'out',
+        code=f'import sys\n{missing}\n{GEARKIN}',
+    )
+    assert done.returncode == 0, done.stderr

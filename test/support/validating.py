@@ -1,0 +1,33 @@
+"""Validates messages, and finds its way in the report."""
+
+from pathlib import Path
+
+from gear_kinematics.bag import Message
+from gear_kinematics.kinematics import solve
+from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.validator import Validator
+
+
+def validate(
+    messages: list[Message], config: dict, *topics, corrected=None, solver=solve, **options
+) -> BagReport:
+    """Validate messages with the options of a `Task`."""
+    task = Task(Path('bag'), config, **options)
+    validator = Validator(task, *topics, corrected=corrected or {}, solver=solver)
+    validator.feed(messages)
+    return validator.report()
+
+
+def texts(report: BagReport) -> list[str]:
+    return [finding.text for finding in report.findings]
+
+
+def topic_of(report: BagReport, topic: str) -> TopicReport:
+    (found,) = (t for t in report.topics if t.topic == topic)
+    return found
+
+
+def field_of(report: BagReport, topic: str, name: str) -> FieldReport:
+    (found,) = (f for f in topic_of(report, topic).fields if f.name == name)
+    return found
