@@ -68,6 +68,10 @@ def gearkin() -> int:
     heeded.append(signal.SIGALRM)
 
     def load() -> Callable[[], int]:
+        if sys.argv[1:] == ['--version']:
+            from gear_kinematics.share import version  # noqa: PLC0415, imports pathlib
+
+            return lambda: _answer(f'gearkin {version()}\n')
         from gear_kinematics.commands.cli import main  # noqa: PLC0415, slow
 
         interruption = _Interruption()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands import ExitCode, arguments, bags, sources
 from gear_kinematics.commands.output import Reporter, complain, message_progress, write
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism
@@ -34,7 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     arguments.add_config(parser)
     arguments.add_ratio(parser)
-    arguments.add_columns(parser, 'rotor', 'output', 'torque', 'time')
+    sources.add_options(parser, 'rotor', 'output', 'torque', 'time')
     bags.add_encoders(parser)
     arguments.add_report_forms(parser)
 
@@ -89,6 +89,6 @@ def _read(
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-                yield read_encoders(path, config, arguments.sources(options), progress)
+                yield read_encoders(path, config, sources.given(options), progress)
         except (ValueError, OSError) as error:
             complain(error)

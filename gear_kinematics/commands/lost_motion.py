@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands import ExitCode, arguments, bags, sources
 from gear_kinematics.commands.output import Reporter, complain, message_progress
 from gear_kinematics.measurement.answer import Limits
 from gear_kinematics.measurement.compare import groups as grouping
@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N·m',
         help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
     )
-    arguments.add_columns(parser, 'angle', 'torque', 'rotor', 'output', 'time')
+    sources.add_options(parser, 'angle', 'torque', 'rotor', 'output', 'time')
     bags.add_encoders(parser)
     motion = parser.add_argument_group('motion of both encoders')
     motion.add_argument(
@@ -256,6 +256,6 @@ def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Ta
         name,
         config,
         Request(options.rated_torque, corners, options.fit_ratio, options.delay),
-        arguments.sources(options),
+        sources.given(options),
         options.debug,
     )

@@ -12,7 +12,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import MotionState, solve
-from gear_kinematics.kinematics.transforms import apply, frames
+from gear_kinematics.kinematics.transforms import (
+    cam_translation,
+    output_turn,
+    rotation_z,
+    satellite_turn,
+    translation,
+)
 
 Array = NDArray[np.float64]
 
@@ -25,15 +31,21 @@ def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -
     the centre of the satellite and `state.satellite_centre`. It grows with the float64 spacing of
     `rotor_angle`, so pass an angle of few turns.
     """
-    chain = frames(mechanism, rotor_angle, state.satellite_slide, state.arm_slide)
-    by_satellite = chain.oldham_to_stator[..., :3, 3]
-    by_arm = apply(
-        chain.output_to_stator[..., np.newaxis, :, :], chain.oldham_to_output[..., :3, 3]
+    rotor, on_cam, shaft = (
+        rotation_z(angle)[..., np.newaxis, :, :]
+        for angle in (
+            rotor_angle,
+            satellite_turn(mechanism, rotor_angle),
+            output_turn(mechanism, rotor_angle),
+        )
     )
+    satellite = rotor @ (cam_translation(mechanism) @ on_cam)
+    by_satellite = (satellite @ translation(state.satellite_slide, 0.0))[..., :2, 3]  # eq. (11)
+    by_arm = (shaft @ translation(0.0, state.arm_slide))[..., :2, 3]  # eq. (14)
     gaps = (
-        (by_satellite - by_arm)[..., :2],
-        by_satellite[..., :2] - state.oldham_centre,
-        chain.satellite_to_stator[..., :2, 3] - state.satellite_centre,
+        by_satellite - by_arm,
+        by_satellite - state.oldham_centre,
+        satellite[..., :2, 3] - state.satellite_centre,
     )
     distances = [np.hypot(gap[..., 0], gap[..., 1]) for gap in gaps]
     return np.asarray(np.max(distances, axis=0))

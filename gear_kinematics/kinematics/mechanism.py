@@ -77,10 +77,6 @@ class Mechanism:
         """Rotor turns after which every position repeats: the numerator of the ratio."""
         return abs(self.gear_ratio.numerator)
 
-    def rotor_angle(self, output_angle: float) -> float:
-        """φ2 = i φ5 (eq. 5), rad."""
-        return self.gear_ratio.rotor_angle(output_angle)
-
     @property
     def ring_rolling_radius(self) -> float:
         """Radius of the ring gear's rolling circle, m."""

@@ -69,7 +69,7 @@ def split_turns(angle: Any) -> Any:
     Raises:
         ValueError: if a float angle is not finite or too large.
     """
-    # First what is quickly told of a float: the node calls this for every message.
+    # A float is recognised first and fast: the node calls this for every message.
     xp = np if not isinstance(angle, float) and isinstance(angle, np.ndarray) else math
     size = abs(angle) if xp is math else largest(angle)
     if not size <= LARGEST_ANGLE:  # NaN compares false
@@ -126,7 +126,7 @@ class RotorTurns:
     """Follows the rotor's encoder and counts its whole turns.
 
     The position of a multi-turn encoder is used as it is. That of a single-turn encoder wraps once
-    a turn and is unwrapped here; `referenced` then tells whether the number of turns is known. It
+    a turn and is unwrapped here; `referenced` is whether the number of turns is known. It
     is unknown at the start, and after a gap in which the rotor could have turned half a turn or
     more either way from its expected angle; `home` makes it known. While it is unknown, counting
     goes on from the nearest turn.

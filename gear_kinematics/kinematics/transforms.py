@@ -5,8 +5,6 @@ r = [x, y, z, 1]ᵀ (eq. 4). Frames: 1 stator, 2 rotor, 3k satellite, 4k Oldham 
 k, 5 output shaft. All functions broadcast over the shape `(...)` of their arguments.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -34,14 +32,6 @@ def translation(x: ArrayLike, y: ArrayLike, z: ArrayLike = 0.0) -> Array:
     return transform
 
 
-def apply(transform: Array, point: ArrayLike) -> Array:
-    """Coordinates of `point` (..., 3) after the transform (..., 4, 4), eq. (4)."""
-    point = np.asarray(point, dtype=np.float64)
-    extended = np.concatenate([point, np.ones((*point.shape[:-1], 1))], axis=-1)
-    moved: Array = np.einsum('...ij,...j->...i', transform, extended)
-    return moved[..., :3]
-
-
 def cam_translation(mechanism: Mechanism) -> Array:
     """Trans(e u(α_k)): from the rotor's axis to the centres of its cams, (B, 4, 4)."""
     phase = np.array([branch.cam_phase for branch in mechanism.branches])
@@ -62,44 +52,3 @@ def output_turn(mechanism: Mechanism, rotor_angle: ArrayLike) -> Array:
     angle: Array = np.asarray(rotor_angle, dtype=np.float64)
     turn: Array = angle * ratio.denominator / ratio.numerator
     return turn
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Frames:
-    """The transforms between all frames, (..., 4, 4) or, branch by branch, (..., B, 4, 4)."""
-
-    rotor_to_stator: Array
-    """T_21, figs. 5-12."""
-    output_to_stator: Array
-    """T_51."""
-    satellite_to_rotor: Array
-    """T_3k,2."""
-    satellite_to_stator: Array
-    """T_3k,1 = T_21 T_3k,2."""
-    oldham_to_satellite: Array
-    """T_4k,3k."""
-    oldham_to_output: Array
-    """T_4k,5."""
-    oldham_to_stator: Array
-    """T_4k,1 = T_21 T_3k,2 T_4k,3k (eq. 11)."""
-
-
-def frames(
-    mechanism: Mechanism, rotor_angle: ArrayLike, satellite_slide: ArrayLike, arm_slide: ArrayLike
-) -> Frames:
-    """All frames at a rotor angle (...), with the couplings at their slides (..., B)."""
-    rotor_to_stator = rotation_z(rotor_angle)
-    satellite_rotation = rotation_z(satellite_turn(mechanism, rotor_angle))
-    satellite_to_rotor = cam_translation(mechanism) @ satellite_rotation[..., np.newaxis, :, :]
-    satellite_to_stator = rotor_to_stator[..., np.newaxis, :, :] @ satellite_to_rotor
-    oldham_to_satellite = translation(satellite_slide, 0.0)
-    axial = [branch.axial_position for branch in mechanism.branches]
-    return Frames(
-        rotor_to_stator=rotor_to_stator,
-        output_to_stator=rotation_z(output_turn(mechanism, rotor_angle)),
-        satellite_to_rotor=satellite_to_rotor,
-        satellite_to_stator=satellite_to_stator,
-        oldham_to_satellite=oldham_to_satellite,
-        oldham_to_output=translation(0.0, arm_slide, axial),
-        oldham_to_stator=satellite_to_stator @ oldham_to_satellite,
-    )

@@ -103,7 +103,7 @@ def _read_bag(
                 if encoder:
                     data, received = found[encoder].data, found[encoder].received
                     states = decode_joint_states(data, parameters.output_encoder_joint)
-                    lacking = lacking or states.lacking
+                    lacking = lacking or states.missing_joint
                     outputs.append(_measured(states, received, parameters))
         except DamagedBagError as error:
             damage = str(error)

@@ -39,7 +39,7 @@ def require_any(paths: Collection[Path], node: str) -> None:
             given_parameters(path, node)
         except _OtherNodesError as error:
             useless.append(str(error))
-    if useless and len(useless) == len(paths):
+    if paths and len(useless) == len(paths):
         raise ConfigError('; '.join(useless))
 
 
@@ -74,17 +74,12 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
         patterns = [pattern for pattern, _ in blocks]
         there = f'{", ".join(patterns)}{nearest(name, patterns)}'
         raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
-    given: dict[str, Any] = {}
-    for parameters in applying:
-        given |= parameters
-    return given
+    return {key: value for parameters in applying for key, value in parameters.items()}
 
 
 def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
     """The fully qualified name of the node of this name in a file."""
-    patterns = [
-        pattern for pattern, _ in blocks if pattern.rpartition('/')[2] in {node, '*', '**'}
-    ]
+    patterns = [name for name, _ in blocks if name.rpartition('/')[2] in {node, '*', '**'}]
     # A node that is named takes precedence over wildcards.
     patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
     for pattern in patterns:
@@ -131,8 +126,7 @@ class _RosLoader(Loader):
 
 
 _RosLoader.add_constructor(
-    'tag:yaml.org,2002:map',
-    lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True)),
+    'tag:yaml.org,2002:map', lambda loader, node: _Pairs(loader.construct_pairs(node, deep=True))
 )
 
 
@@ -141,14 +135,13 @@ def _blocks(tree: Any, name: str = '') -> Iterator[tuple[str, dict[str, Any]]]:
         if key != 'ros__parameters':
             yield from _blocks(value, f'{name}/{key}' if name.strip('/') else f'{name}{key}')
         elif isinstance(value, _Pairs):
-            yield name, _flatten(value)
+            yield name, dict(_flatten(value))
 
 
-def _flatten(tree: _Pairs, prefix: str = '') -> dict[str, Any]:
-    flat: dict[str, Any] = {}
+def _flatten(tree: _Pairs, prefix: str = '') -> Iterator[tuple[str, Any]]:
+    """Yield the dotted names and values of parameters."""
     for key, value in tree:
         if isinstance(value, _Pairs):
-            flat |= _flatten(value, f'{prefix}{key}.')
+            yield from _flatten(value, f'{prefix}{key}.')
         else:
-            flat[f'{prefix}{key}'] = value
-    return flat
+            yield f'{prefix}{key}', value

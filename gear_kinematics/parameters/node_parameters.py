@@ -37,38 +37,33 @@ class Parameter:
     step: int = 0
     choices: tuple[str, ...] = ()
     read_only: bool = False
-    check: Callable[[Any], object] | None = None
+    check: Callable[[Any], object] = bool
     """Raises ValueError for other faults."""
     kind: type = float
 
-    def fault(self, name: str, value: object) -> str | None:
+    def fault(self, name: str, value: Any) -> str | None:
         """Return the fault of a value, or None."""
-        if type(value) is not self.kind:
+        kind = type(value)
+        if kind is not self.kind:
             return f'{name} must be of type {self.kind.__name__}, not {value!r}'
         if isinstance(value, list) and not all(isinstance(item, str) for item in value):
             return f'{name} must be a list of strings, not {value!r}'
-        if (
-            isinstance(value, (int, float))
-            and self.minimum is not None
-            and self.maximum is not None
-        ):
-            # Written so that NaN is out of range.
-            inside = self.minimum <= value <= self.maximum
+        if self.minimum is not None and self.maximum is not None:
+            inside = self.minimum <= value <= self.maximum  # NaN is not
             if not inside or (self.step and (value - self.minimum) % self.step):
                 steps = f' in steps of {self.step}' if self.step else ''
                 bounds = f'between {self.minimum} and {self.maximum}{steps}'
                 return f'{name} must be {bounds}, not {value!r}'
         return self.other_fault(name, value)
 
-    def other_fault(self, name: str, value: object) -> str | None:
+    def other_fault(self, name: str, value: Any) -> str | None:
         """Return a fault of a value within the type and the bounds, which ROS checks, or None."""
         if self.choices and value not in self.choices:
             return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
-        if self.check:
-            try:
-                self.check(value)
-            except ValueError as error:
-                return f'{name}: {error}'
+        try:
+            self.check(value)
+        except ValueError as error:
+            return f'{name}: {error}'
         return None
 
 
@@ -175,8 +170,7 @@ class NodeParameters:
         """
         path = path or default_config()
         given = given_parameters(path, node)
-        faults = _faults(given, PARAMETERS)
-        if not faults:
+        if not (faults := _faults(given, PARAMETERS)):
             branches = given.get('branches', default_value('branches'))
             faults = _faults(given, branch_parameters(branches))
             faults += unknown_parameters(given, branches)
@@ -285,24 +279,17 @@ def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[st
 
     After the faults, if any, comes the list of the parameters that there are.
     """
-    known = [*PARAMETERS, *branch_parameters(branches)]
-    faults = []
+    known, faults = [*PARAMETERS, *branch_parameters(branches)], []
     for name in names:
         if name in known or _EVERY_NODE.fullmatch(name):
             continue
-        branch, _, field = name.rpartition('.')
-        if branch and field in BRANCH_PARAMETERS:
-            hint = f'; `{branch}` is not in `branches`'
-        else:
-            hint = nearest(name, known)
+        branch, _, key = name.rpartition('.')
+        of_a_branch = branch and key in BRANCH_PARAMETERS
+        hint = f'; `{branch}` is not in `branches`' if of_a_branch else nearest(name, known)
         faults.append(f'unknown parameter `{name}`{hint}')
-    if faults:
-        faults.append(f'there are: {", ".join(known)}')
-    return faults
+    return [*faults, f'there are: {", ".join(known)}'] if faults else []
 
 
 def _faults(given: Mapping[str, Any], known: Mapping[str, Parameter]) -> list[str]:
-    checked = (
-        parameter.fault(name, given[name]) for name, parameter in known.items() if name in given
-    )
+    checked = (known[name].fault(name, given[name]) for name in known if name in given)
     return [fault for fault in checked if fault]

@@ -56,12 +56,7 @@ class InputMonitor:
     _rejected: Counter[str] = field(default_factory=Counter)
 
     def report(self, rotor_input: RotorInput, now: float) -> Report:
-        """Report on the time since the last report.
-
-        Args:
-            rotor_input: the input to report on.
-            now: s.
-        """
+        """Report on an input in the time since the last report, until now."""
         elapsed = now - max(self._reported, self.started)
         counts = Counter(received=rotor_input.received, lost=self.lost, unsent=self.unsent)
         new = counts - self._counts
@@ -108,12 +103,12 @@ class InputMonitor:
 
 @dataclass(slots=True)
 class EncoderMonitor:
-    """Monitors the encoder at the output, and the transmission error."""
+    """Monitors the encoder at the output, and the transmission error; times as above."""
 
     lost: int = 0
     """Inputs that the middleware reported as lost."""
     last_input: float | None = None
-    """Time of the last message, valid or not; s of a steady clock."""
+    """Time of the last message, valid or not."""
     _compared: int = 0
     _lost: int = 0
     _rejected: Counter[str] = field(default_factory=Counter)
@@ -125,13 +120,10 @@ class EncoderMonitor:
         now: float,
         fit: CalibrationFit | None = None,
     ) -> Report | None:
-        """Report on the time since the last report; None until the encoder has sent a message.
+        """Report on an encoder in the time since the last report, until now.
 
-        Args:
-            encoder: the encoder to report on.
-            parameters: of the node, for the limits.
-            now: s.
-            fit: how well the calibration, if any, fits the transmission error.
+        None until it has sent a message. `parameters` have the limits, and `fit` says how well the
+        calibration, if any, fits the transmission error.
         """
         if self.last_input is None:
             return None

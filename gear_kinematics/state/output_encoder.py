@@ -3,7 +3,6 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Sequence
-from operator import attrgetter
 from typing import Any
 
 from gear_kinematics.correction.transmission_error import (
@@ -16,34 +15,22 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
-_DISCARDING = attrgetter(
-    'rotor_joint',
-    'rotor_direction',
-    'rotor_zero',
-    'rotor_encoder',
-    'max_rotor_speed',
-    'max_rotor_acceleration',
-    'output_encoder_joint',
-    'output_encoder_direction',
-    'output_encoder_zero',
-    'transmission_error_window',
-    'transmission_error_max_gap',
-    'transmission_error_travel',
+_UNRELATED = dict.fromkeys(
+    [
+        'input_timeout',
+        'transmission_error_limit',
+        'output_joint',
+        'frame_prefix',
+        'home_angle',
+        'calibration',
+    ]
 )
-"""The parameters whose change makes earlier errors useless."""
+"""The parameters that can change without any effect on the measured errors."""
 
 
 def measured_angle(parameters: NodeParameters, position: Any) -> Any:
     """The measured output angle at a position of its encoder, rad; floats or arrays."""
     return parameters.output_encoder_direction * (position - parameters.output_encoder_zero)
-
-
-def comparison(parameters: NodeParameters) -> TransmissionError:
-    """Create a comparison of measured with ideal output angles, without samples."""
-    return TransmissionError(
-        max_gap=round(parameters.transmission_error_max_gap * SECOND),
-        travel=parameters.transmission_error_travel,
-    )
 
 
 class OutputEncoder:
@@ -56,12 +43,15 @@ class OutputEncoder:
         self._parameters = parameters
         self._reader = JointReader(parameters.output_encoder_joint)
         self._ratio = parameters.gear.gear_ratio
-        self.comparison = comparison(parameters)
+        self.comparison = TransmissionError(
+            max_gap=round(parameters.transmission_error_max_gap * SECOND),
+            travel=parameters.transmission_error_travel,
+        )
         """Counts the measured angles that were compared, and those that were not by cause."""
 
     def fits(self, parameters: NodeParameters) -> bool:
         """Whether the errors so far are also those with other parameters."""
-        return bool(_DISCARDING(parameters) == _DISCARDING(self._parameters))
+        return parameters.values() | _UNRELATED == self._parameters.values() | _UNRELATED
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message.

@@ -69,7 +69,7 @@ class RotorInput:
         """Stamps with 10⁹ or more nanoseconds, which are carried over to the seconds."""
         self.resets = 0
         self.missing_joint = ''
-        """Joints of the first message that lacks the rotor's, if any: see `wire.joint_reader`."""
+        """Which joints there are in the first message without the rotor's, if any."""
         self.last: RotorSample | None = None
         self._parameters = parameters
         self._reader = JointReader(parameters.rotor_joint)
@@ -88,7 +88,9 @@ class RotorInput:
     def parameters(self, parameters: NodeParameters) -> None:
         self._turns.max_speed = parameters.max_rotor_speed
         self._turns.max_acceleration = parameters.max_rotor_acceleration
-        if _encoder(parameters) != _encoder(self._parameters):
+        before = self._parameters
+        joint, kind = parameters.rotor_joint, parameters.rotor_encoder
+        if (joint, kind) != (before.rotor_joint, before.rotor_encoder):
             self._turns.single_turn = parameters.single_turn
             self._turns.reset()
             self._reader = JointReader(parameters.rotor_joint)
@@ -172,7 +174,7 @@ class RotorInput:
             if count := int(np.count_nonzero(faulty & usable)):
                 self.rejected[cause] += count
             usable &= ~faulty
-        self.missing_joint = self.missing_joint or states.lacking
+        self.missing_joint = self.missing_joint or states.missing_joint
         self.unnormalised_stamps += int(np.count_nonzero(states.unnormalised & usable))
         rows = np.flatnonzero(usable)
         stamps, values = states.stamp[rows], states.values[rows]
@@ -273,7 +275,3 @@ class RotorInput:
 
 def _number_or_none(value: float) -> float | None:
     return None if math.isnan(value) else value
-
-
-def _encoder(parameters: NodeParameters) -> tuple[str, str]:
-    return parameters.rotor_joint, parameters.rotor_encoder

@@ -21,7 +21,7 @@ from gear_kinematics.wire.cdr import (
     joint_state_layout,
     pose_array_layout,
 )
-from gear_kinematics.wire.joint_reader import missing_joint
+from gear_kinematics.wire.joint_reader import describe_missing
 
 Array = NDArray[Any]
 FIELDS = ('position', 'velocity', 'effort')
@@ -43,8 +43,8 @@ class JointStates:
     """(n, 3): whether the message has the joint's position, velocity and effort."""
     values: Array
     """(n, 3), float64: position, velocity, effort; NaN where not present."""
-    lacking: str
-    """Which joints there are in a message that lacks this one, if any."""
+    missing_joint: str
+    """Which joints there are in the first message without this one; '' if it is in all."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -69,21 +69,21 @@ def decode_joint_states(messages: Sequence[bytes], joint: str) -> JointStates:
     stamp, unnormalised = np.zeros(count, np.int64), np.zeros(count, bool)
     malformed, joint_found = np.ones(count, bool), np.zeros(count, bool)
     present, values = np.zeros((count, 3), bool), np.full((count, 3), np.nan)
-    lacking = ''
+    without = ''
     for rows, layout, table in _tables(messages, joint_state_layout):
         malformed[rows] = False
         stamp[rows], nanoseconds = _stamps(table, layout)
         unnormalised[rows] = nanoseconds >= SECOND
         index = joint_index(layout, joint.encode())
         if index is None:
-            lacking = lacking or missing_joint(joint, messages[rows[0]])
+            without = without or describe_missing(joint, messages[rows[0]])
             continue
         joint_found[rows] = True
         for field, (offset, size) in enumerate(layout.arrays):
             if index < size:
                 present[rows, field] = True
                 values[rows, field] = _doubles(table, layout, offset + 8 * index, 1)[:, 0]
-    return JointStates(stamp, unnormalised, malformed, joint_found, present, values, lacking)
+    return JointStates(stamp, unnormalised, malformed, joint_found, present, values, without)
 
 
 def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseArrays:

@@ -151,13 +151,8 @@ class _Reader:
             raise MalformedMessageError('the message is cut off')
 
     def layout(self) -> Layout:
-        return Layout(
-            self._order,
-            len(self._data),
-            tuple(self._texts),
-            tuple(self._arrays),
-            tuple(self._fixed),
-        )
+        texts, arrays, fixed = tuple(self._texts), tuple(self._arrays), tuple(self._fixed)
+        return Layout(self._order, len(self._data), texts, arrays, fixed)
 
 
 class Template:
@@ -215,15 +210,13 @@ class Template:
 class JointStateTemplate(Template):
     """A sensor_msgs/JointState of the given joints: encode(stamp, positions, ...)."""
 
-    def __init__(
-        self, names: Sequence[str], *, velocity: bool, effort: bool, position: bool = True
-    ) -> None:
+    def __init__(self, names: Sequence[str], *, velocity: bool, effort: bool) -> None:
         """Lay the message out; `encode` takes only the arrays that are present."""
         super().__init__(frame_id='')
         self._count(len(names))
         for name in names:
             self._string(name)
-        for present in (position, velocity, effort):
+        for present in (True, velocity, effort):
             count = len(names) if present else 0
             self._count(count)
             self._doubles(count)

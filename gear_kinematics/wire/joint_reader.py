@@ -39,12 +39,7 @@ class RejectedInputError(ValueError):
     """A message without an output; the text is one of the causes above, which are counted."""
 
     def __init__(self, cause: str, describe: Callable[[], str] = str) -> None:
-        """Note the cause.
-
-        Args:
-            cause: the text.
-            describe: returns what else there is to say.
-        """
+        """Note the cause, and a function that returns what else there is to say."""
         super().__init__(cause)
         self._describe = describe
 
@@ -54,8 +49,8 @@ class RejectedInputError(ValueError):
         return self._describe()
 
 
-def missing_joint(joint: str, data: bytes) -> str:
-    """Describe the joints of a message that lacks one, with the name that is nearest.
+def describe_missing(joint: str, data: bytes) -> str:
+    """Which joints there are in a message without the wanted one, and which name is nearest.
 
     Args:
         joint: the missing one; '' for the only one.
@@ -120,7 +115,7 @@ class JointReader:
         if position is None:
             if self._fault == JOINT_MISSING:
                 joint = self._joint.decode(errors='backslashreplace')
-                raise RejectedInputError(JOINT_MISSING, partial(missing_joint, joint, data))
+                raise RejectedInputError(JOINT_MISSING, partial(describe_missing, joint, data))
             raise RejectedInputError(self._fault)
         if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
             finite = math.isfinite(position)

@@ -1,22 +1,17 @@
 """The matrix method: against the closed form, with which it shares no formula, and the oracle."""
 
-import inspect
 import math
 from dataclasses import fields
 
 import numpy as np
-import oracle
 import pytest
 from hypothesis import given
 from properties import (
     LENGTHS,
     assert_close,
-    assert_within,
     field_names,
     mechanisms,
     motions,
-    position_errors,
-    samples,
     speed_up,
 )
 
@@ -51,34 +46,6 @@ def test_closed_form_and_matrix_method_agree_in_every_field(mechanism, values):
     assert compared == set(field_names(closed))
 
 
-@pytest.mark.slow
-@given(mechanisms(), samples(3.0))
-def test_positions_agree_with_the_oracle(mechanism, angles):
-    state = matrix_method.solve(mechanism, angles)
-    exact = [oracle.rotor_angle_of(angle) for angle in angles.flat]
-    assert_within(position_errors(state, mechanism, exact), 4e-15 * (1.0 + speed_up(mechanism)))
-
-
-@pytest.mark.slow
-@given(mechanisms(), samples(1e6))
-def test_turn_angle_is_within_half_a_turn(mechanism, angles):
-    state = matrix_method.solve(mechanism, angles)
-    assert np.all(np.abs(state.output_turn_angle) <= math.pi + np.spacing(np.abs(angles) * 800.0))
-
-
-@pytest.mark.slow
-@given(mechanisms(), motions())
-def test_batches_equal_single_samples(mechanism, values):
-    state = matrix_method.solve(mechanism, *values)
-    fastest = 1.0 + speed_up(mechanism) * 100.0
-    for index in np.ndindex(values[0].shape):
-        single = matrix_method.solve(mechanism, *(value[index] for value in values))
-        for field in fields(state):
-            # LAPACK and BLAS may take another path for a batch, so not bit by bit.
-            tolerance = 1e-13 * fastest**2 * max(mechanism.eccentricity, 1.0)
-            assert_close(getattr(single, field.name), getattr(state, field.name)[index], tolerance)
-
-
 def test_inputs_broadcast_and_results_are_read_only(mechanism):
     state = matrix_method.solve(mechanism, np.zeros((3, 1)), np.ones(2))
     whole = matrix_method.solve(mechanism, np.zeros((3, 2)), np.ones((3, 2)))
@@ -100,19 +67,3 @@ def test_angles_that_are_not_finite_give_nan(actuator, bad):
             array = getattr(state, name)
             np.testing.assert_array_equal(array[:1], getattr(good, name))
             assert np.all(np.isnan(array[1])), name
-
-
-@pytest.mark.parametrize('solve', [motion.solve, matrix_method.solve])
-def test_both_methods_are_called_alike(solve):
-    empty = inspect.Parameter.empty
-    positional = [
-        (parameter.name, parameter.default)
-        for parameter in inspect.signature(solve).parameters.values()
-        if parameter.kind is inspect.Parameter.POSITIONAL_OR_KEYWORD
-    ]
-    assert positional == [
-        ('mechanism', empty),
-        ('rotor_angle', empty),
-        ('rotor_velocity', 0.0),
-        ('rotor_acceleration', 0.0),
-    ]

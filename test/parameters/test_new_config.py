@@ -10,12 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.parameters.new_config import (
-    new_config,
-    start_command,
-    unused_name,
-    write_new,
-)
+from gear_kinematics.parameters.new_config import new_config, start_command, unused_name, write_new
 
 
 def test_file_is_the_default_one_with_the_joint_of_the_driver(tmp_path):

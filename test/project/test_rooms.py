@@ -263,6 +263,26 @@ def test_rooms_import_only_rooms_before_them():
         before.append(room)
 
 
+@pytest.mark.parametrize(
+    ('arguments', 'rooms'),
+    [
+        (['--version'], ['ros']),  # for the shared memory, before anything else
+        (['validate', 'none'], ['commands', 'ros', 'validation', *ROOMS['validation']]),
+    ],
+)
+def test_programs_load_no_room_that_they_do_not_use(arguments, rooms):
+    code = (
+        'import sys; from gear_kinematics.__main__ import gearkin; gearkin(); '
+        'print(*{name.split(".")[1] for name in sys.modules if name.startswith("gear_kin")'
+        ' and "." in name}, "rclpy" in sys.modules, "scipy" in sys.modules)'
+    )
+    command = [sys.executable, '-c', code, *arguments]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    *loaded, rclpy, scipy = done.stdout.splitlines()[-1].split()
+    assert set(loaded) - {'__main__', 'share'} == set(rooms)
+    assert (rclpy, scipy) == ('False', 'False')
+
+
 def test_imports_within_measurement_point_one_way(imports):
     own = 'gear_kinematics.measurement'
     for path, names in imports.items():
@@ -332,8 +352,8 @@ def test_imports_within_bag_point_one_way(imports):
 
 
 def test_commands_import_nothing_of_each_other(imports):
-    shared = ('arguments', 'bags', 'calibrations', 'extras', 'origin', 'output', 'paper_size')
-    shared += ('targets',)
+    shared = ('arguments', 'bags', 'calibrations', 'extras', 'origin', 'output')
+    shared += ('paper_size', 'sources', 'targets')
     commands = {Path(path).stem for path in imports if path.startswith('commands/')}
     commands -= {'__init__', 'cli', *shared}
     assert {'validate', 'compute', 'plot'} < commands

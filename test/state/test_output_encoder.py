@@ -76,12 +76,6 @@ def test_error_is_the_measured_minus_the_ideal_angle(direction, zero):
     assert bench.encoder.comparison.unmatched == {'no ideal angle before': 1}
 
 
-def test_nothing_is_reported_without_an_encoder(bench):
-    for k in range(3):
-        assert not bench.turn(START + k * MS, 1.0)
-    assert bench.report() is None
-
-
 def test_nothing_is_compared_across_a_gap(bench):
     bench.measure(START, 0.0)
     bench.turn(START, 0.0)
@@ -90,6 +84,20 @@ def test_nothing_is_compared_across_a_gap(bench):
     assert len(bench.measure(START + 150 * MS, 0.0)) == 0
     assert len(bench.turn(START + 201 * MS, 0.0)) == 0
     assert bench.encoder.comparison.unmatched['gap of the ideal angle'] == 1
+
+
+@pytest.mark.parametrize(
+    ('change', 'fits'),
+    [
+        ({'transmission_error_limit': 1.0, 'frame_prefix': 'left_', 'home_angle': 2.0}, True),
+        ({'rotor_zero': 0.5}, False),
+        ({'max_rotor_speed': 1.0}, False),
+        ({'output_encoder_direction': -1}, False),
+        ({'transmission_error_window': 1.0}, False),
+    ],
+)
+def test_errors_fit_parameters_that_measure_the_same(bench, change, fits):
+    assert bench.encoder.fits(replace(SETTINGS, **change)) is fits
 
 
 def test_joint_is_looked_up_by_its_name():
@@ -101,14 +109,6 @@ def test_joint_is_looked_up_by_its_name():
     assert sample.error == pytest.approx(0.25)
     assert bench.encoder.received == 2
     assert bench.encoder.rejected == {'joint missing': 1}
-
-
-def test_message_without_a_stamp_has_that_of_the_clock(bench):
-    bench.measure(START, 0.0)
-    bench.turn(START, 0.0)
-    bench.turn(START + 2 * MS, 0.0)
-    [sample] = bench.measure(0, 0.5, now=START + MS)
-    assert (sample.stamp, sample.error) == (START + MS, 0.5)
 
 
 def test_window_is_reset_when_the_clock_is_set_back(bench):
@@ -151,16 +151,15 @@ def test_report_has_the_figures_of_the_window(bench):
     assert values['received'] == '400'
     assert values['samples'] == values['compared'] == '400'
     assert not any(key.startswith(('rejected', 'not compared')) for key in values)
-
-
-def test_error_above_the_limit_is_a_warning(bench):
-    swing(bench, 0.0016)
-    report = bench.report()
-    assert (report.level, report.message) == (WARN, 'peak to peak 0.0032 rad')
+    bench.measure(START + 400 * MS, 0.001)
+    bench.turn(START + 400 * MS, 0.0)
+    report = bench.report(transmission_error_limit=0.0019)
+    assert (report.level, report.message) == (WARN, 'peak to peak 0.002 rad')
 
 
 @pytest.mark.parametrize('before', [True, False], ids=['after a report', 'at once'])
 def test_silence_is_a_warning_and_leaves_no_figures(bench, before):
+    assert bench.report() is None
     swing(bench, 0.001)
     if before:
         bench.report()

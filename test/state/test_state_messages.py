@@ -11,7 +11,7 @@ import pytest
 from geometry_msgs.msg import PoseArray
 from hypothesis import example, given
 from hypothesis import strategies as st
-from live import SECOND, START, rotor_bytes
+from live import SECOND, rotor_bytes
 from properties import mechanisms, numbers_of
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
@@ -26,17 +26,13 @@ from gear_kinematics.kinematics import (
     split_turns,
 )
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.rotor_input import RotorInput, RotorSamples
+from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import StateMessages, state_messages
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
 PARAMETERS = replace(NodeParameters.load(), rotor_joint='')
-TYPES = {
-    'output_state': JointState,
-    'body_poses': PoseArray,
-    'mechanism_joint_states': JointState,
-}
+TYPES = {'output_state': JointState, 'body_poses': PoseArray, 'mechanism_joint_states': JointState}
 DIGITS = 1e-12  # of the eccentricity, of a radian within the turn
 LARGEST_ANGLE = 2**51 * math.tau  # rad: the node takes no position beyond
 OUTPUTS = ('output_state', 'body_poses')
@@ -112,19 +108,6 @@ def test_messages_hold_the_motion(mechanism, rotor_angle, velocity):
     assert_joint_states(joints, derivatives, numbers, velocity=True)
 
 
-@pytest.mark.parametrize('turns', [1, -1, 10**6, -(10**10) - 7, 10**14 + 3])
-@pytest.mark.parametrize('angle', [0.0, 0.4, -3.1])
-def test_bodies_keep_their_places_after_any_number_of_turns(mechanism, turns, angle):
-    numbers = numbers_of(mechanism)
-    sample = RotorSample(STAMP, RotorPosition(turns, angle), None, None)
-    state, poses, _ = encode(mechanism, sample)
-    exact = oracle.mp.mpf(angle) + 2 * oracle.mp.pi * turns
-    expected = oracle.expected_motion(numbers, exact)
-    assert_poses(poses.poses, expected, numbers)
-    spacing = 2.0 * math.ulp(float(expected.output_angle))
-    assert oracle.angle_error(state.position[0], expected.output_angle) <= spacing
-
-
 def test_default_order_of_the_poses(actuator):
     # By hand at φ2 = 0: cams at (0, ±e), and there the couplings too, as sin β is 0.
     _, message, _ = encode(actuator, sample_at(0.0))
@@ -135,13 +118,6 @@ def test_default_order_of_the_poses(actuator):
         strict=True,
     ):
         assert place == pytest.approx(expected, abs=1e-15)
-    # By hand at a quarter turn: cams at (∓e, 0), and the couplings elsewhere.
-    _, message, _ = encode(actuator, sample_at(0.5 * math.pi))
-    places = [(pose.position.x, pose.position.y) for pose in message.poses]
-    assert places[0] == pytest.approx((-0.0011, 0.0), abs=1e-15)
-    assert places[1] == pytest.approx((0.0011, 0.0), abs=1e-15)
-    beta = 0.5 * math.pi * (1.0 + 1.0 / 19.0)
-    assert math.hypot(*places[2]) == pytest.approx(abs(0.0011 * math.cos(beta)), abs=1e-15)
 
 
 @pytest.mark.parametrize('velocity', [None, 3.8])
@@ -165,11 +141,6 @@ def test_only_selected_topics_are_encoded(actuator, topics):
     assert list(messages.encode(sample, topics)) == [(topic, every[topic]) for topic in topics]
 
 
-def test_power_is_the_same_on_both_sides(mechanism):
-    state, _, _ = encode(mechanism, sample_at(1.0, 3.0, 0.25))
-    assert state.velocity[0] * state.effort[0] == pytest.approx(3.0 * 0.25, rel=1e-14)
-
-
 def test_names_and_frames_carry_the_prefix(actuator):
     names = {'output_joint': 'shoulder', 'frame_prefix': 'left/'}
     state, poses, joints = encode(actuator, sample_at(0.0), names)
@@ -181,27 +152,11 @@ def test_names_and_frames_carry_the_prefix(actuator):
     ]  # fmt: skip
 
 
-def test_frame_of_the_poses_is_the_stator(actuator):
-    _, poses, _ = encode(actuator, sample_at(0.0))
-    assert poses.header.frame_id == 'stator'
-
-
 @pytest.mark.parametrize('stamp', [0, 1, STAMP, -1, 2**31 * 10**9 - 1])
 def test_every_message_has_the_stamp_of_the_sample(actuator, stamp):
     for message in encode(actuator, sample_at(0.0)._replace(stamp=stamp)):
         header = message.header.stamp
         assert (header.sec, header.nanosec) == divmod(stamp, 10**9)
-
-
-@given(
-    mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(width=64, allow_nan=False)
-)
-def test_no_number_is_too_large_to_be_encoded(mechanism, position, velocity):
-    if math.isinf(velocity):
-        velocity = math.copysign(1.7e308, velocity)
-    state, poses, _ = encode(mechanism, sample_at(position, velocity, velocity))
-    assert math.isfinite(state.position[0])
-    assert len(poses.poses) == 2 * len(mechanism.branches)
 
 
 @given(mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(-1e4, 1e4))
@@ -218,7 +173,19 @@ def test_messages_have_the_bits_of_a_batch(mechanism, position, velocity):
     assert joints.velocity[slides].tolist() == batch.satellite_slide_velocity[0].tolist()
 
 
+@given(mechanisms(), st.floats(-LARGEST_ANGLE, LARGEST_ANGLE), st.floats(-1e300, 1e300))
+def test_no_number_is_too_large_to_be_encoded(mechanism, position, rate):
+    state, poses, _ = encode(mechanism, sample_at(position, rate, rate))
+    assert math.isfinite(state.position[0])
+    assert len(poses.poses) == 2 * len(mechanism.branches)
+
+
 rates = st.none() | st.floats(-1e300, 1e300)
+CORRECTIONS = st.tuples(
+    st.floats(-0.1, 0.1), st.floats(-2.0, 2.0), st.floats(0.0, 0.1), st.just(0.0)
+)
+CORRECTED = ('corrected_state', 'corrected_interval')
+NONE = (0.0, 0.0, 0.0, 0.0)
 
 
 @pytest.mark.slow
@@ -230,26 +197,40 @@ rates = st.none() | st.floats(-1e300, 1e300)
             st.floats(-LARGEST_ANGLE, LARGEST_ANGLE) | st.floats(-1e3, 1e3),
             rates,
             rates,
+            CORRECTIONS,
         ),
         max_size=20,
     ),
     st.sampled_from([1, -1]),
 )
-@example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0)] * 2, -1)
-@example(Mechanism(2, 1, 1.0, (Branch('a'),)), [(1, 0.0, None, None), (1, -0.0, None, None)], -1)
-def test_outputs_of_many_samples_are_those_of_each(mechanism, inputs, direction):
+@example(Mechanism(80, 76, 0.0011, (Branch('a'),)), [(1, 0.0, 0.0, 0.0, NONE)] * 2, -1)
+@example(
+    Mechanism(2, 1, 1.0, (Branch('a'),)),
+    [(1, 0.0, None, None, NONE), (1, -0.0, None, None, NONE)],
+    -1,
+)
+def test_messages_of_many_samples_are_those_of_each(mechanism, inputs, direction):
     """To the last bit, from samples of `RotorInput`, which have NaN instead of None."""
     settings = replace(PARAMETERS, rotor_direction=direction)
+    inputs = sorted(inputs, key=itemgetter(0))
     messages = [
         rotor_bytes(stamp, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both))
-        for stamp, angle, *both in sorted(inputs, key=itemgetter(0))
+        for stamp, angle, *both, _ in inputs
     ]
     one_by_one, at_once = RotorInput(settings), RotorInput(settings)
     states = StateMessages(mechanism, **NAMES)
-    samples = [one_by_one.accept(data, lambda: 1) for data in messages]
-    expected = [dict(states.encode(sample, OUTPUTS)) for sample in samples]
-    found = states.encode_outputs(at_once.accept_batch(messages, [1] * len(messages)))
-    assert found == {topic: [each[topic] for each in expected] for topic in OUTPUTS}
+    corrections = [Correction(*correction) for *_, correction in inputs]
+    each = [one_by_one.accept(data, lambda: 1) for data in messages]
+    samples = at_once.accept_batch(messages, [1] * len(messages))
+    ideal = [dict(states.encode(sample, OUTPUTS)) for sample in each]
+    found = states.encode_outputs(samples)
+    assert found == {topic: [one[topic] for one in ideal] for topic in OUTPUTS}
+    corrected = [
+        dict(states.encode_corrected(*pair)) for pair in zip(each, corrections, strict=True)
+    ]
+    columns = Correction(*np.reshape(corrections, (-1, 4)).T)
+    found = states.encode_corrections(samples, columns)
+    assert found == {topic: [one[topic] for one in corrected] for topic in CORRECTED}
 
 
 @pytest.mark.parametrize(('velocity', 'effort'), [(3.0, -0.5), (None, 0.25), (2.0, None)])
@@ -264,14 +245,6 @@ def test_of_a_gear_with_only_a_ratio_there_is_the_output_alone(velocity, effort)
     rates = [] if velocity is None else [pytest.approx(-velocity * 3 / 58, rel=1e-15)]
     torques = [] if effort is None else [pytest.approx(-effort * 58 / 3, rel=1e-15)]
     assert (list(state.velocity), list(state.effort)) == (rates, torques)
-    columns = ([value] for value in (*sample.position, velocity, effort))
-    samples = RotorSamples(
-        np.array([7]),
-        *(np.array(column, float) for column in columns),
-        *(np.zeros(1, np.int64) for _ in range(3)),
-        np.zeros(0, np.int64),
-    )
-    assert messages.encode_outputs(samples) == {'output_state': [data]}
 
 
 @pytest.mark.parametrize('name', ['', 'a\nb'])
@@ -279,12 +252,6 @@ def test_of_a_gear_with_only_a_ratio_there_is_the_output_alone(velocity, effort)
 def test_name_that_is_no_joint_is_refused_for_every_gear(name, ratio):
     with pytest.raises(ValueError, match='output_joint'):
         state_messages(replace(PARAMETERS, output_joint=name, gear_ratio=ratio))
-
-
-CORRECTIONS = st.tuples(
-    st.floats(-0.1, 0.1), st.floats(-2.0, 2.0), st.floats(0.0, 0.1), st.just(0.0)
-)
-CORRECTED = ('corrected_state', 'corrected_interval')
 
 
 @given(mechanisms(), st.floats(-1e3, 1e3), rates, rates, CORRECTIONS)
@@ -296,6 +263,9 @@ def test_corrected_state_is_the_output_state_and_the_correction(
     [(_, ideal)] = states.encode(sample, ['output_state'])
     encoded = dict(states.encode_corrected(sample, Correction(*correction)))
     assert tuple(encoded) == CORRECTED
+    for topic, data in encoded.items():  # or only one of them
+        [alone] = states.encode_corrected(sample, Correction(*correction), [topic])
+        assert alone == (topic, data)
     ideal, corrected, interval = (
         deserialize_message(data, JointState) for data in (ideal, *encoded.values())
     )
@@ -309,33 +279,3 @@ def test_corrected_state_is_the_output_state_and_the_correction(
     assert list(interval.position) == [half_width]
     assert not interval.velocity
     assert not interval.effort
-
-
-@pytest.mark.parametrize('topics', [[], ['corrected_state'], ['corrected_interval']])
-def test_only_selected_topics_of_the_correction_are_encoded(actuator, topics):
-    states = StateMessages(actuator, **NAMES)
-    correction = Correction(1e-3, 0.0, 1e-4, 0.0)
-    assert [topic for topic, _ in states.encode_corrected(sample_at(1.0), correction, topics)] == (
-        topics
-    )
-
-
-@given(st.lists(st.tuples(st.floats(-1e3, 1e3), rates, rates, CORRECTIONS), max_size=20))
-def test_corrections_of_many_samples_are_those_of_each(actuator, inputs):
-    messages = [
-        rotor_bytes(
-            START + k, ['rotor'], [angle], *([] if rate is None else [rate] for rate in both)
-        )
-        for k, (angle, *both, _) in enumerate(inputs)
-    ]
-    one_by_one, at_once = RotorInput(PARAMETERS), RotorInput(PARAMETERS)
-    states = StateMessages(actuator, **NAMES)
-    corrections = [Correction(*correction) for *_, correction in inputs]
-    expected = [
-        dict(states.encode_corrected(one_by_one.accept(data, lambda: 1), correction))
-        for data, correction in zip(messages, corrections, strict=True)
-    ]
-    samples = at_once.accept_batch(messages, [1] * len(messages))
-    columns = Correction(*np.reshape(corrections, (-1, 4)).T)
-    found = states.encode_corrections(samples, columns)
-    assert found == {topic: [each[topic] for each in expected] for topic in CORRECTED}
