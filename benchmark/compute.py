@@ -18,13 +18,12 @@ from pathlib import Path
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from validation import compare, repeated
 
-from gear_kinematics.bag import Bag, BagWriter, in_batches
+from gear_kinematics.bag import Bag, BagWriter
 from gear_kinematics.bag.compute import compute
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _ROTOR = '/rotor_state'
-_BATCH = 1024  # messages
 
 
 def main() -> None:
@@ -81,7 +80,7 @@ def _copy(storage: str, source: Path, target: Path) -> None:
     with Bag(source) as bag, BagWriter(target, storage) as writer:
         for topic in bag.topics:
             writer.copy_topic(bag, topic)
-        for batch in in_batches(bag.messages(bag.topics), _BATCH):
+        for batch in bag.batches(bag.topics):
             writer.write_all(batch)
 
 

@@ -9,10 +9,9 @@ from gear_kinematics.bag.reading import (
     Bag,
     ReportProgress,
     TopicMessages,
-    in_batches,
-    sort_by_topic,
+    by_topic,
 )
-from gear_kinematics.bag.storage import Message
+from gear_kinematics.bag.storage import Message, in_batches
 from gear_kinematics.bag.topics import Topic
 from gear_kinematics.bag.writing import BagWriter, LiveBagWriter
 
@@ -27,6 +26,6 @@ __all__ = [
     'Topic',
     'TopicError',
     'TopicMessages',
+    'by_topic',
     'in_batches',
-    'sort_by_topic',
 ]

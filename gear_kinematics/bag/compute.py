@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress, in_batches
+from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
@@ -24,26 +24,17 @@ from gear_kinematics.wire.topics import (
     TOPICS,
 )
 
-_BATCH = 1024  # messages
 _TOPICS = Topics()
 
 
 @dataclass(frozen=True, slots=True)
 class ComputeResult:
-    """Numbers of messages."""
+    """What was computed, from which messages."""
 
-    received: int
-    """Messages on the rotor topic."""
+    rotor_input: RotorInput
+    """Has counted the messages on the rotor topic, and those that were rejected."""
     computed: int
     """Messages written on each output topic."""
-    rejected: Mapping[str, int]
-    """Rotor messages without an output, by cause."""
-    mostly_rejected: bool
-    """Whether more rotor messages were rejected than accepted."""
-    missing_joint: str
-    """Which joints there are, if some rotor messages lack the rotor's; otherwise empty."""
-    zero_stamps: int
-    """Rotor messages without a stamp, whose outputs have their time of reception."""
     copied: int
     """Messages copied from other topics."""
     left_out: tuple[str, ...]
@@ -84,7 +75,7 @@ def compute(
         files: contents of further files of the target, by name.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
-        progress: called after each batch; the total is known if all topics are read.
+        progress: called after each batch; the total counts all topics of the bag.
 
     Raises:
         BagError: if the source lacks a topic, is damaged or has no valid rotor message, or if the
@@ -115,8 +106,7 @@ def compute(
             writer.add_topic(topic, message_type)
         for name, topic in {ROTOR_STATE: rotor_topic, **topic_of}.items():
             writer.name_topic(name, topic)
-        total = source.message_count if topics is None else None
-        for batch in in_batches(source.messages({*kept, *outputs}), _BATCH, progress, total):
+        for batch in source.batches({*kept, *outputs}, progress):
             messages = [message for message in batch if message[0] not in outputs]
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
             samples = rotor_input.accept_batch(
@@ -140,12 +130,8 @@ def compute(
         if not computed:
             raise BagError(_nothing_computed(source, rotor_topic, rotor_input))
     return ComputeResult(
-        rotor_input.received,
+        rotor_input,
         computed,
-        dict(rotor_input.rejected),
-        rotor_input.mostly_rejected,
-        rotor_input.missing_joint,
-        rotor_input.zero_stamps,
         copied,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
         undefined=tuple(topic.name for topic in written if not topic.syntax),

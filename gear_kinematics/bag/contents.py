@@ -149,7 +149,8 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
     custom = information.get('custom_data') or {}
     if not isinstance(custom, dict):
         raise ValueError('custom_data is no mapping')  # noqa: TRY004, about data on disk
-    return Contents(files, topics, message_count, {str(k): str(v) for k, v in custom.items()})
+    named = {name: text for name, text in custom.items() if isinstance(text, str)}
+    return Contents(files, topics, message_count, named)
 
 
 def _listed_topic(known: Any) -> Topic:

@@ -13,10 +13,13 @@ from dataclasses import dataclass
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, TypeVar
 
+from gear_kinematics.bag.errors import cause
+
 _TRIES = 3
 """Attempts at a recording whose worker dies."""
 _CONNECT_TIMEOUT = 10.0  # s
 _PATIENCE = 60.0  # s to wait for a cluster without workers
+_DIED = 'its worker died repeatedly'
 
 Task = TypeVar('Task')
 Report = TypeVar('Report')
@@ -47,64 +50,49 @@ def on_this_machine(
     """
     left = list(tasks)
     while left:
-        lost = []
-        for task, report in _in_a_pool(work, left, jobs):
-            if report:
-                yield task, report
-            else:
-                lost.append(task)
+        done = set[int]()
+        for number, report in _in_a_pool(work, left, jobs):
+            done.add(number)
+            yield left[number], report
         # A process that dies ends its pool. It was working on one of the first unfinished
         # recordings; to find out on which, each of them gets a pool of its own.
-        numbers = {id(task): number for number, task in enumerate(left)}
-        lost.sort(key=lambda task: numbers[id(task)])
-        for task in lost[:jobs]:
-            yield task, _tried_alone(work, task) or _lost(work, task)
-        left = lost[jobs:]
+        left = [task for number, task in enumerate(left) if number not in done]
+        for task in left[:jobs]:
+            yield task, _in_pools_of_its_own(work, task)
+        left = left[jobs:]
 
 
-def _tried_alone(work: Work[Task, Report], task: Task) -> Report | None:
+def _in_pools_of_its_own(work: Work[Task, Report], task: Task) -> Report:
     for _ in range(_TRIES - 1):
         for _, report in _in_a_pool(work, [task], jobs=1):
-            if report:
-                return report
-    return None
+            return report
+    return work.lost(task, _DIED)
 
 
 def _in_a_pool(
     work: Work[Task, Report], tasks: Sequence[Task], jobs: int
-) -> Iterator[tuple[Task, Report | None]]:
-    """Yield each task with its report, or None if a process died."""
+) -> Iterator[tuple[int, Report]]:
+    """Yield the reports by the numbers of their tasks; those of a pool that died are missing."""
     # Forking would copy the threads of a progress bar in an arbitrary state.
     context = multiprocessing.get_context('spawn')
     others = multiprocessing.active_children()
+    futures = dict[concurrent.futures.Future[Report], int]()
     with (
-        _current_folder_shunned(),
+        _without_current_folder(),
         concurrent.futures.ProcessPoolExecutor(jobs, context, _end_with_parent) as pool,
     ):
         try:
-            with _interrupts_blocked():
-                futures = {_submit(pool, work, task): task for task in tasks}
+            with _interrupts_blocked(), suppress(BrokenProcessPool):
+                for number, task in enumerate(tasks):
+                    futures[pool.submit(work.run, task)] = number
             for future in concurrent.futures.as_completed(futures):
-                try:
+                with suppress(BrokenProcessPool):
                     yield futures[future], future.result()
-                except BrokenProcessPool:
-                    yield futures[future], None
         except BaseException:  # the remaining reports are not wanted
             for process in multiprocessing.active_children():
                 if process not in others:
                     process.terminate()
             raise
-
-
-def _submit(
-    pool: concurrent.futures.Executor, work: Work[Task, Report], task: Task
-) -> concurrent.futures.Future[Report]:
-    try:
-        return pool.submit(work.run, task)
-    except BrokenProcessPool as error:
-        failed = concurrent.futures.Future[Report]()
-        failed.set_exception(error)
-        return failed
 
 
 def _end_with_parent() -> None:
@@ -129,7 +117,7 @@ def _interrupts_blocked() -> Iterator[None]:
 
 
 @contextmanager
-def _current_folder_shunned() -> Iterator[None]:
+def _without_current_folder() -> Iterator[None]:
     """Start processes, run with `python -c`, that import nothing from the current folder."""
     name = 'PYTHONSAFEPATH'
     before = os.environ.get(name, '')  # an empty value means unset
@@ -168,42 +156,42 @@ def on_cluster(
     except (OSError, ValueError, TimeoutError) as error:
         raise SchedulerError(f'{scheduler}: no Dask scheduler there: {error}') from error
     with client:
-        lost = []
-        for task, report in _on_workers(client, work, tasks):
-            if report:
-                yield task, report
-            else:
-                lost.append(task)
+        done = set[int]()
+        for number, report in _on_workers(client, work, tasks):
+            done.add(number)
+            yield tasks[number], report
         # Dask gives up every recording that was assigned to a dead worker; to find the cause, each
         # is tried alone.
-        for task in lost:
-            for _, report in _on_workers(client, work, [task]):
-                yield task, report or _lost(work, task)
+        for number in sorted(set(range(len(tasks))) - done):
+            task = tasks[number]
+            alone = [report for _, report in _on_workers(client, work, [task])]
+            yield task, alone[0] if alone else work.lost(task, _DIED)
 
 
 def _on_workers(
     client: Any, work: Work[Task, Report], tasks: Sequence[Task]
-) -> Iterator[tuple[Task, Report | None]]:
-    """Yield each task with its report, or None if workers died."""
+) -> Iterator[tuple[int, Report]]:
+    """Yield the reports by the numbers of their tasks; those whose workers died are missing."""
     import distributed  # noqa: PLC0415, an extra
 
-    waiting = {client.submit(work.run, work.absolute(task), pure=False): task for task in tasks}
+    waiting = {
+        client.submit(work.run, work.absolute(task), pure=False): number
+        for number, task in enumerate(tasks)
+    }
     while waiting:
         with suppress(TimeoutError):
             for future in distributed.as_completed(waiting, client.loop, timeout=_PATIENCE):
-                task = waiting.pop(future)
+                number = waiting.pop(future)
                 try:
-                    yield task, future.result()
+                    yield number, future.result()
                 except distributed.KilledWorker:
-                    yield task, None
+                    continue
                 except Exception as error:  # noqa: BLE001, of the cluster, not the recording
-                    cause = ' '.join(str(error).split())
-                    yield task, work.lost(task, f'not done by the cluster: {cause}')
+                    yield (
+                        number,
+                        work.lost(tasks[number], f'not done by the cluster: {cause(error)}'),
+                    )
         if waiting and not client.scheduler_info()['workers']:
-            for task in waiting.values():
-                yield task, work.lost(task, 'the cluster has no workers for it')
+            for number in waiting.values():
+                yield number, work.lost(tasks[number], 'the cluster has no workers for it')
             return
-
-
-def _lost(work: Work[Task, Report], task: Task) -> Report:
-    return work.lost(task, 'its worker died repeatedly')

@@ -8,16 +8,12 @@ from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
+from gear_kinematics.bag.limits import Limits
 from gear_kinematics.bag.storage import (
-    CHUNK_EXPANSION,
     DECOMPRESSORS,
-    MAX_RECORD,
-    Budget,
-    Descriptions,
     Message,
     Storage,
     check_encoding,
-    expanded_size,
 )
 from gear_kinematics.bag.topics import Topic
 
@@ -26,12 +22,14 @@ _FOOTER, _SCHEMA, _CHANNEL, MESSAGE, _CHUNK, _STATISTICS, _DATA_END = 2, 3, 4, 5
 _DATA = frozenset({_SCHEMA, _CHANNEL, MESSAGE, _CHUNK})
 _DESCRIPTIONS = frozenset({_SCHEMA, _CHANNEL})
 _NO_SCHEMA = ('', '', '')  # type, syntax, definition
-RECORD = struct.Struct('<BQ')  # opcode, length of the body
-_MESSAGE_START = struct.Struct('<H4xQ')  # channel, reception; the data begin at byte 22
+MESSAGE_START = struct.Struct('<BQHIQQ')  # opcode, length of the body, channel, number, two times
+RECORD = struct.Struct('<BQ')  # the first two of them, with which each record starts
+_WANTED_START = struct.Struct('<BQH4xQ')  # of a message, without what is not needed
+_PADDING = bytes(_WANTED_START.size)  # behind the last record, which may be shorter
+_CUT_OFF = 'cut off within a record'
 _LATEST = 2**63 - 1  # ns
-_BATCH = 4096  # messages outside of chunks that are yielded together
-_BATCH_SIZE = 2**22  # bytes, likewise
 _AT_ONCE = 65_536  # records of a chunk; recorders write fewer
+_PIECE, _PIECE_SIZE = 4096, 2**22  # messages outside of chunks that are read at once, bytes
 _RECEIVED = itemgetter(1)
 
 
@@ -42,8 +40,8 @@ class Mcap(Storage):
     is read like any other.
     """
 
-    def __init__(self, path: Path, budget: Budget) -> None:
-        super().__init__(budget)
+    def __init__(self, path: Path, limits: Limits) -> None:
+        super().__init__(limits)
         self._stream = path.open('rb')
         self._size = os.fstat(self._stream.fileno()).st_size
         self._offset = 0
@@ -67,7 +65,7 @@ class Mcap(Storage):
         self._read_summary()
         if not self._channels:
             try:
-                for _ in self._batches():
+                for _ in self._unsorted():
                     pass
             except Exception:
                 if not self._channels:
@@ -78,7 +76,7 @@ class Mcap(Storage):
         """Return the number in the index, if there is one; call `topics` first."""
         return self._total
 
-    def messages(self, topics: Collection[str]) -> Iterator[Message]:
+    def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages, sorted if they are out of order by at most a chunk."""
         # Recorders with several threads or several open chunks write messages out of order by up
         # to a chunk: a chunk is held back to sort them.
@@ -88,78 +86,74 @@ class Mcap(Storage):
         self._wanted = topics
         for channel, topic in self._channels.items():
             self._want(channel, topic)
-        batches = self._batches()
-        while True:
-            error, batch = None, None
-            try:
-                batch = next(batches, None)
-            except Exception as caught:  # noqa: BLE001, raised below, after the held messages
-                error = caught
-            if batch:
-                batch.sort(key=_RECEIVED)
-                if held and batch[0][1] < held[-1][1]:
-                    merged = sorted(held + batch, key=_RECEIVED)
-                    held, batch = merged[: len(held)], merged[len(held) :]
-            yield from held
-            number += len(held)
-            self.read = number
-            if batch is None:
-                break
-            held = batch
-        if error:
-            raise error
+        try:
+            for piece in filter(None, self._unsorted()):
+                piece.sort(key=_RECEIVED)
+                if held:
+                    if piece[0][1] < held[-1][1]:
+                        merged = sorted(held + piece, key=_RECEIVED)
+                        held, piece = merged[: len(held)], merged[len(held) :]  # noqa: PLW2901
+                    yield held
+                held = piece
+                number += len(piece)
+        except Exception:
+            if held:
+                yield held
+            raise
+        if held:
+            yield held
         expected = sum(self._counts.get(channel, 0) for channel in self._wanted_channels)
         if number < expected:
             raise ValueError(f'the index lists {expected} messages, there are {number}')
 
-    def _batches(self) -> Iterator[list[Message]]:
-        """Yield the messages of the file; on damage, those before it, and then raise."""
-        stream, batch, size = self._stream, list[Message](), 0
+    def _unsorted(self) -> Iterator[list[Message]]:
+        """Yield the messages as they are in the file; on damage, those before it, then raise."""
+        stream, piece, size = self._stream, list[Message](), 0
         self._offset = stream.seek(len(MCAP_MAGIC))
         try:
             while header := stream.read(RECORD.size):  # an unfinished file has no footer
                 if len(header) < RECORD.size:
-                    raise _CutOffError
+                    raise ValueError(_CUT_OFF)
                 opcode, length = RECORD.unpack(header)
-                left = self._size - self._offset - 9
+                left = self._size - self._offset - RECORD.size
                 if opcode in {_FOOTER, _DATA_END}:
                     break
                 if not opcode:
                     raise ValueError('there is no record')
                 if opcode in _DATA:
-                    if min(length, left) > MAX_RECORD:
+                    if min(length, left) > self.limits.max_record:
                         raise ValueError(f'a record of {length} bytes is too large')
                     body = stream.read(min(length, left))
                     if opcode != _CHUNK:
-                        self._walk(header + body, 0, batch)
+                        self._walk(header + body, 0, piece)
                         size += len(body)
                     else:
                         with suppress(Exception) if length > left else nullcontext():
-                            yield from self._fill(batch, body, whole=length <= left)
+                            yield from self._fill(piece, body, whole=length <= left)
                 if length > left:
-                    raise _CutOffError
-                if opcode == _CHUNK or len(batch) >= _BATCH or size >= _BATCH_SIZE:
-                    yield batch
-                    batch, size = [], 0
-                self._offset += 9 + length
+                    raise ValueError(_CUT_OFF)
+                if opcode == _CHUNK or len(piece) >= _PIECE or size >= _PIECE_SIZE:
+                    yield piece
+                    piece, size = [], 0
+                self._offset += RECORD.size + length
                 stream.seek(self._offset)
         except Exception:
-            yield batch
+            yield piece
             raise
-        yield batch
+        yield piece
 
-    def _fill(self, batch: list[Message], chunk: bytes, *, whole: bool) -> Iterator[list[Message]]:
-        """Fill a batch from a chunk; yield a copy and clear it whenever it is full."""
+    def _fill(self, piece: list[Message], chunk: bytes, *, whole: bool) -> Iterator[list[Message]]:
+        """Fill a list with the messages of a chunk; yield a copy and clear it whenever full."""
         records, end = self._chunk_records(chunk, whole=whole), 0
-        while (end := self._walk(records, end, batch)) < len(records):
-            yield batch[:]
-            batch.clear()
+        while (end := self._walk(records, end, piece)) < len(records):
+            yield piece[:]
+            piece.clear()
 
     def _walk(
         self,
         records: bytes,
         end: int,
-        batch: list[Message],
+        piece: list[Message],
         learned: Collection[int] = _DESCRIPTIONS,
     ) -> int:
         """Append the wanted messages among the next records, up to the first damage.
@@ -167,30 +161,25 @@ class Mcap(Storage):
         Returns:
             End of the last record.
         """
-        wanted = self._wanted_channels
-        unpack_record, unpack_message = RECORD.unpack_from, _MESSAGE_START.unpack_from
-        size, number = len(records), 0
-        try:
-            while end < size and number < _AT_ONCE:
-                number += 1
-                opcode, length = unpack_record(records, end)
-                start = end + 9
-                end = start + length
-                if end > size:
-                    raise _CutOffError
-                if opcode == MESSAGE:
-                    channel, received = unpack_message(records, start)
-                    if channel in wanted:
-                        if received > _LATEST:
-                            raise ValueError('a time of reception is out of range')
-                        batch.append((wanted[channel], received, records[start + 22 : end]))
-                elif opcode in learned:
-                    self._learn(opcode, records[start:end])
-                elif not opcode:
-                    raise ValueError('there is no record')
-        except struct.error as error:
-            raise _CutOffError from error
-        self.budget.count(number)
+        wanted, unpack = self._wanted_channels.get, _WANTED_START.unpack_from
+        size, number, padded = len(records), 0, records + _PADDING
+        while end < size and number < _AT_ONCE:
+            number += 1
+            opcode, length, channel, received = unpack(padded, end)
+            start = end + RECORD.size
+            end = start + length
+            if end > size:
+                raise ValueError(_CUT_OFF)
+            if opcode == MESSAGE:
+                if topic := wanted(channel):
+                    if received > _LATEST:
+                        raise ValueError('a time of reception is out of range')
+                    piece.append((topic, received, records[start + 22 : end]))
+            elif opcode in learned:
+                self._learn(opcode, records[start:end])
+            elif not opcode:
+                raise ValueError('there is no record')
+        self.limits.count(number)
         return end
 
     def _learn(self, opcode: int, body: bytes) -> None:
@@ -201,7 +190,7 @@ class Mcap(Storage):
         number, schema = struct.unpack_from('<HH', body)
         if number in (self._schemas if opcode == _SCHEMA else self._channels):
             return
-        self.descriptions.add(len(body))
+        self.limits.describe(body)
         if opcode == _SCHEMA:
             # Definitions that are not text belong to unsupported encodings.
             texts = [text.decode(errors='replace') for text in _strings(body[2:], 3)]
@@ -233,14 +222,16 @@ class Mcap(Storage):
         try:
             end = self._stream.seek(-37, os.SEEK_END)
             opcode, _, start, _, _, magic = struct.unpack('<BQQQI8s', self._stream.read())
-            if (opcode, magic) == (_FOOTER, MCAP_MAGIC) and 0 < end - start < MAX_RECORD:
+            if (opcode, magic) == (
+                _FOOTER,
+                MCAP_MAGIC,
+            ) and 0 < end - start < self.limits.max_record:
                 self._stream.seek(start)
                 records, place = self._stream.read(end - start), 0
                 while place < len(records):
                     place = self._walk(records, place, [], {*_DESCRIPTIONS, _STATISTICS})
         except Exception:  # noqa: BLE001, arbitrary bytes
             self._schemas, self._channels, self._counts, self._total = {}, {}, {}, None
-            self.descriptions = Descriptions()
 
     def _chunk_records(self, body: bytes, *, whole: bool) -> bytes:
         """Decompress the records of a chunk; those that there are, if it is not `whole`."""
@@ -248,22 +239,19 @@ class Mcap(Storage):
         name = body[32 : 32 + name_length].decode()
         (length,) = struct.unpack_from('<Q', body, 32 + name_length)
         data = body[40 + name_length :][:length]
-        if name and name not in DECOMPRESSORS:
-            raise ValueError(f'unsupported compression {name!r}')
-        if name and size > expanded_size(len(data), CHUNK_EXPANSION):
-            raise ValueError(f'a chunk of {size} bytes is too large')
-        records = DECOMPRESSORS[name](data, size + 1)[0] if name else data
-        self.budget.expand(len(records) if name else 0)
+        records = data
+        if name:
+            if name not in DECOMPRESSORS:
+                raise ValueError(f'unsupported compression {name!r}')
+            if size > self.limits.expanded_chunk(len(data)):
+                raise ValueError(f'a chunk of {size} bytes is too large')
+            records, _ = DECOMPRESSORS[name](data, size + 1)
+            self.limits.expand(len(records))
         if whole and len(records) != size:
             raise ValueError('a chunk does not have the size that it states')
         if whole and crc and crc32(records) != crc:
             raise ValueError('a chunk does not match its checksum')
         return records
-
-
-class _CutOffError(ValueError):
-    def __str__(self) -> str:
-        return 'cut off within a record'
 
 
 def _strings(data: bytes, count: int | None = None) -> list[bytes]:

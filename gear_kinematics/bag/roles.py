@@ -105,16 +105,11 @@ def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str
     return find_topics(bag, {'rotor': given}, outputs=False, joint=joint).rotor
 
 
-def joints_on(bag: Bag, topic: str) -> list[str]:
-    """Return the joints in the first message on a topic of joint states, safe to print.
+def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
+    """Return the joints in the first message on topics of joint states, safe to print.
 
-    None, if there is no readable message.
+    A topic without a readable message has none.
     """
-    return _joints_on_each(bag, [topic])[topic]
-
-
-def _joints_on_each(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
-    """Return what `joints_on` gives for some topics, reading the recording once."""
     joints: dict[str, list[str]] = {topic: [] for topic in topics}
     left = set(topics)
     with suppress(BagError):
@@ -178,7 +173,7 @@ def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str) -
         raise missing_topic(bag.path, bag.topics, name, TOPICS[name].type, suggest=False)
     joints: dict[str, list[str]] = {}
     if len(candidates) > 1 and name == ROTOR_STATE:
-        joints = _joints_on_each(bag, candidates[:_PEEKED])
+        joints = joints_on(bag, candidates[:_PEEKED])
         candidates = [topic for topic in joints if joint in joints[topic]] or candidates
     return _only(bag.path, candidates, name, joints)
 

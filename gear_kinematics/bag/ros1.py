@@ -10,17 +10,17 @@ import lz4.frame  # type: ignore[import-untyped]
 from rosbags import rosbag1
 from rosbags.interfaces import Connection
 from rosbags.rosbag1.reader import IndexData
+from rosbags.typesys.store import Typestore
 
+from gear_kinematics.bag.limits import Limits
 from gear_kinematics.bag.ros1_types import MAX_PARTS, ros1_types
 from gear_kinematics.bag.storage import (
     DECOMPRESSORS,
-    MAX_DEFINITIONS,
-    Budget,
     Decompressor,
-    Descriptions,
     Message,
     Storage,
-    expanded,
+    decompressed,
+    in_batches,
 )
 from gear_kinematics.bag.topics import Topic
 
@@ -35,23 +35,25 @@ _BOUNDED: Mapping[Callable[[bytes], bytes], Decompressor] = {
     lz4.frame.decompress: DECOMPRESSORS['lz4'],
 }
 """Replacements for those of rosbags, which decompress without limit."""
+_MAX_DEFINITIONS = 2**19
+"""Largest type definitions together, bytes: rosbags takes 25 µs for each."""
 
 
 class _Reader(rosbag1.Reader):
     """Bounds the index, because a file can refer to the same part of it repeatedly."""
 
-    def __init__(self, path: Path, descriptions: Descriptions) -> None:
+    def __init__(self, path: Path, limits: Limits) -> None:
         super().__init__(path)
-        self._descriptions = descriptions
+        self._limits = limits
         self._definitions: set[str] = set()
         self._left = path.stat().st_size
 
     def read_connection(self) -> Connection:
         connection = super().read_connection()
-        self._descriptions.add(len(connection.topic) + len(connection.msgdef.data))
+        self._limits.describe(str(connection.id), connection.topic, connection.msgdef.data)
         self._definitions.add(connection.msgdef.data)
-        if sum(map(len, self._definitions)) > MAX_DEFINITIONS:
-            raise ValueError(f'its type definitions have more than {MAX_DEFINITIONS} bytes')
+        if sum(map(len, self._definitions)) > _MAX_DEFINITIONS:
+            raise ValueError(f'its type definitions have more than {_MAX_DEFINITIONS} bytes')
         return connection
 
     def read_index_data(self, pos: int, indexes: dict[int, list[IndexData]]) -> None:
@@ -66,9 +68,9 @@ class _Reader(rosbag1.Reader):
 class Ros1(Storage):
     """A ROS 1 bag."""
 
-    def __init__(self, path: Path, budget: Budget) -> None:
-        super().__init__(budget)
-        self._reader = _Reader(path, self.descriptions)
+    def __init__(self, path: Path, limits: Limits) -> None:
+        super().__init__(limits)
+        self._reader = _Reader(path, limits)
         self._reader.open()
         chunks = self._reader.chunks
         for place, chunk in chunks.items():
@@ -87,29 +89,26 @@ class Ros1(Storage):
         """Return the number in the index."""
         return sum(connection.msgcount for connection in self._reader.connections)
 
-    def messages(self, topics: Collection[str]) -> Iterator[Message]:
+    def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages in the order of reception, as CDR."""
         wanted = [c for c in self._reader.connections if c.topic in topics]
         types = {c.msgtype: ros1_types(c.msgtype, c.msgdef.data) for c in wanted}
         if sum(parts for _, parts in types.values()) > MAX_PARTS:
             raise ValueError(f'its messages consist of more than {MAX_PARTS} parts')
-        number = 0
-        try:
-            for connection, received, data in self._reader.messages(wanted) if wanted else ():
-                kind = connection.msgtype
-                store, _ = types[kind]
-                # By default, rosbags loops over any length that damaged bytes claim.
-                store.max_sequence_length = len(data)
-                yield connection.topic, received, bytes(store.ros1_to_cdr(data, kind))
-                number += 1
-        finally:
-            self.read = number
+        stores = {kind: store for kind, (store, _) in types.items()}
+        return in_batches(self._messages(wanted, stores))
+
+    def _messages(
+        self, wanted: list[Connection], stores: Mapping[str, Typestore]
+    ) -> Iterator[Message]:
+        for connection, received, data in self._reader.messages(wanted) if wanted else ():
+            kind = connection.msgtype
+            # By default, rosbags loops over any length that damaged bytes claim.
+            stores[kind].max_sequence_length = len(data)
+            yield connection.topic, received, bytes(stores[kind].ros1_to_cdr(data, kind))
 
     def _records(self, decompress: Decompressor, chunk: bytes) -> bytes:
-        records, whole = expanded(decompress, chunk, self.budget)
-        if not whole:
-            raise ValueError('a chunk is cut off or too large')
-        return records
+        return decompressed(chunk, decompress, self.limits, 'a chunk')
 
     @staticmethod
     def _topic(connection: Connection) -> Topic:

@@ -29,8 +29,22 @@ def due_messages(
     """
     if not 0.0 < rate < math.inf:
         raise ValueError(f'rate must be positive and finite, but is {rate:g}')
-    rounds = _rounds(source, topics, rate, start_offset, duration, loop=loop)
-    return chain([next(rounds)], rounds)
+
+    def rounds() -> Iterator[tuple[float, Message]]:
+        due = start = 0.0
+        while True:
+            count = 0
+            for elapsed, message in _one_round(source, topics, start_offset, duration):
+                due = start + elapsed / (rate * SECOND)
+                count += 1
+                yield due, message
+            if not loop:
+                return
+            # A loop that takes no time, such as a single message, is repeated every second.
+            start = due + ((due - start) / max(count - 1, 1) or 1.0 / rate)
+
+    messages = rounds()
+    return chain([next(messages)], messages)
 
 
 def count_due(
@@ -42,43 +56,27 @@ def count_due(
     """
     count = 0
     with suppress(BagError):  # which playing them raises, too
-        for _ in due_messages(source, topics, 1.0, start_offset, duration):
+        for _ in _one_round(source, topics, start_offset, duration):
             count += 1
     return count or None
 
 
-def _rounds(
-    source: Bag,
-    topics: Collection[str],
-    rate: float,
-    start_offset: float,
-    duration: float,
-    *,
-    loop: bool,
-) -> Iterator[tuple[float, Message]]:
-    due = round_start = 0.0
-    while True:
-        first, begin, count = None, 0, 0
-        for message in source.messages(topics):
-            _, received, _ = message
-            if first is None:
-                first = received
-            elapsed = received - first - start_offset * SECOND + 0.5  # ns, rounded
-            if elapsed > duration * SECOND + 1.0:
-                break
-            if elapsed < 0.0:
-                continue
-            if count == 0:
-                begin = received
-            due = round_start + (received - begin) / (rate * SECOND)
-            count += 1
-            yield due, message
-        if count == 0:
-            raise BagError(f'{source.path}: nothing to play on {", ".join(topics)}')
-        if not loop:
-            return
-        # A loop that takes no time, such as a single message, is repeated every second.
-        round_start = due + ((due - round_start) / max(count - 1, 1) or 1.0 / rate)
+def _one_round(
+    source: Bag, topics: Collection[str], start_offset: float, duration: float
+) -> Iterator[tuple[int, Message]]:
+    """Yield messages with the time since the first of them, ns."""
+    first = begin = None
+    for message in source.messages(topics):
+        _, received, _ = message
+        first = received if first is None else first
+        elapsed = received - first - start_offset * SECOND + 0.5  # ns, rounded
+        if elapsed > duration * SECOND + 1.0:
+            break
+        if elapsed >= 0.0:
+            begin = received if begin is None else begin
+            yield received - begin, message
+    if begin is None:
+        raise BagError(f'{source.path}: nothing to play on {", ".join(topics)}')
 
 
 def throttled(progress: ReportProgress) -> ReportProgress:

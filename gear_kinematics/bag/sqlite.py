@@ -10,7 +10,8 @@ from contextlib import ExitStack, closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.bag.storage import Budget, Message, Storage, check_encoding
+from gear_kinematics.bag.limits import Limits
+from gear_kinematics.bag.storage import Message, Storage, check_encoding, in_batches
 from gear_kinematics.bag.topics import Topic
 
 _STEPS = 1000
@@ -23,8 +24,8 @@ _REASONS = {
 class Sqlite(Storage):
     """An sqlite3 file."""
 
-    def __init__(self, path: Path, budget: Budget) -> None:
-        super().__init__(budget)
+    def __init__(self, path: Path, limits: Limits) -> None:
+        super().__init__(limits)
         with ExitStack() as stack:
             path = _whole_pages(path, stack)
             # Without a journal nothing changes, so no locks are needed; read-only media have none.
@@ -33,13 +34,15 @@ class Sqlite(Storage):
             uri = path.absolute().as_uri() + options
             self._database = sqlite3.connect(uri, uri=True, check_same_thread=False)
             stack.enter_context(closing(self._database))
+            # With this, sqlite reads as much as possible of a truncated file.
+            self._database.execute('PRAGMA writable_schema=ON')
             self._database.set_authorizer(_only_tables)
             # Pages that occur repeatedly in a tree make an endless number of rows.
             self._size = sum(file.stat().st_size for file in (path, journal) if file.exists())
             self._steps = 100_000 + 10 * self._size
             self._database.set_progress_handler(self._spend, _STEPS)
             for table in ('topics', 'message_definitions', 'messages'):
-                columns = self._execute(f'PRAGMA table_xinfo({table})')
+                columns = self._database.execute(f'PRAGMA table_xinfo({table})')
                 if any(hidden for *_, hidden in columns):
                     raise ValueError(f'{table} has computed columns')
             self._resources = stack.pop_all()
@@ -48,18 +51,13 @@ class Sqlite(Storage):
         """Close the file, and remove the copy if there is one."""
         self._resources.close()
 
-    def _execute(self, query: str, parameters: Collection[object] = ()) -> sqlite3.Cursor:
-        # With this, sqlite reads as much as possible of a truncated file.
-        self._database.execute('PRAGMA writable_schema=ON')
-        return self._database.execute(query, tuple(parameters))
-
     def _rows(self, table: str) -> list[dict[str, Any]]:
         rows = []
         with _reasons():
-            cursor = self._execute(f'SELECT * FROM {table}')  # noqa: S608, our own names
+            cursor = self._database.execute(f'SELECT * FROM {table}')  # noqa: S608, our own names
             names = [column[0] for column in cursor.description]
             for row in cursor:
-                self.descriptions.add(sum(len(str(value)) for value in row))
+                self.limits.describe(*map(str, row))
                 rows.append(dict(zip(names, row, strict=True)))
         return rows
 
@@ -97,33 +95,33 @@ class Sqlite(Storage):
         """Count the rows; None if the file is too damaged."""
         with suppress(sqlite3.Error):
             # Of a column: count(*) takes a single step, which cannot be stopped.
-            return int(self._execute('SELECT count(timestamp) FROM messages').fetchone()[0])
+            return int(
+                self._database.execute('SELECT count(timestamp) FROM messages').fetchone()[0]
+            )
         return None
 
-    def messages(self, topics: Collection[str]) -> Iterator[Message]:
+    def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages in the order of reception."""
         wanted = {key: topic for key, topic in self._topics().items() if topic.name in topics}
         for topic in wanted.values():
             check_encoding(topic)
         names = {key: topic.name for key, topic in wanted.items()}
-        places = ','.join('?' * len(names))
-        number, left = 0, self._size
-        try:
-            with _reasons():
-                for key, received, data in self._execute(
-                    'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, placeholders
-                    f' WHERE topic_id IN ({places}) ORDER BY timestamp',
-                    names,
-                ):
-                    if type(data) is not bytes or type(received) is not int:
-                        raise ValueError('a message without a time or data')
-                    left -= len(data)
-                    if left < 0:  # messages that share pages
-                        raise ValueError('the messages are longer than the file')
-                    yield names[key], received, data
-                    number += 1
-        finally:
-            self.read = number
+        return in_batches(self._messages(names))
+
+    def _messages(self, names: dict[int, str]) -> Iterator[Message]:
+        places, left = ','.join('?' * len(names)), self._size
+        with _reasons():
+            for key, received, data in self._database.execute(
+                'SELECT topic_id, timestamp, data FROM messages'  # noqa: S608, placeholders
+                f' WHERE topic_id IN ({places}) ORDER BY timestamp',
+                tuple(names),
+            ):
+                if type(data) is not bytes or type(received) is not int:
+                    raise ValueError('a message without a time or data')
+                left -= len(data)
+                if left < 0:  # messages that share pages
+                    raise ValueError('the messages are longer than the file')
+                yield names[key], received, data
 
 
 def _only_tables(_action: int, _1: object, _2: object, _database: object, view: object) -> int:

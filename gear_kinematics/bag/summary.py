@@ -1,6 +1,5 @@
 """What is in a recording: its topics, their rates and gaps, and which part each plays."""
 
-from collections import defaultdict
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -8,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gear_kinematics.bag.errors import BagError, DamagedBagError
-from gear_kinematics.bag.reading import Bag, ReportProgress, in_batches
+from gear_kinematics.bag.reading import Bag, ReportProgress
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, find_topics, joints_on
 from gear_kinematics.wire.cdr import SECOND, header_stamp
 from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_STATE, POSE_ARRAY, TOPICS, base_name
@@ -77,23 +76,21 @@ def summarise(
         BagError: if no message can be read, or the given topic is missing.
     """
     parts, unclear = _parts(bag, rotor_topic, joint)
-    times: defaultdict[str, list[int]] = defaultdict(list)
+    times = {topic: list[int]() for topic in bag.topics}
     ends: list[int] = []
     damage = ''
     stamped = {topic for topic, kind in bag.topics.items() if kind in _WITH_STAMPS}
     try:
-        for batch in in_batches(
-            bag.messages(bag.topics), progress=progress, total=bag.message_count
-        ):
+        for batch in bag.batches(bag.topics, progress):
             for topic, received, data in batch:
                 stamp = header_stamp(data) if topic in stamped else 0
                 times[topic].append(received if stamp in _UNSET else stamp)
-            if batch:
-                ends = [*ends[:1], batch[0][1], batch[-1][1]]
+            ends = [*ends[:1], batch[0][1], batch[-1][1]]
     except DamagedBagError as error:
         damage = str(error)
+    joints = joints_on(bag, [t for t in times if times[t] and bag.topics[t] == JOINT_STATE])
     topics = [
-        _summary(name, kind, parts.get(name, _part_of(name)), times[name], bag)
+        _summary(name, kind, parts.get(name, _part_of(name)), joints.get(name, []), times[name])
         for name, kind in bag.topics.items()
     ]
     order = ('rotor', 'encoder', 'output', 'poses', 'node', '')
@@ -126,7 +123,7 @@ def _part_of(name: str) -> str:
     return 'node' if known and known.publisher == 'node' else ''
 
 
-def _summary(name: str, kind: str, part: str, times: list[int], bag: Bag) -> TopicSummary:
+def _summary(name: str, kind: str, part: str, joints: list[str], times: list[int]) -> TopicSummary:
     periods = np.diff(np.array(times, np.int64)).astype(np.float64) / SECOND
     periods = periods[periods > 0.0]  # the clock may be set back
     rate, gaps, longest = None, 0, 0.0
@@ -134,5 +131,4 @@ def _summary(name: str, kind: str, part: str, times: list[int], bag: Bag) -> Top
         median = float(np.median(periods))
         long = periods[periods > GAP * median]
         rate, gaps, longest = 1.0 / median, len(long), float(long.max(initial=0.0))
-    joints = joints_on(bag, name) if kind == JOINT_STATE and times else []
     return TopicSummary(name, kind, part, len(times), tuple(joints), rate, gaps, longest)

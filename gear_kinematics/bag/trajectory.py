@@ -7,7 +7,7 @@ from typing import NamedTuple, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicMessages
+from gear_kinematics.bag import Bag, BagError, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Correction, Corrector
@@ -154,12 +154,11 @@ def read_trajectory(
     Raises:
         BagError: if the bag cannot be read, or has fewer than two rotor states of different times.
     """
-    rotor = TopicMessages()
     with Bag(path) as bag:
         topic = find_rotor_topic(bag, rotor_topic, parameters.rotor_joint)
-        bag.read({topic: rotor}, progress)
+        messages = [message for batch in bag.batches([topic], progress) for message in batch]
     rotor_input = RotorInput(parameters)
-    samples = rotor_input.accept_batch(rotor.data, rotor.received)
+    samples = rotor_input.accept_batch([m[2] for m in messages], [m[1] for m in messages])
     anew = np.flatnonzero(np.diff(samples.stamp) < 0)
     _, used = np.unique(samples.stamp[: anew[0] + 1 if len(anew) else None], return_index=True)
     if len(used) < 2:  # noqa: PLR2004, what a motion takes

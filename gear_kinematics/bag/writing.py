@@ -1,7 +1,6 @@
 """Writes recordings."""
 
 import shutil
-import sqlite3
 import tempfile
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -10,6 +9,7 @@ from types import TracebackType
 from typing import Literal, Self
 
 from rosbags.interfaces import (
+    Connection,
     Qos,
     QosDurability,
     QosHistory,
@@ -21,7 +21,7 @@ from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2.metadata import parse_qos
 
 from gear_kinematics.bag.contents import parse_yaml
-from gear_kinematics.bag.errors import BagError, TopicError, bag_errors, cause
+from gear_kinematics.bag.errors import BagError, TopicError, bag_errors
 from gear_kinematics.bag.reading import Bag
 from gear_kinematics.bag.storage import Message
 from gear_kinematics.bag.storage_writers import BulkWriter
@@ -66,7 +66,7 @@ class BagWriter:
         self._storage = StoragePlugin[storage.upper()]
         modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}
         self._compression = modes[storage] if compression == 'zstd' else CompressionMode.NONE
-        self._numbers: dict[str, int] = {}
+        self._topics: dict[str, Connection] = {}
         self._entries = 0
 
     def __enter__(self) -> Self:
@@ -76,8 +76,7 @@ class BagWriter:
             BagError: if the path exists already or cannot be written.
         """
         with bag_errors(self.path), ExitStack() as stack:
-            if self.path.exists() or self.path.is_symlink():
-                raise ValueError('exists already')
+            self._check_new()
             folder = tempfile.mkdtemp(prefix=f'.{self.path.name}.', dir=self.path.parent)
             stack.callback(shutil.rmtree, folder)
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
@@ -169,16 +168,20 @@ class BagWriter:
         """
         if not messages:
             return
-        topics, times, data = zip(*messages, strict=True)
-        if unknown := set(topics) - self._numbers.keys():
-            raise BagError(f'{self.path}: topic {min(unknown)} has not been added')
-        for time in (min(times), max(times)):
-            if not 0 <= time < 2**63:
-                raise BagError(f'{self.path}: the time of reception {time} is out of range')
-        try:
-            self._writer.write_all([self._numbers[topic] for topic in topics], times, data)
-        except (OSError, sqlite3.Error) as error:
-            raise BagError(f'{self.path}: {cause(error)}') from error
+        topics = {topic for topic, _, _ in messages}
+        times = [received for _, received, _ in messages]
+        span = min(times), max(times)
+        with bag_errors(self.path):
+            if unknown := topics - self._topics.keys():
+                raise ValueError(f'topic {min(unknown)} has not been added')
+            for time in span:
+                if not 0 <= time < 2**63:
+                    raise ValueError(f'the time of reception {time} is out of range')
+            self._writer.write_all(messages, self._topics, span)
+
+    def _check_new(self) -> None:
+        if self.path.exists() or self.path.is_symlink():
+            raise ValueError('exists already')
 
     def _open(self, folder: Path) -> None:
         self._writer = BulkWriter(folder, version=9, storage_plugin=self._storage)
@@ -186,12 +189,12 @@ class BagWriter:
         self._writer.open()
 
     def _add(self, topic: Topic, qos: list[Qos]) -> None:
-        if topic.name in self._numbers:
+        if topic.name in self._topics:
             raise BagError(f'{self.path}: topic {topic.name} has been added already')
         self._entries += 1 + len(qos)
         if self._entries > _MAX_ENTRIES:
             raise ValueError(f'there are more than {_MAX_ENTRIES} topics and QoS profiles')
-        self._numbers[topic.name] = self._writer.add_topic(topic, qos)
+        self._topics[topic.name] = self._writer.add_topic(topic, qos)
 
 
 class LiveBagWriter(BagWriter):
@@ -211,8 +214,7 @@ class LiveBagWriter(BagWriter):
             BagError: if the path exists already or cannot be written.
         """
         with bag_errors(self.path):
-            if self.path.exists() or self.path.is_symlink():
-                raise ValueError('exists already')
+            self._check_new()
             # It is in its place already, and nothing removes it.
             self._partial, self._folder = self.path, ExitStack()
             self._open(self.path)
@@ -225,7 +227,5 @@ class LiveBagWriter(BagWriter):
         Raises:
             BagError: if they cannot be written.
         """
-        try:
+        with bag_errors(self.path):
             self._writer.flush()
-        except OSError as error:
-            raise BagError(f'{self.path}: {cause(error)}') from error

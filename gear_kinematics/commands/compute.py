@@ -60,8 +60,9 @@ def run(options: argparse.Namespace) -> ExitCode:
             raise TopicError(f'{error}; --topics says which topics to copy') from error
     if not options.quiet:
         _tell(options.out, result)
-    if result.mostly_rejected:
-        joints = f': {result.missing_joint}' if result.missing_joint else ''
+    if result.rotor_input.mostly_rejected:
+        missing = result.rotor_input.missing_joint
+        joints = f': {missing}' if missing else ''
         complain(f'{options.bag}: most messages on {rotor} were rejected{joints}')
         return ExitCode.FAILED
     return ExitCode.DONE
@@ -77,9 +78,10 @@ def _files(options: argparse.Namespace, config: NodeParameters) -> dict[str, byt
 
 
 def _tell(out: Path, result: ComputeResult) -> None:
-    rejected = ', '.join(f'{cause} {number}' for cause, number in result.rejected.items())
+    rotor = result.rotor_input
+    rejected = ', '.join(f'{cause} {number}' for cause, number in rotor.rejected.items())
     print(
-        f'{out}: {result.computed} outputs for {result.received} rotor states'
+        f'{out}: {result.computed} outputs for {rotor.received} rotor states'
         + (f' (rejected: {rejected})' if rejected else '')
         + f', {result.copied} other messages copied'
     )

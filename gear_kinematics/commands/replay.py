@@ -89,7 +89,7 @@ def _topics(bag: Bag, options: argparse.Namespace) -> dict[str, str]:
             bag.type_of(topic)
         return {topic: options.published or topic for topic in options.topics}
     topic = find_rotor_topic(bag, options.rotor_topic, options.joint or '')
-    if options.joint and options.joint not in (joints := joints_on(bag, topic)):
+    if options.joint and options.joint not in (joints := joints_on(bag, [topic])[topic]):
         hint = among(options.joint, joints)
         raise ValueError(f'{bag.path}: {topic}: no joint {options.joint!r} in it{hint}')
     return {topic: options.published or ROTOR_STATE}

@@ -10,9 +10,7 @@ from gear_kinematics.bag import (
     BagError,
     DamagedBagError,
     ReportProgress,
-    TopicMessages,
-    in_batches,
-    sort_by_topic,
+    by_topic,
 )
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
@@ -91,11 +89,9 @@ def _read_bag(
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
         no_encoder = '' if encoder else missing_encoder(bag)
         topics = [topic for topic in (rotor, encoder) if topic]
-        messages = bag.messages(topics)
         try:
-            for batch in in_batches(messages, progress=progress, total=bag.message_count):
-                found = {topic: TopicMessages() for topic in topics}
-                sort_by_topic(batch, found)
+            for batch in bag.batches(topics, progress):
+                found = by_topic(batch, topics)
                 if start is None and batch:
                     start = min(of.received[0] for of in found.values() if of.received) / SECOND
                 new = rotor_input.accept_batch(found[rotor].data, found[rotor].received)

@@ -67,7 +67,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     corrected = corrected_beside() if calibration else {}
     # Not the node's own formulas.
     validator = Validator(task, corrected=corrected, solver=matrix_method.solve)
-    validator.feed(published)
+    validator.feed([published])
     return validator.report()
 
 

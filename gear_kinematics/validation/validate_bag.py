@@ -1,10 +1,10 @@
 """Validates a bag, in this process, another one or on a Dask cluster."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import corrected_beside, find_corrected_topics, find_topics
 from gear_kinematics.bag.schedule import count_due
@@ -13,6 +13,8 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
+
+_BATCH = 8192  # messages of a live node that are validated together
 
 
 def validate_bag(
@@ -40,10 +42,8 @@ def validate_bag(
             if play:
                 return _validate_live(task, bag, topics.rotor, progress, play)
             corrected = find_corrected_topics(bag, topics.output)
-            messages = bag.messages((*topics, *corrected.values()))
-            return _report(
-                Validator(task, topics, corrected), messages, progress, bag.message_count
-            )
+            batches = bag.batches((*topics, *corrected.values()), progress)
+            return _report(Validator(task, topics, corrected), batches)
     except BagError as error:
         return unusable(task.bag, str(error), task.config)
     except Exception as error:
@@ -71,18 +71,13 @@ def _validate_live(
     # Nothing is lost by a recorder here.
     task = replace(task, strict=True)
     corrected = corrected_beside() if task.calibration else {}
-    return _report(Validator(task, corrected=corrected), messages)
+    return _report(Validator(task, corrected=corrected), in_batches(messages, _BATCH))
 
 
-def _report(
-    validator: Validator,
-    messages: Iterable[Message],
-    progress: ReportProgress | None = None,
-    total: int | None = None,
-) -> BagReport:
+def _report(validator: Validator, batches: Iterable[Sequence[Message]]) -> BagReport:
     """Validate the readable messages of a bag."""
     try:
-        validator.feed(messages, progress, total)
+        validator.feed(batches)
     except BagError as error:
         return validator.report(str(error))
     return validator.report()

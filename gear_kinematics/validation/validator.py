@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.bag import Message, ReportProgress, TopicMessages, in_batches, sort_by_topic
+from gear_kinematics.bag import Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.kinematics import Mechanism, solve
@@ -109,23 +109,14 @@ class Validator:
         self._findings: list[Finding] = []
         self._checks = [make(parameters) for make in checks.CHECKS]
 
-    def feed(
-        self,
-        messages: Iterable[Message],
-        progress: ReportProgress | None = None,
-        total: int | None = None,
-    ) -> None:
+    def feed(self, batches: Iterable[Sequence[Message]]) -> None:
         """Process messages on the topics, up to an exception of the iterable, if any.
 
         Args:
-            messages: in the order of their reception.
-            progress: called after each batch.
-            total: number of the messages, if known.
+            batches: of messages, in the order of their reception.
         """
-        for recorded in in_batches(messages, progress=progress, total=total):
-            batch = self._empty_batch()
-            sort_by_topic(recorded, batch)
-            self._take(batch)
+        for batch in batches:
+            self._take(self._sorted(batch))
 
     @np.errstate(all='ignore')  # recorded numbers are arbitrary; overflows fail
     def report(self, error: str | None = None) -> BagReport:
@@ -234,7 +225,7 @@ class Validator:
     def _close(self) -> None:
         """Count waiting samples and messages as missing and extra, at the end."""
         for _ in range(2):  # late messages wait for one more batch
-            self._take(self._empty_batch())
+            self._take(self._sorted(()))
         self._drop(len(self._window))
         for group in self._groups:
             group.close()
@@ -300,8 +291,8 @@ class Validator:
             if isinstance(output, JointStateTopic):
                 yield output
 
-    def _empty_batch(self) -> _Batch:
-        return {name: TopicMessages() for name in (*self._topics, *self._corrected.values())}
+    def _sorted(self, messages: Iterable[Message]) -> _Batch:
+        return by_topic(messages, (*self._topics, *self._corrected.values()))
 
     def _compared(self) -> Iterator[Finding]:
         """Yield with what the outputs are compared, as far as it is not the obvious."""

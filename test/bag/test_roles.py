@@ -1,6 +1,7 @@
 """Finding the topics of a recording by their names and types."""
 
 import time
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,15 +13,18 @@ from gear_kinematics.bag.roles import Topics, find_encoder_topic, find_topics
 JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseArray'
 
 
+def described(topics: dict[str, str]) -> SimpleNamespace:
+    """What a bag says about its topics, which have no messages."""
+    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics, named={})
+    bag.messages = lambda _: iter(())
+    bag.type_of = partial(Bag.type_of, bag)
+    return bag
+
+
 def bag_with(joint_states: str, pose_arrays: str = '') -> SimpleNamespace:
     kinds = dict.fromkeys(joint_states.split(), JOINT_STATE)
     kinds |= dict.fromkeys(pose_arrays.split(), POSE_ARRAY)
-    return SimpleNamespace(
-        path=Path('some.mcap'),
-        topics=kinds | {'/rosout': 'rcl/msg/Log'},
-        named={},
-        messages=lambda _: iter(()),
-    )
+    return described(kinds | {'/rosout': 'rcl/msg/Log'})
 
 
 @pytest.mark.parametrize(
@@ -67,69 +71,38 @@ def test_topics_are_found_by_name_then_by_type(joint_states, pose_arrays, given,
         assert find_topics(bag_with(joint_states, pose_arrays)) == found
 
 
+NO_OUTPUT = f'no topic output_state of type {JOINT_STATE} in it; there are: '
+NO_ROTOR = f'no topic rotor_state of type {JOINT_STATE} in it; there are: '
+NO_MOTOR = f'no topic /motor of type {JOINT_STATE} in it; there are: '
+NEARLY = f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean `/rotor_state`? '
+NEARLY += 'there are: '
+NO_POSES = f'no topic /output_state of type {POSE_ARRAY} in it, it is of type {JOINT_STATE}; '
+NO_POSES += 'there are: '
+WHICH_ROTOR = 'which topic is rotor_state? /left/rotor_state, /right/rotor_state; name it with '
+BOTH = '/rotor_state /output_state'
+LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
+
+
 @pytest.mark.parametrize(
-    ('joint_states', 'pose_arrays', 'given', 'error'),
+    ('joint_states', 'poses', 'given', 'error'),
     [
-        (
-            '/rotor_state',
-            '/p',
-            {},
-            (
-                f'no topic output_state of type {JOINT_STATE} in it; '
-                'there are: /rotor_state, /p, /rosout'
-            ),
-        ),
-        (
-            '/output_state',
-            '/p',
-            {},
-            (
-                f'no topic rotor_state of type {JOINT_STATE} in it; '
-                'there are: /output_state, /p, /rosout'
-            ),
-        ),
-        (
-            '/left/rotor_state /right/rotor_state /output_state',
-            '/p',
-            {},
-            (
-                'which topic is rotor_state? /left/rotor_state, /right/rotor_state; '
-                'name it with --rotor-topic'
-            ),
-        ),
+        ('/rotor_state', '/p', {}, f'{NO_OUTPUT}/rotor_state, /p, /rosout'),
+        ('/output_state', '/p', {}, f'{NO_ROTOR}/output_state, /p, /rosout'),
+        ('/left/rotor_state /right/rotor_state /o', '/p', {}, f'{WHICH_ROTOR}--rotor-topic'),
         ('/b /a', '/p', {}, 'which topic is output_state? /a, /b; name it with --output-topic'),
+        (BOTH, '/body_poses', {'rotor': '/motor'}, NO_MOTOR + LEFT),
+        (BOTH, '/body_poses', {'rotor': '/rotor_stat'}, NEARLY + LEFT),
         (
-            '/rotor_state /output_state',
-            '/body_poses',
-            {'rotor': '/motor'},
-            (
-                f'no topic /motor of type {JOINT_STATE} in it; '
-                'there are: /output_state, /rotor_state, /body_poses, /rosout'
-            ),
-        ),
-        (
-            '/rotor_state /output_state',
+            BOTH,
             '/body_poses',
             {'poses': '/output_state'},
-            (
-                f'no topic /output_state of type {POSE_ARRAY} in it, it is of type {JOINT_STATE}; '
-                'there are: /body_poses, /output_state, /rosout, /rotor_state'
-            ),
-        ),
-        (
-            '/rotor_state /output_state',
-            '/body_poses',
-            {'rotor': '/rotor_stat'},
-            (
-                f'no topic /rotor_stat of type {JOINT_STATE} in it; did you mean `/rotor_state`? '
-                'there are: /output_state, /rotor_state, /body_poses, /rosout'
-            ),
+            f'{NO_POSES}/body_poses, /output_state, /rosout, /rotor_state',
         ),
     ],
 )
-def test_a_topic_that_is_not_found_is_named_with_its_bag(joint_states, pose_arrays, given, error):
+def test_a_topic_that_is_not_found_is_named_with_its_bag(joint_states, poses, given, error):
     with pytest.raises(BagError) as raised:
-        find_topics(bag_with(joint_states, pose_arrays), given)
+        find_topics(bag_with(joint_states, poses), given)
     assert str(raised.value) == f'some.mcap: {error}'
 
 
@@ -141,16 +114,6 @@ def test_outputs_are_no_rotor_where_only_that_is_wanted():
 def test_poses_are_not_looked_for_where_there_are_none():
     found = find_topics(bag_with('/m/rotor_state /m/output_state'), poses=False)
     assert (found.rotor, found.output) == ('/m/rotor_state', '/m/output_state')
-
-
-class Described:
-    """What a bag says about its topics."""
-
-    path = Path('some.mcap')
-    type_of = Bag.type_of
-
-    def __init__(self, topics: dict[str, str]) -> None:
-        self.topics = topics
 
 
 @pytest.mark.parametrize(
@@ -177,21 +140,21 @@ class Described:
     ],
 )
 def test_a_missing_topic_is_told_with_what_is_there(topics, name, kind, error):
-    bag = Described(dict.fromkeys(topics, 'std_msgs/msg/String'))
+    bag = described(dict.fromkeys(topics, 'std_msgs/msg/String'))
     with pytest.raises(BagError) as raised:
         bag.type_of(name, kind)
     assert str(raised.value) == f'some.mcap: {error}'
 
 
 def test_topics_of_the_wanted_type_are_named_first():
-    bag = Described({'/a': 'x/msg/X', '/wheel': JOINT_STATE, '/moto': 'x/msg/X'})
+    bag = described({'/a': 'x/msg/X', '/wheel': JOINT_STATE, '/moto': 'x/msg/X'})
     with pytest.raises(BagError, match=r'in it; there are: /wheel, /a, /moto$'):
         bag.type_of('/motor', JOINT_STATE)
     assert bag.type_of('/wheel', JOINT_STATE) == bag.type_of('/wheel') == JOINT_STATE
 
 
 def test_many_long_names_take_no_time():
-    bag = Described(dict.fromkeys((f'/{"motor" * 50}{k}' for k in range(100_000)), 'x/msg/X'))
+    bag = described(dict.fromkeys((f'/{"motor" * 50}{k}' for k in range(100_000)), 'x/msg/X'))
     started = time.process_time()
     with pytest.raises(BagError, match=r'and 99990 more$'):
         bag.type_of('/' + 'motor' * 50)
@@ -207,11 +170,10 @@ def test_many_long_names_take_no_time():
     ],
 )
 def test_the_encoder_at_the_output_is_found_by_name(joint_states, given, found):
-    bag = Described(dict.fromkeys(joint_states.split(), JOINT_STATE))
-    assert find_encoder_topic(bag, given) == found
+    assert find_encoder_topic(bag_with(joint_states), given) == found
 
 
 def test_which_encoder_is_meant_is_asked():
-    bag = Described(dict.fromkeys(['/b/output_encoder', '/a/output_encoder'], JOINT_STATE))
+    bag = bag_with('/b/output_encoder /a/output_encoder')
     with pytest.raises(BagError, match='which topic is output_encoder'):
         find_encoder_topic(bag)

@@ -25,6 +25,7 @@ from rosbags.typesys import Stores, get_typestore
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
+from gear_kinematics.bag.limits import Limits
 from gear_kinematics.commands import cli, output
 from gear_kinematics.parameters import ConfigError, NodeParameters
 from gear_kinematics.ros.live import ReplayError
@@ -301,7 +302,7 @@ def test_a_chunk_of_ros1_that_grows_is_refused(compression, tmp_path, monkeypatc
         )
         writer.write(connection, 1, size.to_bytes(4, 'little') + bytes(size))
     assert path.stat().st_size < size / 100
-    monkeypatch.setattr('gear_kinematics.bag.storage._SPARE_SIZE', size // 2)
+    monkeypatch.setattr(Limits, 'spare_size', size // 2)
     with pytest.raises(BagError, match='a chunk is cut off or too large'), Bag(path) as bag:
         list(bag.messages(bag.topics))
 

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from gear_kinematics.bag import Message
+from gear_kinematics.bag import Message, in_batches
 from gear_kinematics.kinematics import solve
 from gear_kinematics.validation.report import BagReport, FieldReport, TopicReport
 from gear_kinematics.validation.task import Task
@@ -15,7 +15,7 @@ def validate(
     """Validate messages with the options of a `Task`."""
     task = Task(Path('bag'), config, **options)
     validator = Validator(task, *topics, corrected=corrected or {}, solver=solver)
-    validator.feed(messages)
+    validator.feed(in_batches(messages, 8192))
     return validator.report()
 
 

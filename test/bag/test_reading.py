@@ -1,0 +1,188 @@
+"""Bags of every kind are read whole; the expected messages are read by rosbags alone."""
+
+import shutil
+import sqlite3
+import tracemalloc
+from contextlib import closing
+from functools import partial
+from itertools import pairwise
+
+import pytest
+from gear_recordings import old_recording
+from made_bags import (
+    JAZZY,
+    chunks,
+    file_of,
+    folder,
+    lz4_file,
+    lz4_messages,
+    mcap_file,
+    read,
+    renamed_folder,
+    ros1_bag,
+    single_file,
+    split,
+    split_without_metadata,
+)
+from mcap.writer import CompressionType, IndexType
+from rosbags import rosbag1, rosbag2
+from shipped_bags import TYPES, write_bag
+
+from gear_kinematics.bag import Bag
+
+OTHERS = (
+    ('/a', 'my_msgs/msg/Odd', 'cdr', 'ros2msg', b'!! no [definition\xff'),
+    ('/b', 'my.Proto', 'protobuf', 'protobuf', b'\x80\x00\xff'),
+    ('/c', 'Thing', 'json', 'jsonschema', b'{}'),
+    ('/d', 'my_msgs/msg/None', 'cdr', '', b''),
+)
+NO_INDEX = {'index_types': IndexType.NONE, 'repeat_channels': False, 'repeat_schemas': False}
+NO_INDEX |= {'use_statistics': False, 'use_summary_offsets': False}
+KINDS = {
+    'mcap of chunks': partial(folder, storage='mcap', mode='storage'),
+    'names as before version 4': renamed_folder,
+    'odd name': partial(single_file, storage='sqlite3', name='a?b#c %20.db3'),
+    'mcap of lz4 chunks': partial(mcap_file, compression=CompressionType.LZ4),
+    'mcap of zstd chunks': mcap_file,
+    'mcap without chunks': partial(mcap_file, use_chunking=False),
+    'mcap without definitions': partial(mcap_file, definition=False),
+    'other topics, of unknown types': partial(mcap_file, others=OTHERS),
+    'ROS 1': ros1_bag,
+    'ROS 1 lz4': partial(ros1_bag, compression='LZ4'),
+    'ROS 1 bz2': partial(ros1_bag, compression='BZ2'),
+}
+for _storage in ('mcap', 'sqlite3'):
+    for _mode in ('none', 'message', 'file'):
+        KINDS[f'{_storage} {_mode}'] = partial(folder, storage=_storage, mode=_mode)
+        KINDS[f'{_storage} single {_mode}'] = partial(single_file, storage=_storage, mode=_mode)
+    for _maker in (lz4_file, lz4_messages, split, split_without_metadata):
+        KINDS[f'{_storage} {_maker.__name__}'] = partial(_maker, storage=_storage)
+    KINDS[f'{_storage} split file'] = partial(split, storage=_storage, mode='file')
+UNCOUNTED = {
+    'mcap without an index': partial(mcap_file, **NO_INDEX),
+    'unfinished mcap': partial(mcap_file, finish=False),
+    'unfinished mcap without chunks': partial(mcap_file, finish=False, use_chunking=False),
+    'mcap with its index cut off': partial(mcap_file, cut=-1),
+}
+
+
+@pytest.mark.parametrize('kind', [*KINDS, *UNCOUNTED])
+def test_a_bag_of_every_kind_is_read_whole(kind, recorded, tmp_path):
+    path = (KINDS | UNCOUNTED)[kind](tmp_path / 'b', recorded)
+    others = len(OTHERS) if kind.startswith('other') else 0
+    with Bag(path) as bag:
+        assert {name: bag.topics[name] for name in TYPES} == TYPES
+        assert bag.message_count == (None if kind in UNCOUNTED else len(recorded) + others)
+        messages = list(bag.messages(TYPES))
+        assert messages == recorded
+        assert {type(data) for _, _, data in messages} == {bytes}
+        # A second time, and only some.
+        wanted = [message for message in recorded if message[0] == '/body_poses']
+        assert list(bag.messages(['/body_poses', '/nothing'])) == wanted
+        assert not list(bag.messages([]))
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_batches_are_of_bounded_size_and_report_progress(recorded, storage, tmp_path):
+    messages = [(topic, received, data[:4]) for topic, received, data in 20 * recorded]
+    messages += [('/body_poses', 2**62, bytes(2**23))] * 5
+    messages.sort(key=lambda message: message[1])
+    told = []
+    with Bag(folder(tmp_path / 'b', messages, storage)) as bag:
+        batches = list(bag.batches(TYPES, lambda *done: told.append(done)))
+    assert [message for batch in batches for message in batch] == messages
+    assert [len(batch) for batch in batches[:2]] == [8192, 8192]
+    assert max(sum(len(data) for _, _, data in batch) for batch in batches) < 4 * 2**23
+    assert [done for done, _ in told][-1] == len(messages)
+    assert {total for _, total in told} == {len(messages)}
+
+
+def test_big_endian_messages_pass_untouched(recorded, tmp_path):
+    swapped = [
+        (topic, received, bytes(JAZZY.serialize_cdr(message, TYPES[topic], little_endian=False)))
+        for topic, received, data in recorded
+        for message in [JAZZY.deserialize_cdr(data, TYPES[topic])]
+    ]
+    assert {data[:2] for _, _, data in swapped} == {b'\0\0'}
+    for storage in ('mcap', 'sqlite3'):
+        assert read(folder(tmp_path / storage, swapped, storage)) == swapped
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('name', 'topic', 'count'),
+    [
+        ('feetech_servos', '/servo/out/state', 954),
+        ('pr2_joints/pr1012_sensors.bag', '/joint_states', 1325),
+    ],
+)
+def test_real_recordings_are_read(shared_path, name, topic, count):
+    path = shared_path(f'data/bags/{name}')
+    messages = read(path, [topic])
+    assert len(messages) == count
+    with rosbag1.Reader(path) if path.is_file() else rosbag2.Reader(path) as reader:
+        connections = [c for c in reader.connections if c.topic == topic]
+        original = [(topic, time, bytes(data)) for _, time, data in reader.messages(connections)]
+    if path.is_file():
+        kind = 'sensor_msgs/msg/JointState'
+        original = [(t, n, bytes(JAZZY.ros1_to_cdr(d, kind))) for t, n, d in original]
+    assert messages == original
+
+
+def test_sqlite_without_hashes_and_definitions_is_read(recorded, tmp_path):
+    assert read(old_recording(tmp_path / 'old.db3', list(TYPES.items()), recorded)) == recorded
+
+
+def test_sqlite_that_a_killed_recorder_left_with_its_journal_is_read(recorded, tmp_path):
+    file = single_file(tmp_path / 'bag', recorded, 'sqlite3')
+    with closing(sqlite3.connect(file)) as database:
+        database.execute('PRAGMA journal_mode=WAL')
+        database.execute("INSERT INTO messages SELECT 5000, 1, 2000000000000000000, x'00010000'")
+        database.commit()
+        (tmp_path / 'killed').mkdir()
+        for part in (file, file.with_name(f'{file.name}-wal')):
+            shutil.copy(part, tmp_path / 'killed')
+    messages = read(tmp_path / 'killed')
+    assert messages[:-1] == recorded
+    assert messages[-1] == ('/rotor_state', 2 * 10**18, b'\0\1\0\0')
+
+
+@pytest.mark.parametrize('chunk_size', [20_000, 2**20])
+def test_messages_of_an_mcap_are_in_the_order_of_reception(recorded, tmp_path, chunk_size):
+    """Whatever their order in a chunk, and where chunks overlap."""
+    shuffled = list(recorded)
+    for start in range(0, len(recorded), 40):  # less than a chunk of 20 kB holds
+        piece = shuffled[start : start + 40]
+        shuffled[start : start + 40] = sorted(piece, key=lambda m: m[2][::-1])
+    assert shuffled != recorded
+    path = mcap_file(tmp_path / 'b.mcap', shuffled, chunk_size=chunk_size)
+    times = [(chunk.message_start_time, chunk.message_end_time) for chunk in chunks(path)]
+    overlap = any(end > start for (_, end), (start, _) in pairwise(times))
+    assert overlap == (chunk_size == 20_000)
+    assert read(path) == recorded
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('make', [mcap_file, lz4_messages, folder])
+def test_reading_takes_little_memory(recorded, tmp_path, make):
+    messages = [
+        (topic, received + 10**10 * turn, data)
+        for turn in range(40)
+        for topic, received, data in recorded
+    ]
+    storage = {} if make is mcap_file else {'storage': 'sqlite3'}
+    path = make(tmp_path / 'b', messages, **storage)  # lz4 allocates what it may fill
+    tracemalloc.start()
+    with Bag(path) as bag:
+        assert sum(1 for _ in bag.messages(TYPES)) == len(messages)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < sum(len(data) for _, _, data in messages) / 10
+
+
+@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
+def test_a_bag_without_messages_is_written_and_read(tmp_path, storage):
+    with Bag(write_bag(tmp_path / 'bag', [], storage=storage)) as bag:
+        assert (bag.topics, bag.message_count) == (TYPES, 0)
+        assert not list(bag.messages(TYPES))
+        assert file_of(bag.path).name.startswith('bag_0.')
