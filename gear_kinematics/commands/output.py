@@ -18,12 +18,12 @@ from rich.text import Text
 
 from gear_kinematics.bag import ReportProgress
 from gear_kinematics.commands.origin import origin
-from gear_kinematics.commands.paper_size import paper
+from gear_kinematics.commands.paper_size import image_file
 from gear_kinematics.commands.targets import check_targets
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.document import Document, printable
 from gear_kinematics.report.html import to_html
-from gear_kinematics.report.image import Paper, format_of, to_image
+from gear_kinematics.report.image import to_image
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.report.text import render
@@ -111,13 +111,12 @@ class Reporter:
         check_targets(options, given)
         self._silent = bool(to_stdout)
         self._quiet, self._brief = options.quiet, brief
-        self._paper = paper(options)
-        if self._paper != Paper() and not self._plot:
+        if not self._plot and (options.width_mm, options.dpi) != (None, None):
             raise ValueError('--width-mm and --dpi need --plot')
         if self._plot:
             if sections > 1 and not compared:
                 raise ValueError('--plot takes one recording')
-            format_of(Path(self._plot))
+            self._image = image_file(options, self._plot)
         if 'html' in self._targets:
             import_module('plotly')
 
@@ -137,7 +136,7 @@ class Reporter:
             figure = document.figure
             if not figure:
                 raise ValueError(f'{self._plot}: there is nothing to plot')
-            write_file(self._plot, to_image(figure, Path(self._plot), self._paper))
+            write_file(self._plot, to_image(figure, self._image))
         for form, target in self._targets.items():
             write(target, _FORMS[form](document))
 

@@ -3,14 +3,13 @@
 import argparse
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from gear_kinematics import plotting
 from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory
 from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
 from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
-from gear_kinematics.commands.paper_size import add_paper, paper
+from gear_kinematics.commands.paper_size import add_paper, image_file
 from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import (
     Gear,
@@ -19,7 +18,7 @@ from gear_kinematics.kinematics import (
     split_turns,
 )
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.report.image import format_of
+from gear_kinematics.report.image import ImageFile
 
 _DEGREES = 40.0  # rotor angle at which all parts of the scheme can be seen
 _SPEED = 100.0 * math.pi  # rad/s: 3000 rpm
@@ -66,22 +65,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the figure and write its file."""
     check_targets(options, {'FILE': options.out})
-    format_of(Path(options.out))  # its errors, before any work
+    file = image_file(options, options.out)
     config = arguments.node_parameters(options)
     # The output needs no more than the ratio.
     gear = config.gear if options.draw is _output else config.mechanism
-    write_file(options.out, options.draw(options, config, gear, Path(options.out)))
+    write_file(options.out, options.draw(options, config, gear, file))
     if options.draw is _scheme and isinstance(gear, Mechanism) and not options.quiet:
         warn_if_teeth_cannot_mesh(gear, config.module)
     return ExitCode.DONE
 
 
 def _scheme(
-    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, path: Path
+    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, file: ImageFile
 ) -> bytes:
     branch = arguments.branch(options, mechanism)
     rotor = _rotor(options, config)
-    return plotting.scheme(mechanism, config.module, path, rotor, branch, paper(options))
+    return plotting.scheme(mechanism, config.module, file, rotor, branch)
 
 
 def _rotor(options: argparse.Namespace, config: NodeParameters) -> RotorPosition:
@@ -95,25 +94,27 @@ def _rotor(options: argparse.Namespace, config: NodeParameters) -> RotorPosition
 
 
 def _roses(
-    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, path: Path
+    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, file: ImageFile
 ) -> bytes:
     moved = bags.recording(options, config, 'duration')
-    return plotting.roses(mechanism, path, moved, paper(options))
+    return plotting.roses(mechanism, file, moved)
 
 
 def _slides(
-    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, path: Path
+    options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, file: ImageFile
 ) -> bytes:
     moved = _moved(options, config, turns=1)
     by_angle = not options.bag
-    return plotting.slides(mechanism, path, moved, paper(options), by_angle=by_angle)
+    return plotting.slides(mechanism, file, moved, by_angle=by_angle)
 
 
-def _output(options: argparse.Namespace, config: NodeParameters, gear: Gear, path: Path) -> bytes:
+def _output(
+    options: argparse.Namespace, config: NodeParameters, gear: Gear, file: ImageFile
+) -> bytes:
     calibration = calibrations.load(options, config, options.bag)
     cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
     moved = _moved(options, config, turns=cycle)
-    return plotting.output(gear, path, moved, calibration, paper(options))
+    return plotting.output(gear, file, moved, calibration)
 
 
 def _moved(options: argparse.Namespace, config: NodeParameters, turns: int) -> Trajectory:

@@ -1,7 +1,7 @@
 """Figures of the mechanism, as the bytes of image files or for a report.
 
-Plots take the path of the image file, whose suffix determines the format. They raise ValueError
-for an unknown suffix and ModuleNotFoundError without matplotlib.
+Plots take the image file that they are for, whose suffix is its format. They raise ValueError for
+an unknown suffix and ModuleNotFoundError without matplotlib.
 """
 
 from gear_kinematics.plotting.animation import animate, check_animation

@@ -16,7 +16,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
-from gear_kinematics.report.image import FAINT, INK, styled
+from gear_kinematics.report.image import FAINT, INK, canvas
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.outlines import NAMES
 
@@ -41,7 +41,8 @@ def check_animation(path: Path) -> None:
     if suffix not in _WRITERS:
         known = ', '.join(sorted(known[1:] for known in _WRITERS))
         raise ValueError(f'{path}: the suffix of an animation is one of {known}')
-    styled((1.0, 1.0), lambda _: b'')
+    with canvas((1.0, 1.0)):
+        pass
     if suffix == '.mp4':
         _ffmpeg()
 
@@ -81,11 +82,9 @@ def animate(
             f'{path}: too large for a GIF: {len(frames.time)} frames, {width} px wide'
         )
 
-    def draw(figure: Any) -> bytes:
+    with canvas((_WIDTH, _HEIGHT * _WIDTH)) as figure:
         figure.set_dpi(width / _WIDTH)
         return write(figure, _moving(figure, mechanism, module, branch, frames, progress), fps)
-
-    return styled((_WIDTH, _HEIGHT * _WIDTH), draw)
 
 
 def _moving(
@@ -185,7 +184,7 @@ def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
     from matplotlib import rcParams  # noqa: PLC0415, an extra
     from matplotlib.animation import FFMpegWriter  # noqa: PLC0415, an extra
 
-    rcParams['animation.ffmpeg_path'] = _ffmpeg()  # `styled` restores it
+    rcParams['animation.ffmpeg_path'] = _ffmpeg()  # `canvas` restores it
     writer = FFMpegWriter(fps, metadata={'comment': MARK})
     with TemporaryDirectory() as folder:
         path = Path(folder, 'animation.mp4')

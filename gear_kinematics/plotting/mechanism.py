@@ -2,8 +2,6 @@
 
 import math
 from collections.abc import Iterable
-from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,7 +9,7 @@ import numpy as np
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
-from gear_kinematics.report.image import FAINT, INK, Paper, add_legend, render
+from gear_kinematics.report.image import FAINT, INK, ImageFile, add_legend
 from gear_kinematics.shape.outlines import NAMES, Array, Pose, bodies, poses
 
 COLOURS = {
@@ -29,7 +27,6 @@ _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
 _LABEL = 15.0  # points from the labelled point
 _SHORT = 0.2  # eccentricities; too short for a label
 _MM = 1e3  # in a metre
-_PAPER = Paper()
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 
 
@@ -94,12 +91,12 @@ class Centres:
         o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
         for name, start, end in (('e', o1, o3), ('x', o3, o4), ('y', o1, o4)):
             self.lines[name].set_data(*np.transpose([start, end]))
-        for name, body, along in (
-            ('satellite slot', 'satellite', (_DETAIL, 0.0)),
-            ('arm slot', 'output_shaft', (0.0, _DETAIL)),
+        along = np.array([[_DETAIL], [-_DETAIL]])
+        for name, body, axis in (
+            ('satellite slot', 'satellite', [1.0, 0.0]),
+            ('arm slot', 'output_shaft', [0.0, 1.0]),
         ):
-            slot = placed[body].place(np.array([along, np.negative(along)]) * e) / e
-            self.lines[name].set_data(*slot.T)
+            self.lines[name].set_data(*(placed[body].place(e * along * axis) / e).T)
         for body, point in (('satellite', o3), ('oldham', o4)):
             self.points[body].set_data(*point[:, np.newaxis])
         around = 0.5 * (complex(*o3) + abs(complex(*o3)) * _CIRCLE)
@@ -120,42 +117,33 @@ def outlines(mechanism: Mechanism, module: float) -> Figure:
 
 
 def scheme(
-    mechanism: Mechanism,
-    module: float,
-    path: Path,
-    rotor: RotorPosition,
-    branch: int = 0,
-    paper: Paper = _PAPER,
+    mechanism: Mechanism, module: float, file: ImageFile, rotor: RotorPosition, branch: int = 0
 ) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
     The module of the teeth is in m; `rotor` is the position φ2, `branch` an index.
     """
-    draw = partial(_draw_scheme, mechanism, module, rotor, branch)
-    return render(path, (7.4, 4.7), draw, paper)
-
-
-def _draw_scheme(
-    mechanism: Mechanism, module: float, rotor: RotorPosition, branch: int, figure: Any
-) -> None:
-    left, right = figure.subplots(1, 2)
-    drawn = Bodies(left, mechanism, module, branch)
-    drawn.show(rotor)
-    Centres(right, mechanism, branch).show(rotor)
-    placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
-    _label_centres(right, mechanism, placed)
-    add_legend(figure, list(drawn.patches.values()), [NAMES[body] for body in drawn.patches])
-    rotor_angle, output_angle = (
-        f'{math.degrees(placed[body].angle) + 0.0:.4g}°'.replace('-', '−')
-        for body in ('rotor', 'output_shaft')
-    )
-    left.set_title(
-        f'branch {mechanism.branches[branch].name}, '
-        f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}\n'
-        f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
-        fontsize='medium',
-    )
-    right.set_title(f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm', fontsize='medium')
+    with file.canvas(7.4, 4.7) as figure:
+        left, right = figure.subplots(1, 2)
+        drawn = Bodies(left, mechanism, module, branch)
+        drawn.show(rotor)
+        Centres(right, mechanism, branch).show(rotor)
+        placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
+        _label_centres(right, mechanism, placed)
+        add_legend(figure, list(drawn.patches.values()), [NAMES[body] for body in drawn.patches])
+        rotor_angle, output_angle = (
+            f'{math.degrees(placed[body].angle) + 0.0:.4g}°'.replace('-', '−')
+            for body in ('rotor', 'output_shaft')
+        )
+        left.set_title(
+            f'branch {mechanism.branches[branch].name}, '
+            f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}\n'
+            f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
+            fontsize='medium',
+        )
+        eccentricity = f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm'
+        right.set_title(eccentricity, fontsize='medium')
+        return file.encode(figure)
 
 
 def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> None:

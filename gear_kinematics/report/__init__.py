@@ -1,1 +1,1 @@
-"""One document for every report, and its renderings. Knows no other room."""
+"""One document for every report, and its renderings."""

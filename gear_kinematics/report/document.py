@@ -11,7 +11,7 @@ from typing import Any, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.report.drawn import MovingMechanism
+from gear_kinematics.report.mechanism import MovingMechanism
 
 Array = NDArray[np.float64]
 
@@ -53,14 +53,6 @@ class Cell:
         """Return the value with its unit."""
         space = '' if self.unit in _CLOSE else ' '
         return f'{self.text}{space}{self.unit}' if self.text and self.unit else self.text
-
-    def as_subject(self) -> str:
-        """Return the first cell of a row with the unit of all its values."""
-        return f'{self.text} [{self.unit}]' if self.unit else self.text
-
-    def in_row_of(self, subject: 'Cell') -> str:
-        """Return the value, with its unit unless the first cell of the row has the same one."""
-        return self.text if self.unit == subject.unit else self.with_unit()
 
 
 def _cell(value: str | Cell) -> Cell:
@@ -127,12 +119,22 @@ class Table:
                 if cell.text:
                     yield about, column, cell
 
-    def without_empty_columns(self) -> Self:
-        """Return the table without the columns in which no row has a value."""
+    def below_headings(self) -> Self:
+        """Return the table with units in the texts, and without columns that have no value."""
         kept = [k for k in range(len(self.columns)) if any(row[k].text for row in self.rows)]
-        rows = tuple(tuple(row[k] for k in kept) for row in self.rows)
+        rows = (_with_units(row) for row in self.rows)
         columns = tuple(self.columns[k] for k in kept)
-        return replace(self, columns=columns, rows=rows)
+        return replace(
+            self, columns=columns, rows=tuple(tuple(row[k] for k in kept) for row in rows)
+        )
+
+
+def _with_units(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
+    """Return a row with the unit of its first cell there, and other units beside their values."""
+    subject, *cells = row
+    named = replace(subject, text=f'{subject.text} [{subject.unit}]') if subject.unit else subject
+    others = (c if c.unit == subject.unit else replace(c, text=c.with_unit()) for c in cells)
+    return named, *others
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,6 +149,10 @@ class Finding:
 
 _LANE = 0.18
 """Height of a lane / height of other panels."""
+_TICK_ROOM = 50
+"""Most characters of all ticks of a panel that have room in one line."""
+FEW = 100
+"""Most points that are drawn large."""
 
 
 class Pen(StrEnum):
@@ -179,9 +185,9 @@ class Line:
     """± of y, (n,); NaN where it is unknown."""
 
     @property
-    def behind(self) -> bool:
-        """Whether the line is there for comparison only."""
-        return self.pen == Pen.FAINT and not self.points
+    def opacity(self) -> float:
+        """Less for a line that is there for comparison only, behind the others."""
+        return 0.5 if self.pen == Pen.FAINT and not self.points else 1.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -206,8 +212,27 @@ class Panel:
     equal: bool = False
     """Whether both axes have the same scale, as in a drawing."""
     lanes: bool = False
-    """Whether the lines are lanes of events, named by the levels: y has no meaning, and NaN ends
-    an event."""
+    """Whether the lines are lanes of events, named by the levels; NaN ends an event."""
+
+    @property
+    def has_legend(self) -> bool:
+        """Whether a legend names the lines: of a single one, the axis does."""
+        return not self.lanes and len({line.name for line in self.lines}) > 1
+
+    @property
+    def tick_range(self) -> tuple[float, float]:
+        """Ends of an x axis with ticks, with room for their texts."""
+        return self.ticks[0][0] - 0.5, self.ticks[-1][0] + 0.5
+
+    @property
+    def tick_angle(self) -> float:
+        """Degrees by which the texts of ticks are turned, to have room side by side."""
+        return 90.0 if sum(len(text) for _, text in self.ticks) > _TICK_ROOM else 0.0
+
+    @property
+    def lane_range(self) -> tuple[float, float]:
+        """Ends of the y axis of lanes, with room for the name of each below it."""
+        return -len(self.lines) - 0.1, 0.6
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -306,11 +331,7 @@ class Document:
 
 
 def printable(text: str) -> str:
-    """Escape characters that are unsafe in terminals, logs and XML files.
-
-    Names from bags and file systems may contain line ends, escape sequences, marks that change the
-    direction of writing, and bytes that are not text.
-    """
+    """Escape what is unsafe in terminals, logs and XML files, such as control characters."""
     return ''.join(
         char if char.isprintable() else char.encode('unicode_escape').decode() for char in text
     )

@@ -7,7 +7,6 @@ from html import escape
 
 from gear_kinematics.report.document import (
     OUTCOME,
-    Cell,
     Document,
     Finding,
     Layout,
@@ -18,7 +17,7 @@ from gear_kinematics.report.document import (
 )
 from gear_kinematics.report.interactive import interactive
 from gear_kinematics.report.mechanism import Drawings
-from gear_kinematics.report.page import page
+from gear_kinematics.report.page import page, resource
 
 _STACKED_HEIGHT = 11.5  # rem, of each panel
 _ROW_HEIGHT = 30.0  # rem, of each row of panels
@@ -35,14 +34,17 @@ def to_html(document: Document) -> str:
     Raises:
         ModuleNotFoundError: if it has figures and plotly is not installed.
     """
-    sections = document.sections
-    scripts = ['page.js'] if any(section.figure for section in sections) else []
-    if any(section.mechanism for section in sections):
-        scripts.append('motion.js')
+    scripts = []
+    if any(section.figure for section in document.sections):
+        from plotly.offline import get_plotlyjs  # noqa: PLC0415, an extra
+
+        scripts = [get_plotlyjs(), resource('page.js')]
+    if any(section.mechanism for section in document.sections):
+        scripts.append(resource('motion.js'))
     kind = OUTCOME[document.verdict] if document.verdict else document.title
-    about = document.totals if len(sections) != 1 else ''
-    names = about or ', '.join(section.name for section in sections)
-    return page(': '.join(filter(None, [kind, names])), ''.join(_body(document)), scripts=scripts)
+    about = document.totals if len(document.sections) != 1 else ''
+    names = about or ', '.join(section.name for section in document.sections)
+    return page(': '.join(filter(None, [kind, names])), ''.join(_body(document)), scripts)
 
 
 def _body(document: Document) -> Iterator[str]:
@@ -61,7 +63,7 @@ def _body(document: Document) -> Iterator[str]:
         yield f'<section id="section-{k}">\n'
         if several and section.name:
             yield f'<h2>{_badge(section.verdict)}{escape(section.name)}</h2>\n'
-        yield from (_pictured if section.picture_first else _tabled)(section, k, drawings)
+        yield from _section(section, k, drawings)
         if several:
             yield '<p><a href="#top">to the summary</a></p>\n'
         yield '</section>\n'
@@ -82,46 +84,46 @@ def _header(document: Document) -> Iterator[str]:
     yield '</header>\n'
 
 
-def _pictured(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
-    """Write the findings, the first of them large, the figure, and then the folded tables."""
-    first, *others = section.findings or (None,)
-    figure = f'figure-{number}'
-    linked = figure if section.figure else ''
-    if first:
-        yield f'<p class="first {section.verdict or ""}">{_told(first, linked)}</p>\n'
-    further = _list([_told(finding, linked) for finding in others], section.verdict or '')
-    if len(others) > _FEW_FINDINGS:  # the figure is to be on the first screen
-        yield _folded(f'{len(others)} more findings', further)
-    else:
-        yield further
-    yield _table(section.key) if section.key else ''
-    yield from _drawn(section, figure, drawings)
-    yield _list(map(escape, section.remarks), '')
+def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
+    """Write the parts of a section, with a figure that comes first above folded tables."""
     head, *tables = section.tables
-    yield _table(head)
-    yield _folded('Tables', ''.join(map(_table, tables)))
-
-
-def _tabled(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
-    """Write the first table, the figure, and then the other tables."""
-    head, *tables = section.tables
-    yield _table(head)
-    yield _list([_told(finding) for finding in section.findings], section.verdict or '')
-    yield from _drawn(section, f'figure-{number}', drawings)
-    yield f'<div class="drawing">{section.drawing}</div>\n' if section.drawing else ''
-    for table in tables:
-        yield _table(table)
-    yield _list(map(escape, section.remarks), '')
-
-
-def _drawn(section: Section, figure: str, drawings: Drawings) -> Iterator[str]:
-    if not section.figure:
+    name = f'figure-{number}'
+    figure = ''.join(_figure(section, name, drawings))
+    findings = [_sentence(finding, name if figure else '') for finding in section.findings]
+    kind = section.verdict or ''
+    remarks = _list(map(escape, section.remarks), '')
+    below = ''.join(map(_table, tables))
+    if not section.picture_first:
+        drawing = f'<div class="drawing">{section.drawing}</div>\n' if section.drawing else ''
+        yield from (_table(head), _list(findings, kind), figure, drawing, below, remarks)
         return
-    if section.mechanism:
+    if findings:
+        yield f'<p class="first {kind}">{findings.pop(0)}</p>\n'
+    others = _list(findings, kind)
+    many = len(findings) > _FEW_FINDINGS  # the figure is to be on the first screen
+    yield _folded(f'{len(findings)} more findings', others) if many else others
+    yield _table(section.key) if section.key else ''
+    yield from (figure, remarks, _table(head), _folded('Tables', below))
+
+
+def _figure(section: Section, name: str, drawings: Drawings) -> Iterator[str]:
+    """Write the data of a figure, which page.js draws, beside the mechanism that moves with it."""
+    figure, mechanism = section.figure, section.mechanism
+    if not figure:
+        return
+    data = json.dumps(interactive(figure, mechanism), allow_nan=False, separators=(',', ':'))
+    # It must not contain the end tag of the script element.
+    for char in '<>&':
+        data = data.replace(char, f'\\u{ord(char):04x}')
+    rows = figure.shape[0] * _ROW_HEIGHT
+    height = max(_HEIGHT, sum(figure.heights) * _STACKED_HEIGHT if figure.stacked else rows)
+    if mechanism:
         yield '<div class="moving">\n'
-        yield from drawings.moving(section.mechanism, figure)
-    yield from _figure(section, figure)
-    yield '</div>\n' if section.mechanism else ''
+        yield from drawings.moving(mechanism, name)
+    yield f'<div class="figure" id="{name}" style="--height: {height:g}rem">'
+    yield '<noscript>Plots need JavaScript.</noscript></div>\n'
+    yield f'<script type="application/json" data-figure="{name}">{data}</script>\n'
+    yield '</div>\n' if mechanism else ''
 
 
 def _folded(name: str, content: str) -> str:
@@ -132,7 +134,7 @@ def _badge(verdict: Verdict | None) -> str:
     return f'<span class="badge {verdict}">{OUTCOME[verdict]}</span> ' if verdict else ''
 
 
-def _told(finding: Finding, figure: str = '') -> str:
+def _sentence(finding: Finding, figure: str) -> str:
     """Write a finding, as a link to its moment in the figure, if there is one."""
     text = escape(finding.text)
     if finding.time is None or not figure:
@@ -160,24 +162,6 @@ def _footer(origin: Origin | None) -> str:
     )
 
 
-def _figure(section: Section, name: str) -> Iterator[str]:
-    """Write the data of a figure, which page.js draws, in a script element."""
-    figure = section.figure
-    if not figure:
-        return
-    data = json.dumps(
-        interactive(figure, section.mechanism), allow_nan=False, separators=(',', ':')
-    )
-    # It must not contain the end tag of the script element.
-    for char in '<>&':
-        data = data.replace(char, f'\\u{ord(char):04x}')
-    rows = figure.shape[0] * _ROW_HEIGHT
-    height = max(_HEIGHT, sum(figure.heights) * _STACKED_HEIGHT if figure.stacked else rows)
-    yield f'<div class="figure" id="{name}" style="--height: {height:g}rem">'
-    yield '<noscript>Plots need JavaScript.</noscript></div>\n'
-    yield f'<script type="application/json" data-figure="{name}">{data}</script>\n'
-
-
 def _table(table: Table) -> str:
     if not table.rows:
         return ''
@@ -198,25 +182,21 @@ def _values(table: Table) -> str:
 
 def _rows(table: Table, links: Sequence[str] = ()) -> str:
     """Write a table; the first cells of rows are links, if any are given."""
-    table = table.without_empty_columns()
+    table = table.below_headings()
     classes = ['words' if table.is_words(k) else 'number' for k in range(len(table.columns))]
     head = ''.join(
         f'<th scope="col" class="{kind}">{escape(column)}</th>'
         for kind, column in zip(classes, table.columns, strict=True)
     )
-    rows = ''.join(
-        f'<tr>{_row(row, classes, table.columns, links[k] if links else "")}</tr>\n'
-        for k, row in enumerate(table.rows)
-    )
-    return f'<div class="scroll"><table>\n<tr>{head}</tr>\n{rows}</table></div>\n'
-
-
-def _row(row: Sequence[Cell], classes: Sequence[str], columns: Sequence[str], link: str) -> str:
-    subject, *cells = row
-    name = escape(subject.as_subject())
-    linked = f'<a href="{link}">{name}</a>' if link else name
-    return f'<th scope="row" class="{classes[0]} {subject.tone}">{linked}</th>' + ''.join(
-        f'<td class="{kind} {cell.tone}" data-column="{escape(column)}">'
-        f'{escape(cell.in_row_of(subject))}</td>'
-        for kind, column, cell in zip(classes[1:], columns[1:], cells, strict=True)
-    )
+    rows = []
+    for k, (subject, *cells) in enumerate(table.rows):
+        name = escape(subject.text)
+        linked = f'<a href="{links[k]}">{name}</a>' if links else name
+        first = f'<th scope="row" class="{classes[0]} {subject.tone}">{linked}</th>'
+        others = ''.join(
+            f'<td class="{kind} {cell.tone}" data-column="{escape(column)}">'
+            f'{escape(cell.text)}</td>'
+            for kind, column, cell in zip(classes[1:], table.columns[1:], cells, strict=True)
+        )
+        rows.append(f'<tr>{first}{others}</tr>\n')
+    return f'<div class="scroll"><table>\n<tr>{head}</tr>\n{"".join(rows)}</table></div>\n'

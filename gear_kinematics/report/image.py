@@ -1,24 +1,15 @@
 """Writes figures as image files, with matplotlib."""
 
-from collections.abc import Callable, Sequence
-from contextlib import chdir
+from collections.abc import Iterator, Sequence
+from contextlib import chdir, contextmanager
 from dataclasses import dataclass, replace
-from functools import partial
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.report.document import Figure, Panel, Pen
-from gear_kinematics.report.interactive import (
-    BEHIND,
-    FEW,
-    SymmetricLog,
-    is_named,
-    lane_range,
-    tick_angle,
-    tick_range,
-)
+from gear_kinematics.report.document import FEW, Figure, Panel, Pen
 from gear_kinematics.report.mark import MARK
+from gear_kinematics.report.symmetric_log import SymmetricLog
 
 INK, FAINT = '#24292f', '#8c959f'
 SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df', '#cf222e', '#1b7c83')
@@ -58,141 +49,99 @@ _TEXT_HEIGHT = 0.9
 _COLUMN = 4.7
 """Inches; narrower figures are for a column of a paper, with smaller text."""
 _FONT_SIZES = (9.0, 7.0)  # points, of figures for a page and for a column
-_INCH = 25.4  # mm
-_WIDTHS = (30.0, 1000.0)  # mm
-_DOTS = (30, 2400)  # per inch
-_MOST_PIXELS = 20_000
-"""Width of an image."""
+INCH = 25.4  # mm
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
-    """What a figure is for; text has the same size on every paper."""
+class ImageFile:
+    """What a figure is drawn for; text has the same size at every width."""
 
+    path: Path
+    """Its suffix is the format."""
     width_mm: float | None = None
-    """mm; None: the width that suits the figure."""
+    """None: the width that suits the figure."""
     dpi: int = 150
-    """Of image formats that consist of pixels."""
-
-    def __post_init__(self) -> None:
-        """Check the numbers.
-
-        Raises:
-            ValueError: if one is out of bounds, or the image would be too large.
-        """
-        least, most = _WIDTHS
-        if self.width_mm is not None and not least <= self.width_mm <= most:
-            raise ValueError(f'--width-mm must be between {least:g} and {most:g}')
-        if not _DOTS[0] <= self.dpi <= _DOTS[1]:
-            raise ValueError(f'--dpi must be between {_DOTS[0]} and {_DOTS[1]}')
-        if (self.width_mm or 0.0) / _INCH * self.dpi > _MOST_PIXELS:
-            raise ValueError(f'an image is at most {_MOST_PIXELS} pixels wide: reduce --dpi')
+    """Of formats that consist of pixels."""
 
     @property
     def width(self) -> float | None:
         """Inches, if it is given."""
-        return None if self.width_mm is None else self.width_mm / _INCH
+        return None if self.width_mm is None else self.width_mm / INCH
 
+    @property
+    def format(self) -> str:
+        """The format.
 
-_PAPER = Paper()
+        Raises:
+            ValueError: if the suffix is unknown.
+            ModuleNotFoundError: without matplotlib.
+        """
+        with chdir(_FOLDER):
+            from matplotlib.backend_bases import FigureCanvasBase  # noqa: PLC0415, an extra
+        formats = FigureCanvasBase.get_supported_filetypes()
+        if (kind := self.path.suffix[1:].lower()) not in formats:
+            known = ', '.join(sorted(formats))
+            raise ValueError(f'{self.path}: the suffix of a plot must be one of {known}')
+        return kind
 
+    @contextmanager
+    def canvas(self, width: float, height: float, *, scaled: bool = True) -> Iterator[Any]:
+        """Open a figure of matplotlib; the file has to be encoded before it is closed.
 
-def to_image(figure: Figure, path: Path, paper: Paper = _PAPER) -> bytes:
-    """Draw a figure for a file, in the format of the suffix of its path.
+        Args:
+            width: inches, unless the file has a width.
+            height: inches.
+            scaled: whether another width changes the height.
+        """
+        if self.width:
+            ratio = self.width / width if scaled else 1.0
+            width, height = self.width, _TEXT_HEIGHT + (height - _TEXT_HEIGHT) * ratio
+        small = bool(self.width) and width < _COLUMN
+        with canvas((width, height), _FONT_SIZES[small]) as opened:
+            yield opened
 
-    Raises:
-        ValueError: if the suffix is unknown.
-        ModuleNotFoundError: without matplotlib.
-    """
-    narrowest, least = _LEAST_PANEL
-    if figure.stacked:
-        share = sum(figure.heights)
-        width, height = _STACKED[0], min(_STACKED[1], max(least, _TALLEST / share))
-        if paper.width:
-            height = max(least, height * paper.width / width)
-        return render(
-            path, (width, share * height), partial(_draw_panels, figure), paper, scaled=False
-        )
-    if paper.width:  # as many panels side by side as can be read
-        most = max(1, int(paper.width / narrowest))
-        figure = replace(figure, columns=min(most, figure.shape[1]))
-    rows, columns = figure.shape
-    size = columns * _PANEL[0], rows * _PANEL[1]
-    return render(path, size, partial(_draw_panels, figure), paper)
+    def encode(self, figure: Any) -> bytes:
+        """Return the bytes of the file, with our mark where the format has a place for it."""
+        options: dict[str, Any] = {'metadata': _METADATA.get(self.format)}
+        if self.format in _WITH_EXIF:
+            from PIL import Image  # noqa: PLC0415, comes with matplotlib
 
-
-def render(
-    path: Path,
-    size: tuple[float, float],
-    draw: Callable[[Any], None],
-    paper: Paper = _PAPER,
-    *,
-    scaled: bool = True,
-) -> bytes:
-    """Draw on a matplotlib figure, and return the bytes of its file.
-
-    Args:
-        path: its suffix is the format.
-        size: in inches, unless the paper has a width.
-        draw: draws on the figure.
-        paper: what it is for.
-        scaled: whether another width changes the height.
-
-    Raises:
-        ValueError: if the suffix is unknown.
-        ModuleNotFoundError: without matplotlib.
-    """
-    kind = format_of(path)
-
-    def make(figure: Any) -> bytes:
-        draw(figure)
+            exif = Image.Exif()
+            exif[_SOFTWARE] = MARK
+            options = {'pil_kwargs': {'exif': exif}}
         buffer = BytesIO()
-        figure.savefig(buffer, format=kind, dpi=paper.dpi, **_marked(kind))
+        figure.savefig(buffer, format=self.format, dpi=self.dpi, **options)
         return buffer.getvalue()
 
-    width, height = size
-    if paper.width:
-        ratio = paper.width / width if scaled else 1.0
-        width, height = paper.width, _TEXT_HEIGHT + (height - _TEXT_HEIGHT) * ratio
-    return styled((width, height), make, _FONT_SIZES[bool(paper.width) and width < _COLUMN])
 
-
-def _marked(kind: str) -> dict[str, Any]:
-    """Options of savefig for our mark, in the formats that have a place for it."""
-    if kind not in _WITH_EXIF:
-        return {'metadata': _METADATA.get(kind)}
-    from PIL import Image  # noqa: PLC0415, comes with matplotlib
-
-    exif = Image.Exif()
-    exif[_SOFTWARE] = MARK
-    return {'pil_kwargs': {'exif': exif}}
-
-
-def format_of(path: Path) -> str:
-    """Return the format of an image file, which is the suffix of its path.
+def to_image(figure: Figure, file: ImageFile) -> bytes:
+    """Draw a figure for a file.
 
     Raises:
-        ValueError: if the suffix is unknown.
+        ValueError: if its suffix is unknown.
         ModuleNotFoundError: without matplotlib.
     """
-    with chdir(_FOLDER):
-        from matplotlib.backend_bases import FigureCanvasBase  # noqa: PLC0415, an extra
-    formats = FigureCanvasBase.get_supported_filetypes()
-    if (kind := path.suffix[1:].lower()) not in formats:
-        known = ', '.join(sorted(formats))
-        raise ValueError(f'{path}: the suffix of a plot must be one of {known}')
-    return kind
+    least_width, least_height = _LEAST_PANEL
+    if figure.stacked:
+        share = sum(figure.heights)
+        width, height = _STACKED[0], min(_STACKED[1], max(least_height, _TALLEST / share))
+        if file.width:
+            height = max(least_height, height * file.width / width)
+        size = width, share * height
+    else:
+        if file.width:  # as many panels side by side as can be read
+            most = max(1, int(file.width / least_width))
+            figure = replace(figure, columns=min(most, figure.shape[1]))
+        rows, columns = figure.shape
+        size = columns * _PANEL[0], rows * _PANEL[1]
+    with file.canvas(*size, scaled=not figure.stacked) as drawn:
+        _draw_panels(figure, drawn)
+        return file.encode(drawn)
 
 
-def styled(
-    size: tuple[float, float], use: Callable[[Any], bytes], font_size: float = _FONT_SIZES[0]
-) -> bytes:
-    """Return the result of `use` for a new figure in our style.
-
-    Args:
-        size: of the figure, inches.
-        use: what is done with it.
-        font_size: points.
+@contextmanager
+def canvas(size: tuple[float, float], font_size: float = _FONT_SIZES[0]) -> Iterator[Any]:
+    """Open a figure of matplotlib in our style, of a size in inches.
 
     Raises:
         ModuleNotFoundError: without matplotlib.
@@ -201,7 +150,7 @@ def styled(
         from matplotlib import rc_context  # noqa: PLC0415, an extra
         from matplotlib.figure import Figure  # noqa: PLC0415, an extra
     with rc_context({**_STYLE, 'font.size': font_size}):
-        return use(Figure(figsize=size, layout='constrained'))
+        yield Figure(figsize=size, layout='constrained')
 
 
 def add_legend(
@@ -236,7 +185,7 @@ def _draw_panels(figure: Figure, canvas: Any) -> None:
     named = {
         name: handle
         for axes, panel in zip(places, figure.panels, strict=False)
-        if is_named(panel)
+        if panel.has_legend
         for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)
     }
     if named:
@@ -246,7 +195,7 @@ def _draw_panels(figure: Figure, canvas: Any) -> None:
 def _draw(axes: Any, panel: Panel) -> None:
     axes.set_title(panel.title, fontsize='medium', wrap=True)
     axes.set_ylabel(panel.y_label)
-    axes.grid(visible=True, color=FAINT, linewidth=0.3)
+    axes.grid(visible=True)
     if panel.scale == 'log':
         axes.set_xscale('log')
         axes.set_yscale('log')
@@ -260,55 +209,33 @@ def _draw(axes: Any, panel: Panel) -> None:
         axes.set_aspect('equal')
     if panel.lanes:
         axes.set_yticks([])
-        axes.set_ylim(lane_range(panel))
-    named = set()
+        axes.set_ylim(panel.lane_range)
     for line in panel.lines:
         axes.plot(
             line.x,
-            [scale(y) for y in line.y] if scale else line.y,
+            scale.height(line.y) if scale else line.y,
             linestyle='none' if line.points else '--' if line.pen == Pen.MODEL else '-',
             marker='.' if line.points or panel.lanes else 'none',
             markersize=2.0 if len(line.x) > FEW else 6.0,
             linewidth=3.0 if panel.lanes else 1.0,
-            alpha=BEHIND if line.behind else 1.0,
+            alpha=line.opacity,
             color=_PENS[line.pen],
-            label='' if line.name in named else line.name,
+            label=line.name,
         )
         if line.error is not None:
-            axes.errorbar(
-                line.x,
-                line.y,
-                line.error,
-                linestyle='none',
-                linewidth=1.0,
-                capsize=3.0,
-                color=_PENS[line.pen],
-            )
-        named.add(line.name)
+            style = {'linestyle': 'none', 'linewidth': 1.0, 'capsize': 3.0}
+            axes.errorbar(line.x, line.y, line.error, color=_PENS[line.pen], **style)
     if panel.ticks:
-        axes.set_xticks(*zip(*panel.ticks, strict=True), rotation=tick_angle(panel))
-        axes.set_xlim(tick_range(panel))
+        axes.set_xticks(*zip(*panel.ticks, strict=True), rotation=panel.tick_angle)
+        axes.set_xlim(panel.tick_range)
         axes.tick_params('x', labelsize='small')
+    label = {'textcoords': 'offset points', 'va': 'top', 'fontsize': 'small', 'color': FAINT}
     for place, text in panel.marks:
         axes.axvline(place, color=FAINT, linestyle='--', linewidth=0.8)
-        _annotate(axes, text, (place, 0.99), ('data', 'axes fraction'), rotation=90, ha='right')
+        at = {'xycoords': ('data', 'axes fraction'), 'xytext': (-2, 0)}
+        axes.annotate(text, (place, 0.99), rotation=90, ha='right', **at, **label)
     for level, text in panel.levels:
-        place = scale(level) if scale else level
+        place = float(scale.height(level)) if scale else level
         axes.axhline(place, color=FAINT, linestyle='--', linewidth=0.8)
-        _annotate(axes, text, (0.01, place), ('axes fraction', 'data'))
-
-
-def _annotate(
-    axes: Any, text: str, place: tuple[float, float], coordinates: tuple[str, str], **style: Any
-) -> None:
-    axes.annotate(
-        text,
-        place,
-        xycoords=coordinates,
-        xytext=(-2, 0) if style else (0, -2),
-        textcoords='offset points',
-        va='top',
-        fontsize='small',
-        color=FAINT,
-        **style,
-    )
+        at = {'xycoords': ('axes fraction', 'data'), 'xytext': (0, -2)}
+        axes.annotate(text, (0.01, place), **at, **label)

@@ -2,10 +2,12 @@
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from gear_kinematics.report.drawn import Array, DrawnMechanism, MovingMechanism
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.shape.outlines import NAMES, Array, bodies
 
 _RADIUS = 500.0
 """Radius of the drawing, in units of which no screen shows a tenth."""
@@ -22,7 +24,24 @@ _SPEEDS = {
     100.0: '100 × real time',
 }
 """Factors of the playing speed."""
-_FOLLOWED = 360.0  # degrees of the rotor per second, which the eye can follow
+_EASY_RATE = 360.0  # degrees of the rotor per second, which the eye can follow
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class MovingMechanism:
+    """A mechanism that moves with the x axis of the figure."""
+
+    mechanism: Mechanism
+    module: float
+    """Of the teeth, m."""
+    time: Array
+    """(n,), s."""
+    rotor: Array
+    """Angle of the rotor, (n,), degrees."""
+    output: Array
+    """Angle of the output shaft, (n,), degrees."""
+    start: int = 0
+    """Index of the sample that is shown first."""
 
 
 class Drawings:
@@ -31,36 +50,32 @@ class Drawings:
     def __init__(self) -> None:
         self._names: dict[str, str] = {}  # of the shapes, by their paths
 
-    def moving(self, mechanism: MovingMechanism, figure: str) -> Iterator[str]:
-        """Write a mechanism branch by branch, with a slider for the time and a play button.
-
-        Args:
-            mechanism: the mechanism.
-            figure: name of the figure with whose x axis it moves.
-        """
-        yield f'<div class="motion" data-figure="{figure}">\n{_controls(mechanism)}'
-        yield from self.drawn(mechanism.drawn)
+    def moving(self, moving: MovingMechanism, figure: str) -> Iterator[str]:
+        """Write a mechanism with the controls of its motion along the x axis of a figure."""
+        yield f'<div class="motion" data-figure="{figure}">\n{_controls(moving)}'
+        yield from self.branches(moving.mechanism, moving.module)
         yield '</div>\n'
 
-    def drawn(self, mechanism: DrawnMechanism) -> Iterator[str]:
-        """Write a mechanism branch by branch, for an element that has the angles."""
-        shapes = [branch.shapes for branch in mechanism.branches]
-        reach = max(float(np.max(np.abs(outline))) for outline in shapes[0]['stator'])
-        scale = _RADIUS / reach
+    def branches(self, mechanism: Mechanism, module: float) -> Iterator[str]:
+        """Write a mechanism branch by branch, for an element that has the angles.
+
+        The module of the teeth is in m.
+        """
+        drawn = [bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
+        scale = _RADIUS / float(np.max(np.abs(drawn[0]['stator'][0])))
         yield f'<div class="branches" style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
-        for branch in mechanism.branches:
+        for branch, outlines in zip(mechanism.branches, drawn, strict=True):
             yield (
                 f'<figure style="--cam: {math.degrees(branch.cam_phase):.6g}deg">'
                 f'<svg viewBox="{-_VIEW:g} {-_VIEW:g} {2 * _VIEW:g} {2 * _VIEW:g}" role="img" '
                 f'aria-label="branch {branch.name}"><g class="upright">\n'
             )
-            for body, shape in branch.shapes.items():
-                yield f'<use class="{body}" href="#{self._name(shape, scale)}"/>\n'
+            for body, outline in outlines.items():
+                yield f'<use class="{body}" href="#{self._name(outline, scale)}"/>\n'
             for body in ('output_shaft', 'satellite', 'oldham'):
                 yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
-        names = mechanism.body_names
-        legend = ''.join(f'<li class="{body}">{names[body]}</li>' for body in shapes[0])
+        legend = ''.join(f'<li class="{body}">{NAMES[body]}</li>' for body in drawn[0])
         yield f'</div>\n<ul class="legend">{legend}</ul>\n'
 
     def shapes(self) -> str:
@@ -77,8 +92,8 @@ def _closed(points: Array) -> str:
     return f'M{" ".join(f"{x:.1f},{y:.1f}" for x, y in points.tolist())}Z'
 
 
-def _controls(mechanism: MovingMechanism) -> str:
-    speed = _easy_speed(mechanism)
+def _controls(moving: MovingMechanism) -> str:
+    speed = _easy_speed(moving)
     speeds = ''.join(
         f'<option value="{value:g}"{" selected" if value == speed else ""}>{name}</option>'
         for value, name in _SPEEDS.items()
@@ -86,15 +101,14 @@ def _controls(mechanism: MovingMechanism) -> str:
     return (
         '<div class="controls"><button type="button" disabled>Play</button>'
         f'<select aria-label="speed">{speeds}</select><output></output>'
-        f'<input type="range" min="0" max="{len(mechanism.time) - 1}" step="1" '
-        f'value="{mechanism.start}" '
-        'disabled aria-label="time"></div>\n'
+        f'<input type="range" min="0" max="{len(moving.time) - 1}" step="1" '
+        f'value="{moving.start}" disabled aria-label="time"></div>\n'
     )
 
 
-def _easy_speed(mechanism: MovingMechanism) -> float:
+def _easy_speed(moving: MovingMechanism) -> float:
     """Choose the greatest speed at which the eye follows the rotor."""
-    elapsed, moved = np.diff(mechanism.time), np.abs(np.diff(mechanism.rotor))
+    elapsed, turned = np.diff(moving.time), np.abs(np.diff(moving.rotor))
     forward = elapsed > 0.0
-    fastest = float(np.fmax.reduce(moved[forward] / elapsed[forward], initial=0.0))
-    return max((speed for speed in _SPEEDS if speed * fastest <= _FOLLOWED), default=min(_SPEEDS))
+    fastest = float(np.fmax.reduce(turned[forward] / elapsed[forward], initial=0.0))
+    return max((speed for speed in _SPEEDS if speed * fastest <= _EASY_RATE), default=min(_SPEEDS))

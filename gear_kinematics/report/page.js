@@ -1,62 +1,61 @@
 // Draws each figure when it comes into view: the page of a fleet has hundreds.
 'use strict';
 (() => {
-  const colour = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const figures = new Map();
   const phone = matchMedia('(max-width: 40rem)');
+  const probe = document.body.appendChild(document.createElement('i'));
+
+  function colour(name) { // of the style sheet, in the present scheme
+    probe.style.color = `var(--${name})`;
+    return getComputedStyle(probe).color;
+  }
 
   // On a phone, panels that would be side by side are below each other, and texts have more lines.
-  function fitted(element, {time, layout}) {
-    const panels = Object.keys(layout).filter(name => name.startsWith('yaxis'));
+  function fit(element, {time, layout}) {
     element.style.height = '';
     if (!phone.matches) return layout;
-    const fits = {...layout};
-    const wrapped = text => text?.length > 40 ? text.replace(/(.{20,38}) /g, '$1<br>') : text;
-    fits.annotations = layout.annotations.map(note => ({...note, text: wrapped(note.text)}));
-    for (const name of Object.keys(layout).filter(name => name.startsWith('xaxis'))) {
-      fits[name] = {...layout[name], title: {text: wrapped(layout[name].title.text)}};
+    const fitted = structuredClone(layout);
+    const panels = Object.keys(layout).filter(name => name.startsWith('yaxis'));
+    const titles = Object.keys(layout).filter(name => name.startsWith('xaxis')).map(name => fitted[name].title);
+    for (const item of [...fitted.annotations, ...titles]) {
+      if (item.text.length > 40) item.text = item.text.replace(/(.{20,38}) /g, '$1<br>');
     }
-    if (time || panels.length < 2) return fits;
+    if (time || panels.length < 2) return fitted;
     element.style.height = `${20 * panels.length}rem`;
     panels.forEach((name, k) => {
-      const top = 1 - k / panels.length;
-      fits[name] = {...layout[name], domain: [top - 0.65 / panels.length, top]};
-      const across = name.replace('y', 'x');
-      fits[across] = {...fits[across], domain: [0, 1]};
+      fitted[name].domain = [1 - (k + 0.65) / panels.length, 1 - k / panels.length];
+      fitted[name.replace('y', 'x')].domain = [0, 1];
     });
-    return fits;
+    return fitted;
   }
 
   function draw(element) {
     const figure = figures.get(element);
-    const {time, data} = figure;
-    const layout = fitted(element, figure);
-    const grid = {gridcolor: colour('--rule'), linecolor: colour('--rule'), zerolinecolor: colour('--faint')};
+    const layout = fit(element, figure);
+    const axis = {
+      gridcolor: colour('rule'), showline: true, linecolor: colour('rule'), zerolinecolor: colour('faint'),
+    };
     const themed = {
       ...layout,
+      template: {layout: {xaxis: axis, yaxis: axis}},
       paper_bgcolor: 'rgba(0,0,0,0)',
       plot_bgcolor: 'rgba(0,0,0,0)',
-      font: {color: colour('--text'), family: 'system-ui, sans-serif', size: 12},
-      hoverlabel: {bgcolor: colour('--raised'), font: {color: colour('--text')}},
-      hovermode: layout.hovermode ?? 'x unified',
+      font: {color: colour('text'), family: 'system-ui, sans-serif', size: 12},
+      hoverlabel: {bgcolor: colour('raised'), font: {color: colour('text')}},
       hoversubplots: 'axis',
       margin: {l: 90, r: 20, t: phone.matches && layout.showlegend ? 90 : 55, b: phone.matches ? 65 : 50},
-      modebar: {bgcolor: 'rgba(0,0,0,0)', color: colour('--faint'), activecolor: colour('--text')},
-      showlegend: layout.showlegend ?? false,
-      shapes: layout.shapes.map(({meta = 'fail', ...shape}) => ({
+      modebar: {bgcolor: 'rgba(0,0,0,0)', color: colour('faint'), activecolor: colour('text')},
+      shapes: layout.shapes.map(({meta, line, label, ...shape}) => ({
         ...shape,
-        line: {color: colour('--' + meta), dash: 'dash', width: 1, ...shape.line},
-        label: {...shape.label, font: {color: colour('--' + meta), size: 11}},
+        line: {color: colour(meta), width: 1, ...line},
+        label: {...label, font: {color: colour(meta), size: 11}},
       })),
     };
-    for (const name of Object.keys(layout)) {
-      if (name.includes('axis')) themed[name] = {...grid, ...layout[name]};
-    }
-    const traces = data.map(trace => ({
-      ...trace, x: trace.x ?? time, type: 'scatter', mode: trace.mode ?? 'lines',
-      line: {color: colour('--' + trace.meta), width: 1.5, ...trace.line},
-      marker: {color: colour('--' + trace.meta), ...trace.marker},
-      error_y: trace.error_y && {color: colour('--' + trace.meta), ...trace.error_y},
+    const traces = figure.data.map(({meta, ...trace}) => ({
+      x: figure.time, type: 'scatter', mode: 'lines', ...trace,
+      line: {color: colour(meta), width: 1.5, ...trace.line},
+      marker: {color: colour(meta), ...trace.marker},
+      error_y: trace.error_y && {color: colour(meta), ...trace.error_y},
     }));
     // Only these buttons: some others would send the data to a server.
     const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];
@@ -66,10 +65,10 @@
   }
 
   const seen = new IntersectionObserver(entries => {
-    for (const entry of entries) {
-      if (!entry.isIntersecting) continue;
-      seen.unobserve(entry.target);
-      draw(entry.target);
+    for (const {target, isIntersecting} of entries) {
+      if (!isIntersecting) continue;
+      seen.unobserve(target);
+      draw(target);
     }
   }, {rootMargin: '400px'});
 
@@ -94,9 +93,8 @@
     if (!link) return;
     const element = document.getElementById(link.hash.slice(1));
     if (!element.data) draw(element);
-    const {time} = figures.get(element);
     const moment = Number(link.dataset.time);
-    const known = time.filter(at => at !== null);
+    const known = figures.get(element).time.filter(at => at !== null);
     const around = (Math.max(...known) - Math.min(...known)) / 40 || 1;
     Plotly.relayout(element, {'xaxis.range': [moment - around, moment + around]});
     element.dispatchEvent(new CustomEvent('moment', {detail: moment}));

@@ -1,6 +1,6 @@
 """Prints a report as tables on a terminal, or as plain lines in a pipe."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 from rich import box
 from rich.columns import Columns
@@ -40,7 +40,10 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
             its findings.
     """
     if not (console.is_terminal and console.width >= _NARROWEST):
-        _print_lines(lines(document, brief=brief), console)
+        for line in lines(document, brief=brief):
+            # The pipe's encoding may lack characters of a name.
+            written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
+            console.print(Text(written), soft_wrap=True)
         return
     for section in document.sections:
         _render_section(section, console)
@@ -83,13 +86,6 @@ def section_lines(section: Section) -> Iterator[str]:
         yield f'{name}remark: {remark}'
 
 
-def _print_lines(lines: Iterable[str], console: Console) -> None:
-    for line in lines:
-        # The pipe's encoding may lack characters of a name.
-        written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
-        console.print(Text(written), soft_wrap=True)
-
-
 def _render_section(section: Section, console: Console) -> None:
     style = _VERDICT_STYLES[section.verdict]
     if section.name:
@@ -97,9 +93,7 @@ def _render_section(section: Section, console: Console) -> None:
         console.print(Text.assemble(verdict, (section.name, 'bold'), overflow='fold'))
     for finding in section.findings:
         console.print(_bullet(finding.text, '' if section.verdict == Verdict.PASS else style))
-    for table in section.tables:
-        if not table.rows:
-            continue
+    for table in filter(lambda table: table.rows, section.tables):
         if table.layout == Layout.ROWS:
             console.print()
         console.print(_LAYOUTS[table.layout](table))
@@ -135,7 +129,7 @@ def _lines(table: Table) -> RenderableType:
 
 def _rows(table: Table) -> RenderableType:
     """Return rows below headings; words and headings may wrap, numbers do not."""
-    table = table.without_empty_columns()
+    table = table.below_headings()
     rich_table = RichTable(
         box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0), header_style='dim'
     )
@@ -145,9 +139,8 @@ def _rows(table: Table) -> RenderableType:
         else:
             heading = Text('\n'.join(column.rsplit(' ', 1)))
             rich_table.add_column(heading, justify='right', no_wrap=True, vertical='top')
-    for subject, *cells in table.rows:
-        values = (_styled(cell, cell.in_row_of(subject)) for cell in cells)
-        rich_table.add_row(_styled(subject, subject.as_subject()), *values)
+    for row in table.rows:
+        rich_table.add_row(*(_styled(cell, cell.text) for cell in row))
     return rich_table
 
 

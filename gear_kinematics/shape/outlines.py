@@ -72,14 +72,17 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
         shapes['satellite'] = _pierced(satellite, _circle(0.5 * root))
         shapes['rotor'] = _pierced(_circle(0.5 * root, *cam))
         return shapes
-    slot = _rectangle(0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key)
+    low, high, key = 0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key
+    slot = np.array([(low, -key), (high, -key), (high, key), (low, key)])
     mark = _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root))
-    key = [(sizes.tongue, -sizes.key), (sizes.tongue, sizes.key)]
+    tongue = [(sizes.tongue, -key), (sizes.tongue, key)]
     jaws = turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi)
     return shapes | {
         'satellite': _pierced(satellite, _circle(sizes.cam), slot, turned(slot, math.pi), mark),
         'rotor': _pierced(_circle(sizes.cam, *cam), _circle(sizes.shaft)),
-        'oldham': _pierced(_tabbed_circle(sizes.coupling, key, 4), _circle(sizes.coupling_bore)),
+        'oldham': _pierced(
+            _tabbed_circle(sizes.coupling, tongue, 4), _circle(sizes.coupling_bore)
+        ),
         'output_shaft': _pierced(_circle(sizes.rim), jaws),
     }
 
@@ -202,10 +205,6 @@ def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int
 def _circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
     angles = np.arange(0.0, TURN - 0.5 * _ARC, _ARC)
     return np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
-
-
-def _rectangle(low: float, high: float, y: float) -> Array:
-    return np.array([(low, -y), (high, -y), (high, y), (low, y)])
 
 
 def _pierced(border: Array, *holes: Array) -> Outlines:

@@ -97,10 +97,9 @@ def _words(ring_teeth: int, setting: PinSetting, *, mirrored: bool) -> Iterator[
         (24.0, 4.5, f'tooth {setting.tooth}'),
     ):
         yield _text((x, y + dy), size, line, _INK, bold=size > 5.0)  # noqa: PLR2004
-    onward, back = (
-        ('clockwise', 'counterclockwise') if mirrored else ('counterclockwise', 'clockwise')
-    )
-    side = 'along' if mirrored else 'against'
+    onward, back, side = 'counterclockwise', 'clockwise', 'against'
+    if mirrored:
+        onward, back, side = back, onward, 'along'
     lines = (
         f'Seen {side} the z axis. Black triangles are the zero marks, at hole 0.',
         f'Chassis holes and teeth count {onward}, ring holes {back}.',
@@ -125,12 +124,9 @@ def _teeth(ring_teeth: int, setting: PinSetting, sense: int) -> Iterator[str]:
         middle = float(setting.body_turn) + tooth / ring_teeth
         corners = ((_ROOT, -0.3), (_TIP, -0.14), (_TIP, 0.14), (_ROOT, 0.3))
         points = (_place(radius, middle + part * pitch, sense) for radius, part in corners)
-        colour = _PIN if tooth == setting.tooth else _FAINT
-        path = ' '.join(f'{x:.3f},{y:.3f}' for x, y in points)
-        yield f'<polygon class="tooth" points="{path}" fill="{colour}"/>'
-    yield _number(
-        _place(_TOOTH_NUMBER, setting.turn, sense), f'tooth {setting.tooth}', pinned=True
-    )
+        yield _polygon(points, 'tooth', _PIN if tooth == setting.tooth else _FAINT)
+    at = _place(_TOOTH_NUMBER, setting.turn, sense)
+    yield _number(at, f'tooth {setting.tooth}', pinned=True)
 
 
 def _holes(row: _Row, sense: int) -> Iterator[str]:
@@ -149,8 +145,7 @@ def _holes(row: _Row, sense: int) -> Iterator[str]:
     tip, base = row.radius + row.outwards * 8.0, row.radius + row.outwards * 11.5
     corners = ((tip, 0.0), (base, -0.2 / base), (base, 0.2 / base))
     points = (_place(radius, float(row.zero) + part, sense) for radius, part in corners)
-    path = ' '.join(f'{x:.3f},{y:.3f}' for x, y in points)
-    yield f'<polygon class="zero" points="{path}" fill="{_INK}"/>'
+    yield _polygon(points, 'zero', _INK)
 
 
 def _detail(chassis: _Row, ring: _Row, sense: int) -> Iterator[str]:
@@ -183,6 +178,11 @@ def _number(at: Point, number: str, *, pinned: bool) -> str:
     size = 1.5 * _NUMBER if pinned else _NUMBER
     colour = _PIN if pinned else _INK
     return _text((at[0], at[1] + 0.36 * size), size, number, colour, bold=pinned)
+
+
+def _polygon(points: Iterable[Point], name: str, colour: str) -> str:
+    path = ' '.join(f'{x:.3f},{y:.3f}' for x, y in points)
+    return f'<polygon class="{name}" points="{path}" fill="{colour}"/>'
 
 
 def _circle(centre: Point, radius: float, style: str) -> str:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.kinematics import Mechanism, solve, split_turns
+from gear_kinematics.kinematics import solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import (
     Array,
@@ -15,8 +15,7 @@ from gear_kinematics.report.document import (
     Pen,
     printable,
 )
-from gear_kinematics.report.drawn import DrawnBranch, DrawnMechanism, MovingMechanism
-from gear_kinematics.shape.outlines import NAMES, bodies
+from gear_kinematics.report.mechanism import MovingMechanism
 from gear_kinematics.validation.findings import field_name
 from gear_kinematics.validation.report import BagReport, Curve, FieldReport, Lane, Series
 
@@ -119,23 +118,12 @@ def moving(report: BagReport) -> MovingMechanism | None:
     time = np.asarray(report.series[0].time, np.float64)
     worst = _worst_moment(report)
     return MovingMechanism(
-        drawn(mechanism, report.module),
+        mechanism,
+        report.module,
         time,
         _degrees(turns, angle),
         _degrees(output_turns, state.output_turn_angle),
         0 if worst is None else int(np.argmin(np.nan_to_num(np.abs(time - worst), nan=np.inf))),
-    )
-
-
-def drawn(mechanism: Mechanism, module: float) -> DrawnMechanism:
-    """Return what a mechanism looks like; the module of its teeth is in m."""
-    return DrawnMechanism(
-        tuple(
-            DrawnBranch(branch.name, branch.cam_phase, bodies(mechanism, module, k))
-            for k, branch in enumerate(mechanism.branches)
-        ),
-        NAMES,
-        mechanism.eccentricity,
     )
 
 

@@ -4,8 +4,7 @@ from importlib.resources import files
 
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.report.mechanism import Drawings
-from gear_kinematics.report.page import live_page
-from gear_kinematics.validation.figure import drawn
+from gear_kinematics.report.page import page
 
 _BODY = """\
 <header class="bar">
@@ -51,7 +50,7 @@ def watch_page(server: str) -> str:
     style, script = (
         files(__package__).joinpath(f'watch.{kind}').read_text('utf-8') for kind in ('css', 'js')
     )
-    return live_page('gearkin watch', _BODY, style=style, script=script, server=server)
+    return page('gearkin watch', _BODY, [script], style=style, server=server)
 
 
 def drawing(mechanism: Mechanism | None, module: float) -> str:
@@ -59,4 +58,4 @@ def drawing(mechanism: Mechanism | None, module: float) -> str:
     if mechanism is None:
         return '<p>Of this gear only the ratio is known, not its bodies.</p>'
     drawings = Drawings()
-    return ''.join(drawings.drawn(drawn(mechanism, module))) + drawings.shapes()
+    return ''.join(drawings.branches(mechanism, module)) + drawings.shapes()

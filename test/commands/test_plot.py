@@ -2,16 +2,14 @@
 
 import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from blocked_bags import gearkin_here, refusal
+from blocked_bags import refusal
 from gear_recordings import Samples, write_recording
 
-from gear_kinematics.bag import BagWriter
 from gear_kinematics.commands.cli import main
 from gear_kinematics.share import share_directory
 
@@ -20,6 +18,7 @@ pytest.importorskip('matplotlib', reason='matplotlib is not installed')
 from PIL import Image
 
 SERVO = str(share_directory() / 'bags' / 'servo_point_to_point')
+SHAFT = ['--degrees', '1', '--branch-stiffness', '1', '--shaft-stiffness', '1']
 SIGNATURES = {'png': b'\x89PNG\r\n\x1a\n', 'svg': b'<?xml', 'pdf': b'%PDF-', 'gif': b'GIF89a'}
 
 
@@ -116,15 +115,13 @@ def test_animation_of_a_bag_says_how_to_see_the_rotor(tmp_path, capsys):
     path = tmp_path / 'servo.gif'
     part = ('--start-offset', '0.3', '--duration', '0.2', '--fps', '25', '--width', '100')
     assert main(['animate', str(path), '--bag', SERVO, *part]) == 0
-    told = capsys.readouterr().out.splitlines()
-    assert told[0] == f'{path}: 5 frames, 25 per second'
-    assert told[1].startswith('The rotor turns 0.99 times from frame to frame; use --rate ')
-    rate = told[1].split('--rate ')[1].split()[0]
+    frames, advice = capsys.readouterr().out.splitlines()
+    assert frames == f'{path}: 5 frames, 25 per second'
+    told, rate = advice.split('--rate ')
+    assert told.startswith('The rotor turns 0.99 times from frame to frame; use')
+    rate = rate.split()[0]
     assert main(['animate', str(path), '--bag', SERVO, *part, '--rate', rate]) == 0
-    [line] = capsys.readouterr().out.splitlines()
-    with Image.open(path) as image:
-        assert line == f'{path}: {image.n_frames} frames, 25 per second'
-        assert image.n_frames > 10
+    assert len(capsys.readouterr().out.splitlines()) == 1
 
 
 FFMPEG = """#!{python}
@@ -144,30 +141,25 @@ def fake_ffmpeg(folder: Path, monkeypatch, code: int) -> None:
     monkeypatch.setenv('PATH', f'{folder}{os.pathsep}{os.environ["PATH"]}')
 
 
-def test_ffmpeg_gets_every_frame_of_an_mp4(tmp_path, monkeypatch):
+@pytest.mark.parametrize('packaged', [False, True])
+def test_ffmpeg_gets_every_frame_of_an_mp4(packaged, tmp_path, monkeypatch):
+    """That of the system or, where there is none, of a package."""
     fake_ffmpeg(tmp_path / 'bin', monkeypatch, 0)
+    if packaged:
+        monkeypatch.setenv('PATH', str(tmp_path))
+        package = SimpleNamespace(get_ffmpeg_exe=lambda: tmp_path / 'bin' / 'ffmpeg')
+        monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', package)
     path = tmp_path / 'loop.mp4'
     options = ('--speed', '12', '--duration', '0.35', '--fps', '20', '--width', '150')
     assert main(['animate', str(path), *options]) == 0
     size, *command = path.read_text().split()
+    assert command[0] == str(tmp_path / 'bin' / 'ffmpeg')
     width, height = map(int, command[command.index('-s') + 1].split('x'))
-    assert abs(width - 150) <= 1
-    assert abs(height - 100) <= 1
-    assert width % 2 == height % 2 == 0  # what players want
+    assert (width, height) == (150, 100)  # even, as players want
     assert int(size) == 8 * width * height * 4
     assert command[command.index('-framerate') + 1] == '20'
     assert 'yuv420p' in command
     assert {file.name for file in tmp_path.iterdir()} == {'bin', 'loop.mp4'}
-
-
-def test_ffmpeg_is_taken_from_its_package_where_the_system_has_none(tmp_path, monkeypatch):
-    fake_ffmpeg(tmp_path / 'bin', monkeypatch, 0)
-    monkeypatch.setenv('PATH', str(tmp_path))
-    package = SimpleNamespace(get_ffmpeg_exe=lambda: tmp_path / 'bin' / 'ffmpeg')
-    monkeypatch.setitem(sys.modules, 'imageio_ffmpeg', package)
-    path = tmp_path / 'loop.mp4'
-    assert main(['animate', str(path), '--duration', '0.1', '--width', '150']) == 0
-    assert path.read_text().split()[1] == str(tmp_path / 'bin' / 'ffmpeg')
 
 
 MISSING = (
@@ -228,6 +220,14 @@ def test_mp4_with_an_ffmpeg(code, tmp_path, monkeypatch):
             '2388 frames are more than 2000; reduce --duration',
         ),
         (['animate', 'none/a.gif', '--duration', '0.1'], 'none/a.gif: No such file or directory'),
+        (['describe', '--width-mm', '84'], '--width-mm and --dpi need --plot'),
+        (['describe', '--plot', 'a.png', '--dpi', '9'], '--dpi must be between 30 and 2400'),
+        (['plot', 'roses', 'a.png', '--width-mm', '9'], '--width-mm must be between 30 and 1000'),
+        (['plot', 'roses', 'a.png', '--width-mm', 'nan'], '--width-mm must be between 30 and'),
+        (
+            ['plot', 'roses', 'a.png', '--width-mm', '900', '--dpi', '2000'],
+            'an image is at most 20000 pixels wide: reduce --dpi',
+        ),
     ],
 )
 def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_path, monkeypatch):
@@ -236,57 +236,39 @@ def test_unusable_input_gets_one_clear_line_and_no_file(arguments, cause, tmp_pa
     assert list(tmp_path.iterdir()) == []
 
 
-def test_bag_without_a_rotor_topic_is_refused(tmp_path):
-    with BagWriter(tmp_path / 'bag') as writer:
-        writer.add_topic('/poses', 'geometry_msgs/msg/PoseArray')
-    for command in (['plot', 'output'], ['animate']):
-        path = tmp_path / ('a.gif' if command == ['animate'] else 'a.png')
-        error = refusal(*command, path, '--bag', tmp_path / 'bag')
-        assert 'no topic rotor_state of type sensor_msgs/msg/JointState in it' in error
-        assert not path.exists()
-
-
-@pytest.mark.slow
-def test_without_matplotlib_there_is_one_line_and_no_file(tmp_path):
-    code = (
-        'import sys; sys.modules["matplotlib"] = None\n'
-        'from gear_kinematics.commands.cli import main\n'
-        'print(main(["plot", "scheme", "a.png"]), main(["animate", "a.gif"]))'
-    )
-    done = subprocess.run(
-        [sys.executable, '-c', code], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
-    assert done.stdout == '2 2\n'
-    assert (
-        done.stderr
-        == 2 * "gearkin: matplotlib is not installed: pip install 'gear_kinematics[plot]'\n"
-    )
+@pytest.mark.parametrize('arguments', [['plot', 'scheme', 'a.png'], ['animate', 'a.gif']])
+def test_without_matplotlib_there_is_one_line_and_no_file(arguments, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, 'matplotlib', None)
+    error = "matplotlib is not installed: pip install 'gear_kinematics[plot]'"
+    assert refusal(*arguments) == error
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(
-    'arguments',
-    [
-        ['plot', '--help'],
-        *(['plot', kind, '--help'] for kind in ('scheme', 'roses', 'slides', 'output')),
-        ['animate', '--help'],
-    ],
-    ids=' '.join,
-)
-def test_help_is_there(arguments):
-    done = gearkin_here(*arguments)
-    assert done.returncode == 0
-    assert done.stdout.startswith(f'usage: gearkin {arguments[0]}')
+@pytest.mark.parametrize('options', [('plot', 'roses'), ('preload', *SHAFT, '--plot')])
+def test_figures_take_the_width_of_a_paper(options, tmp_path):
+    """84 mm at 300 dots per inch are 992 pixels."""
+    path = tmp_path / 'a.png'
+    assert main([*options, str(path), '--width-mm', '84', '--dpi', '300']) == 0
+    with Image.open(path) as image:
+        assert image.size[0] == 992
 
 
-@pytest.mark.slow
-def test_output_is_plotted_of_a_gear_with_only_a_ratio(tmp_path):
+@pytest.fixture
+def only_ratio(tmp_path) -> str:
+    """Give the configuration of a gear of which only the ratio is known."""
     config = tmp_path / 'other.yaml'
     config.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
-    for motion in ([], ['--bag', str(SERVO)]):
-        out = tmp_path / f'{len(motion)}.png'
-        assert main(['plot', 'output', str(out), '--config', str(config), *motion]) == 0
-        assert out.read_bytes().startswith(b'\x89PNG')
+    return str(config)
+
+
+def test_of_a_gear_with_only_a_ratio_the_output_is_plotted(only_ratio, tmp_path, capsys):
+    out = tmp_path / 'a.png'
+    assert main(['plot', 'output', str(out), '--config', only_ratio, '--bag', SERVO]) == 0
+    assert out.read_bytes().startswith(SIGNATURES['png'])
+    teeth = ['--ring-teeth', '61', '--satellite-teeth', '58']  # replace the ratio
+    assert main(['describe', '--config', only_ratio, *teeth]) == 0
+    assert 'gear ratio: -58/3' in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -298,59 +280,11 @@ def test_output_is_plotted_of_a_gear_with_only_a_ratio(tmp_path):
         ['animate', 'a.gif'],
         ['urdf'],
         ['describe'],
-        ['preload', '--degrees', '1', '--branch-stiffness', '1', '--shaft-stiffness', '1'],
+        ['preload', *SHAFT],
         ['index', '--degrees', '1'],
     ],
     ids=' '.join,
 )
-def test_what_needs_bodies_refuses_a_gear_with_only_a_ratio(arguments, tmp_path, capsys):
-    config = tmp_path / 'other.yaml'
-    config.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
-    assert main([*arguments, '--config', str(config)]) == 2
-    assert capsys.readouterr() == (
-        '',
-        'gearkin: gear_ratio is 1457/26: only the ratio of this gear is known, not its bodies\n',
-    )
-
-
-def test_tooth_numbers_replace_the_ratio(tmp_path, capsys):
-    config = tmp_path / 'other.yaml'
-    config.write_text("/**: {ros__parameters: {gear_ratio: '1457/26'}}", 'utf-8')
-    teeth = ['--ring-teeth', '61', '--satellite-teeth', '58']
-    assert main(['describe', '--config', str(config), *teeth]) == 0
-    assert 'gear ratio: -58/3' in capsys.readouterr().out
-
-
-def test_figures_take_the_width_of_a_paper(tmp_path):
-    """84 mm at 300 dots per inch are 992 pixels."""
-    path = tmp_path / 'roses.png'
-    assert main(['plot', 'roses', str(path), '--width-mm', '84', '--dpi', '300']) == 0
-    with Image.open(path) as image:
-        assert image.size[0] == 992
-    shaft = ['--branch-stiffness', '1', '--shaft-stiffness', '1', '--degrees', '1']
-    plot = tmp_path / 'split.png'
-    assert main(['preload', *shaft, '--plot', str(plot), '--width-mm', '84', '--dpi', '300']) == 0
-    with Image.open(plot) as image:
-        assert image.size[0] == 992
-
-
-@pytest.mark.parametrize(
-    ('arguments', 'cause'),
-    [
-        (['describe', '--width-mm', '84'], '--width-mm and --dpi need --plot'),
-        (['describe', '--plot', 'a.png', '--dpi', '9'], '--dpi must be between 30 and 2400'),
-        (['plot', 'roses', 'a.png', '--width-mm', '9'], '--width-mm must be between 30 and 1000'),
-        (
-            ['plot', 'roses', 'a.png', '--width-mm', 'nan'],
-            '--width-mm must be between 30 and 1000',
-        ),
-        (
-            ['plot', 'roses', 'a.png', '--width-mm', '900', '--dpi', '2000'],
-            'an image is at most 20000 pixels wide: reduce --dpi',
-        ),
-    ],
-)
-def test_sizes_that_no_paper_has_are_refused(arguments, cause, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    assert cause in refusal(*arguments)
-    assert list(tmp_path.iterdir()) == []
+def test_what_needs_bodies_refuses_a_gear_with_only_a_ratio(arguments, only_ratio):
+    error = 'gear_ratio is 1457/26: only the ratio of this gear is known, not its bodies'
+    assert refusal(*arguments, '--config', only_ratio) == error

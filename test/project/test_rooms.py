@@ -134,14 +134,13 @@ ROOMS = {
     'correction': ('kinematics', 'parameters', 'wire'),
     'state': ('correction', 'kinematics', 'parameters', 'shape', 'wire'),
     'bag': ('correction', 'kinematics', 'parameters', 'state', 'wire'),
-    'report': (),
+    'report': ('kinematics', 'shape'),
     'validation': (
         'bag',
         'correction',
         'kinematics',
         'parameters',
         'report',
-        'shape',
         'state',
         'wire',
     ),
@@ -165,7 +164,6 @@ ROOMS = {
         'ros',
         'shape',
         'state',
-        'validation',
         'wire',
     ),
     'commands': (
@@ -267,7 +265,10 @@ def test_rooms_import_only_rooms_before_them():
     ('arguments', 'rooms'),
     [
         (['--version'], ['ros']),  # for the shared memory, before anything else
-        (['validate', 'none'], ['commands', 'ros', 'validation', *ROOMS['validation']]),
+        (
+            ['validate', 'none'],
+            ['commands', 'ros', 'validation', *ROOMS['validation'], *ROOMS['report']],
+        ),
     ],
 )
 def test_programs_load_no_room_that_they_do_not_use(arguments, rooms):

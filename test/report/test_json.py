@@ -2,7 +2,6 @@
 
 import copy
 import json
-import math
 import re
 from dataclasses import fields, replace
 from pathlib import Path
@@ -42,28 +41,20 @@ def loads(text):
     return json.loads(text, parse_constant=lambda name: pytest.fail(f'{name} is no JSON'))
 
 
-def test_schema_is_one(schema):
-    jsonschema.Draft202012Validator.check_schema(schema)
-
-
 def sane(report):
     # A ratio that is none is refused; the hostile one is.
     return replace(report, gear_ratio='-19')
 
 
-@pytest.mark.parametrize('report', samples.ALL, ids=lambda report: ascii(report.bag))
-def test_every_report_follows_the_schema(strict, report):
-    strict.validate(loads(to_json([sane(report)])))
-
-
-def test_many_and_no_bags_follow_the_schema(strict):
-    document = loads(to_json([sane(report) for report in samples.ALL]))
-    strict.validate(document)
-    assert len(document['bags']) == len(samples.ALL)
-    assert document['verdict'] == 'unusable'
-    none = loads(to_json([]))
-    strict.validate(none)
-    assert none['bags'] == []
+def test_every_report_follows_the_schema(schema, strict):
+    jsonschema.Draft202012Validator.check_schema(schema)
+    for reports in ([], *([report] for report in samples.ALL), samples.ALL):
+        text = to_json([sane(report) for report in reports])
+        assert text.isascii()
+        assert not re.search(r'(?<!\\)\\ud[89a-f]', text)  # half a character
+        document = loads(text)
+        strict.validate(document)
+        assert len(document['bags']) == len(reports)
 
 
 @pytest.mark.parametrize(
@@ -117,21 +108,6 @@ def test_numbers_that_are_none_are_null():
     assert not position['passed']
     assert bag['rotor']['rate'] is None
     assert bag['rotor']['max_speed'] is None
-
-
-def test_errors_keep_every_digit():
-    error = math.nextafter(1e-9, 1)
-    topic = replace(samples.OUTPUT, fields=(replace(samples.POSITION, max_error=error),))
-    document = loads(to_json([replace(samples.PASSING, topics=(topic,))]))
-    assert document['bags'][0]['topics'][0]['fields'][0]['max_error'] == error
-
-
-def test_output_is_ascii_and_the_same_every_time():
-    text = to_json(samples.ALL)
-    assert text.isascii()
-    assert text == to_json(samples.ALL)
-    # Half a character, as strict readers refuse it.
-    assert not re.search(r'(?<!\\)\\ud[89a-f]', text)
 
 
 def test_example_of_the_documentation_follows_the_schema(strict):

@@ -32,26 +32,12 @@ def outcomes(suite):
     ]
 
 
-@pytest.mark.parametrize('report', samples.ALL, ids=lambda report: ascii(report.bag))
-def test_every_report_is_valid(schema, report):
-    schema.assertValid(parse(report))
-
-
-def test_many_and_no_bags_are_valid(schema):
-    root = parse(*samples.ALL)
-    schema.assertValid(root)
-    assert [suite.get('id') for suite in root] == [str(k) for k in range(len(samples.ALL))]
-    schema.assertValid(parse())
-
-
-def test_schema_refuses_what_is_no_report(schema):
-    root = parse(samples.FAILING)
-    for attribute in list(root[0].attrib):
-        if attribute != 'skipped':
-            broken = etree.fromstring(etree.tostring(root))
-            del broken[0].attrib[attribute]
-            assert not schema.validate(broken)
-    root[0].append(root[0].find('testcase'))
+def test_every_report_is_valid(schema):
+    for reports in ([], *([report] for report in samples.ALL), samples.ALL):
+        root = parse(*reports)
+        schema.assertValid(root)
+        assert [suite.get('id') for suite in root] == [str(k) for k in range(len(reports))]
+    del root[0].attrib['tests']
     assert not schema.validate(root)
 
 
@@ -106,6 +92,8 @@ def test_unusable_bag_is_an_error_and_keeps_what_was_readable():
     assert suite.get('errors') == '1'
     assert suite.get('failures') == '0'
     assert suite.get('tests') == '9'
+    # A dot would split the class.
+    assert suite.find('testcase').get('classname') == 'logs/power_cut_mcap'
     (unexplained,) = parse(replace(samples.UNUSABLE, error=None))
     assert unexplained.get('errors') == '1'
 
@@ -125,15 +113,3 @@ def test_characters_that_xml_forbids_are_spelled_out():
     assert suite.get('name') == r'run\x1b[31m\x00\n\u202e\ud800\ufffe'
     (suite,) = parse(samples.HOSTILE_NAMES)
     assert suite.get('name') == samples.HOSTILE
-
-
-def test_dots_do_not_split_the_class():
-    case = parse(samples.DAMAGED).find('.//testcase')
-    assert case.get('classname') == 'logs/power_cut_mcap'
-
-
-def test_the_time_is_now_by_default():
-    before = datetime.now(UTC).replace(microsecond=0, tzinfo=None)
-    root = etree.fromstring(to_junit(document([samples.PASSING])).encode())
-    stamp = datetime.fromisoformat(root[0].get('timestamp'))
-    assert before <= stamp <= datetime.now(UTC).replace(tzinfo=None)

@@ -38,36 +38,20 @@ def visible(*reports, width=100):
 
 
 def test_pipe_has_one_fact_per_line_in_the_order_of_the_report():
-    lines = piped(samples.PASSING).splitlines()
-    assert lines[:4] == [
-        'bags/servo: verdict: passed',
-        'bags/servo: config: config/actuator.yaml',
-        'bags/servo: gear ratio: -19',
-        'bags/servo: messages: 12000',
-    ]
-    assert [line for line in lines if ': /output_state position: ' in line] == [
-        'bags/servo: /output_state position: compared: 4000',
-        'bags/servo: /output_state position: absent: 0',
-        'bags/servo: /output_state position: not finite: 0',
-        'bags/servo: /output_state position: max error: 3.2e-15 rad',
-        'bags/servo: /output_state position: rms error: 1.1e-15 rad',
-        'bags/servo: /output_state position: tolerance: 1e-9 rad',
-        'bags/servo: /output_state position: budget used: 0.00032 %',
-        'bags/servo: /output_state position: worst at stamp: 1700000002623456789 ns',
-        'bags/servo: /output_state position: worst at rotor angle: 785.398163 rad',
-    ]
-    assert [line for line in lines if ': /body_poses: ' in line] == [
-        'bags/servo: /body_poses: messages: 4000',
-        'bags/servo: /body_poses: compared: 4000',
-        'bags/servo: /body_poses: missing: 0',
-        'bags/servo: /body_poses: extra: 0',
-        'bags/servo: /body_poses: duplicates: 0',
-        'bags/servo: /body_poses: out of order: 0',
-    ]
-
-
-def test_pipe_tells_the_health_of_the_input():
     lines = piped(samples.FAILING).splitlines()
+    assert lines[0] == f'{samples.FAILING.bag}: verdict: failed'
+    field = [line.split(': ', 2)[2] for line in lines if ': /output_state position: ' in line]
+    assert field[1:] == [
+        'compared: 4000',
+        'absent: 0',
+        'not finite: 0',
+        'max error: 0.002 rad',
+        'rms error: 0.00071 rad',
+        'tolerance: 1e-9 rad',
+        'budget used: 2e8 %',
+        'worst at stamp: 1700000002623456789 ns',
+        'worst at rotor angle: 785.398163 rad',
+    ]
     prefix = f'{samples.FAILING.bag}: /rotor_state'
     assert [line.removeprefix(prefix) for line in lines if line.startswith(prefix)] == [
         ': joint: rotor',
@@ -174,21 +158,12 @@ def test_pipe_that_cannot_express_a_name_gets_it_spelled_out():
     assert 'Prüfstand 7/läuft' in piped(samples.FAILING)
 
 
-def test_terminal_shows_verdict_tables_and_sentences():
-    text = visible(samples.FAILING)
-    assert text.startswith(f'FAILED {samples.FAILING.bag}\n')
-    row = r'/output_state +4005 +3997 +11 +8 +2 +1 *\n'
-    assert re.search(row, text)
-    row = r'/output_state position \[rad\] +4000 +0 +0 +0\.002 +0\.00071 +1e-9 +2e8 % *\n'
-    assert re.search(row, text)
-    assert re.search(r'/output_state position +1700000002623456789 ns +785.398163 rad *\n', text)
-    assert '• /output_state: 1 message out of order\n' in text
-
-
 @pytest.mark.parametrize('width', [80, 100, 160])
 def test_terminal_cuts_nothing_off(width):
     long = replace(samples.FAILING, bag='/very/long/' * 20)
     text = visible(long, samples.PASSING, width=width)
+    assert text.startswith('FAILED \n/very/long/')
+    assert '• /output_state: 1 message out of order\n' in text
     assert '…' not in text
     assert max(map(len, text.splitlines())) <= width
     # What is broken is broken at the edge, or in a cell of the summary.

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from links import pinocchio_configuration
 from live import START
 from rclpy.serialization import deserialize_message
 from sensor_msgs.msg import JointState
@@ -31,6 +32,9 @@ BODIES = {
     'coupling': 'oldham',
     'arm': 'output_shaft',
 }
+ACTUATOR = Mechanism(
+    80, 76, 0.0011, (Branch('a', 0.0, 0.04), Branch('b', math.pi, -0.04))
+)  # the default one
 SPREAD = Mechanism(
     61, 58, 0.001, (Branch('a', 0.7, 0.03), Branch('b', -1.9, 0.0), Branch('c', 2.5, -0.02))
 )
@@ -79,13 +83,6 @@ def written(tmp_path_factory):
     return write
 
 
-@pytest.fixture(
-    params=[SPREAD, FEW_TEETH, CIRCLES], ids=lambda m: f'{m.ring_teeth}-{m.satellite_teeth}'
-)
-def other(request) -> Mechanism:
-    return request.param
-
-
 def assert_outlines_come_back(folder: Path, mechanism: Mechanism) -> set[str]:
     """Compare both faces of every mesh with the outlines of the bodies; returns the names."""
     neutral = Mechanism(
@@ -103,19 +100,23 @@ def assert_outlines_come_back(folder: Path, mechanism: Mechanism) -> set[str]:
     return {path.stem for path in folder.iterdir()}
 
 
-def test_outlines_come_back_within_ten_nanometres(written, actuator):
-    assert assert_outlines_come_back(written(actuator), actuator) == set(BODIES)
-    # They are those of the teeth.
-    ring, satellite = teeth.outlines(actuator, MODULE)
-    [space] = face(imported(written(actuator) / 'ring_gear.stl')).interiors
-    gear = face(imported(written(actuator) / 'satellite.stl')).exterior
+@pytest.mark.parametrize(
+    'mechanism',
+    [ACTUATOR, SPREAD, FEW_TEETH, CIRCLES],
+    ids=lambda m: f'{m.ring_teeth}-{m.satellite_teeth}',
+)
+def test_meshes_are_closed_and_their_outlines_are_within_ten_nanometres(written, mechanism):
+    folder = written(mechanism)
+    names = set(BODIES) - ({'coupling', 'arm'} if mechanism is FEW_TEETH else set())
+    assert assert_outlines_come_back(folder, mechanism) == names
+    for name, solid in solids(mechanism, MODULE).items():
+        assert_closed_and_outwards(folder / f'{name}.stl', solid)
+    # The outlines are those of the teeth.
+    ring, satellite = teeth.outlines(mechanism, MODULE)
+    [space] = face(imported(folder / 'ring_gear.stl')).interiors
+    gear = face(imported(folder / 'satellite.stl')).exterior
     assert deviation(shapely.Polygon(space), shapely.Polygon(ring)) < 1e-8
     assert deviation(shapely.Polygon(gear), shapely.Polygon(satellite)) < 1e-8
-
-
-def test_outlines_of_other_mechanisms_come_back(written, other):
-    names = assert_outlines_come_back(written(other), other)
-    assert names == set(BODIES) - ({'coupling', 'arm'} if other is FEW_TEETH else set())
 
 
 def assert_closed_and_outwards(path: Path, solid) -> None:
@@ -129,16 +130,6 @@ def assert_closed_and_outwards(path: Path, solid) -> None:
     volume = np.sum(first * np.cross(second, third)) / 6.0  # negative if inside out
     assert volume == pytest.approx(polygon(solid.outlines).area * solid.height, rel=1e-5)
     assert np.ptp(triangles[..., 2]) == pytest.approx(solid.height, rel=1e-6)
-
-
-def test_meshes_are_closed_and_their_outside_is_outside(written, actuator):
-    for name, solid in solids(actuator, MODULE).items():
-        assert_closed_and_outwards(written(actuator) / f'{name}.stl', solid)
-
-
-def test_meshes_of_other_mechanisms_are_closed(written, other):
-    for name, solid in solids(other, MODULE).items():
-        assert_closed_and_outwards(written(other) / f'{name}.stl', solid)
 
 
 def test_normals_in_the_files_are_those_of_the_corners(written, actuator):
@@ -179,13 +170,8 @@ class Shown:
         sample = RotorSample(START, split_turns(rotor_angle), None, None)
         [(_, message)] = StateMessages(mechanism, **NAMES).encode(sample, [JOINT_STATES])
         states = deserialize_message(message, JointState)
-        q = np.zeros(model.nq)
-        for name, position in zip(states.name, states.position, strict=True):
-            joint = model.joints[model.getJointId(name)]
-            turns = joint.nq == 2
-            q[joint.idx_q : joint.idx_q + joint.nq] = (
-                (math.cos(position), math.sin(position)) if turns else position
-            )
+        positions = dict(zip(states.name, states.position, strict=True))
+        q = pinocchio_configuration(model, positions)
         pin.updateGeometryPlacements(model, model.createData(), self.geometry, self.data, q)
 
     def meshes(self, name: str) -> list[tuple[shapely.Polygon, float, float]]:
@@ -241,18 +227,15 @@ def test_meshes_are_found_by_the_name_of_the_package(actuator, tmp_path):
     assert len(shown.meshes('satellite')) == 2
 
 
-def test_foxglove_bridge_may_serve_the_installed_meshes(actuator):
+def test_foxglove_bridge_may_serve_the_installed_meshes_which_are_opaque(actuator):
     text = urdf(actuator, module=MODULE, meshes=folder_uri('auto', actuator, MODULE), **NAMES)
     names = re.findall('filename="(.*)"', text)
     # The default of its asset_uri_allowlist, in its oldest form.
     allowed = re.compile(r'package://(?:[-\w%]+/)*[-\w%]+\.(?:dae|obj|stl)')
     assert len(names) == 10
     assert all(allowed.fullmatch(name) for name in names)
-
-
-def test_ring_gears_of_meshes_hide_nothing_and_are_opaque(actuator):
-    text = urdf(actuator, module=MODULE, meshes='package://mine/meshes', **NAMES)
+    # A ring gear hides nothing, and needs not be transparent as the housing of simple shapes.
     assert set(re.findall(r'rgba="\S+ \S+ \S+ (\S+)"', text)) == {'1.0'}
     simple = urdf(actuator, module=MODULE, **NAMES)
     assert 'mesh' not in simple
-    assert '0.35"' in simple  # the housing
+    assert '0.35"' in simple

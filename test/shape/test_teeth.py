@@ -118,12 +118,6 @@ def test_ring_gear_needs_the_turn_of_its_branch(branch):
     assert min(overlaps(mechanism, unturned, branch, mesh_cycle(mechanism))) > 0.01
 
 
-def test_half_a_turn_of_the_cam_is_half_a_pitch_of_the_ring_if_the_difference_is_odd():
-    odd, even = pair_of(61, 58, 1.2), pair_of(80, 76, 1.1)
-    assert abs(ring_phase(odd, odd.branches[1])) == pytest.approx(math.pi / 61, abs=1e-12)
-    assert ring_phase(even, even.branches[1]) == pytest.approx(0.0, abs=1e-12)
-
-
 def test_teeth_that_would_interfere_are_shortened():
     """Teeth of full height overlap here, and a little more height than chosen does too."""
     mechanism = pair_of(80, 76, 1.05)

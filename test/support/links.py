@@ -48,6 +48,17 @@ def link_poses(joints: dict[str, Joint], positions: dict[str, float]) -> dict[st
     return poses
 
 
+def pinocchio_configuration(model, positions: dict[str, float]) -> np.ndarray:
+    """Configuration of Pinocchio: continuous joints have cosine and sine of their angle."""
+    q = np.zeros(model.nq)
+    for name, position in positions.items():
+        joint = model.joints[model.getJointId(name)]
+        turns = joint.nq == 2
+        value = (math.cos(position), math.sin(position)) if turns else position
+        q[joint.idx_q : joint.idx_q + joint.nq] = value
+    return q
+
+
 def displacement(joint: Joint, position: float) -> np.ndarray:
     pose = np.eye(4)
     pose[:3, 3] = joint.origin

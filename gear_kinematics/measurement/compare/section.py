@@ -272,7 +272,7 @@ def _data(change: Change) -> Mapping[str, Any]:
 def _figure(common: Common, groups: Sequence[Group]) -> Figure:
     """Draw the loops of recordings over one another, and their main figures over the groups."""
     ticks = tuple((float(k), printable(group.name)) for k, group in enumerate(groups))
-    lines = tuple(sorted(_loops(groups, common.loops), key=lambda line: not line.behind))
+    lines = tuple(sorted(_loops(groups, common.loops), key=lambda line: line.opacity))
     torque, angle = 'torque at the output [N·m]', 'wind-up at the output [arcmin]'
     panels = [Panel('mean loops', torque, angle, lines)] if lines else []
     places = [  # those of a group side by side
