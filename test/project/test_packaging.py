@@ -2,7 +2,6 @@
 
 import ast
 import email
-import json
 import os
 import re
 import shutil
@@ -304,21 +303,6 @@ def test_make_demo_says_where_ros_has_no_wheels(tree, environment_of_make, tmp_p
         PATH=f'{tmp_path}:{os.environ["PATH"]}',
     )
     assert lines == ['ROS has no wheels for Linux aarch64: install ROS 2 Jazzy, then colcon build']
-
-
-def test_skipped_tests_are_summed_up_in_a_line(tmp_path):
-    (tmp_path / 'test_skipped.py').write_text(
-        'import pytest\n'
-        'def test_one(): pytest.skip("no nft")\n'
-        'def test_two(): pytest.importorskip("launch_none", reason="no launch")\n'
-        'def test_three(): pytest.skip("no nft")\n'
-    )
-    options = ['-p', 'conftest', '-o', f'cache_dir={tmp_path}/cache', '--rootdir', tmp_path]
-    environment = os.environ | {'PYTHONPATH': str(ROOT / 'test')}
-    command = [sys.executable, '-m', 'pytest', '-c', ROOT / 'pyproject.toml', *options, tmp_path]
-    run(*command, cwd=tmp_path, env=environment)
-    line = json.loads((tmp_path / 'cache/v/skipped').read_text())
-    assert line == '3 tests skipped; no launch; no nft'
 
 
 def test_colcon_installs_share(tree, workspace):

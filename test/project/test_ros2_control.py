@@ -89,13 +89,6 @@ def test_hardware_takes_every_output(control, actuator, velocity, effort):
     assert hardware.states == pytest.approx(expected, rel=1e-12, nan_ok=True)
 
 
-def test_hardware_without_an_interface_for_a_field_would_stop(control, actuator):
-    hardware = Hardware(control)
-    del hardware.states['output_shaft/effort']
-    with pytest.raises(RuntimeError, match='not found'):
-        hardware.read(output_state(actuator, 19.0, 0.5))
-
-
 def test_hardware_is_described_by_its_own_names(control):
     assert (control.tag, control.get('type')) == ('ros2_control', 'system')
     assert control.findtext('hardware/plugin') == PLUGIN
