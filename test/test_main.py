@@ -11,7 +11,16 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from blocked_bags import BAGS, DEADLINE, GEARKIN, BlockedBag, gearkin, started, wait_until
+from blocked_bags import (
+    BAGS,
+    DEADLINE,
+    GEARKIN,
+    BlockedBag,
+    finished,
+    gearkin,
+    started,
+    wait_until,
+)
 from mounts import with_mounts
 
 from gear_kinematics.ros.workarounds import shared_memory
@@ -28,38 +37,20 @@ READY = 'gear ratio'
 # What needs no ROS.
 
 
-@pytest.mark.parametrize(
-    ('option', 'first'),
-    [
-        ('--version', 'gear_state_publisher 0.'),
-        ('--help', 'usage: gear_state_publisher '),
-        ('-h', 'usage: gear_state_publisher '),
-    ],
-)
-def test_the_node_answers_without_ros(option, first, tmp_path):
+@pytest.mark.parametrize('option', ['--version', '--help', '-h'])
+def test_the_node_answers_without_ros(option, tmp_path):
     (tmp_path / 'rclpy.py').write_text('raise SystemExit("rclpy was imported")')
-    done = subprocess.run(
-        [*NODE, option, '--ros-args', '-p', 'rotor_joint:=m1'],
-        env=os.environ | {'PYTHONPATH': str(tmp_path)},
-        check=True,
-        capture_output=True,
-        text=True,
-        timeout=DEADLINE,
-    )
+    path = os.pathsep.join([str(tmp_path), os.environ.get('PYTHONPATH', '')])
+    command = [*NODE, option, '--ros-args', '-p', 'rotor_joint:=m1']
+    done = finished(command, env=os.environ | {'PYTHONPATH': path})
+    assert (done.returncode, done.stderr) == (0, '')
+    first = 'gear_state_publisher 0.' if option == '--version' else 'usage: gear_state_publisher '
     assert done.stdout.startswith(first)
-    assert done.stderr == ''
 
 
 @pytest.mark.parametrize('option', ['--version', '--help'])
 def test_what_follows_ros_args_is_for_ros(option, tmp_path):
-    done = subprocess.run(
-        [*NODE, '--ros-args', option],
-        env=os.environ | {'ROS_LOG_DIR': str(tmp_path)},
-        check=False,
-        capture_output=True,
-        text=True,
-        timeout=DEADLINE,
-    )
+    done = finished([*NODE, '--ros-args', option], env=os.environ | {'ROS_LOG_DIR': str(tmp_path)})
     assert (done.returncode, done.stdout) == (2, '')
     assert option in done.stderr
 
@@ -79,42 +70,59 @@ def wait_for_handlers(process) -> None:
     wait_until(lambda: has(process.pid, signal.SIGTERM, 'SigCgt'), 'handlers of signals')
 
 
-def moments(count: int) -> Iterator[tuple[float, float | None]]:
-    """Give moments all over the start of a program, 0 to 1, for half of them another up to 50 ms.
+def interrupted_starts(command, longest: float, count: int, **options) -> Iterator[tuple]:
+    """Interrupt a program at moments all over its start, every other time twice; yields the ends.
 
     The moments are what is tested; nothing is waited for.
     """
     for k in range(count):
-        yield (k + 0.5) / count, 0.05 * (7 * k % count) / count if k % 2 else None
-
-
-def interrupted(process, delay: float, again: float | None) -> tuple[int, str, str]:
-    """Interrupt a program at a moment of its start, perhaps again, and take how it ended."""
-    wait_for_handlers(process)
-    time.sleep(delay)
-    process.send_signal(signal.SIGINT)
-    if again is not None:
-        time.sleep(again)
-        process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=DEADLINE)
-    return process.returncode, output, errors
+        moment = (k + 0.5) / count
+        with started(command, **PIPES, **options) as process:
+            wait_for_handlers(process)
+            time.sleep(moment * longest)
+            process.send_signal(signal.SIGINT)
+            if k % 2:
+                time.sleep(0.05 * (7 * k % count) / count)
+                process.send_signal(signal.SIGINT)
+            output, errors = process.communicate(timeout=DEADLINE)
+        if READY in errors:
+            longest *= moment  # the first start may have been slow
+        yield process.returncode, output, errors
 
 
 def test_nothing_heavy_is_imported_before_signals_are_handled():
     code = 'import sys, gear_kinematics.__main__; print(*sorted(sys.modules))'
-    done = subprocess.run(
-        [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=DEADLINE
-    )
+    done = gearkin(code=code)
     imported = {name for name in done.stdout.split() if name.startswith('gear_kinematics.')}
     names = ('__main__', 'ros', 'ros.workarounds', 'ros.workarounds.shared_memory')
     assert imported == {f'gear_kinematics.{name}' for name in names}
     assert not {'numpy', 'rclpy', 'argparse', 'rich', 'yaml'} & set(done.stdout.split())
 
 
+@pytest.mark.parametrize(
+    ('command', 'unused'),
+    [
+        ('--version', 'bag commands correction kinematics parameters report wire'),
+        ('--help', 'bag correction kinematics measurement parameters plotting shape state'),
+        (f'info {BAG}', 'measurement plotting validation watch'),
+        (f'validate {BAG}', 'measurement plotting watch'),
+        ('describe', 'measurement validation watch'),
+    ],
+    ids=lambda text: text.split()[0],
+)
+def test_a_command_imports_no_room_that_it_does_not_use(command, unused):
+    code = f'try:\n {GEARKIN}\nfinally: print(*sys.modules)'
+    done = gearkin(*command.split(), code=code)
+    assert done.returncode == 0
+    assert 'gear_kinematics.share' in done.stdout.split()
+    rooms = {f'gear_kinematics.{room}' for room in unused.split()}
+    assert not {'rclpy', 'scipy', 'matplotlib', *rooms} & set(done.stdout.split())
+
+
 @pytest.mark.live
 def test_a_node_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
-    options = PIPES | {'env': os.environ | {'ROS_LOG_DIR': str(tmp_path)}}
-    with started(NODE, **options) as process:
+    environment = os.environ | {'ROS_LOG_DIR': str(tmp_path)}
+    with started(NODE, **PIPES, env=environment) as process:
         wait_for_handlers(process)
         begun = time.monotonic()
         assert READY in process.stderr.readline()
@@ -122,15 +130,10 @@ def test_a_node_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
         process.send_signal(signal.SIGINT)
         assert process.wait(DEADLINE) == 0
     early = 0
-    for moment, again in moments(40):
-        with started(NODE, **options) as process:
-            code, output, errors = interrupted(process, moment * longest, again)
+    for code, output, errors in interrupted_starts(NODE, longest, 40, env=environment):
         assert (code, output) == (0, ''), errors
         assert 'Traceback' not in errors
-        if READY in errors:
-            longest *= moment  # the first start may have been slow
-        else:
-            early += 1
+        early += READY not in errors
     assert early >= 10, 'most of the signals came too late to tell anything'
 
 
@@ -147,16 +150,14 @@ def test_gearkin_interrupted_at_any_moment_of_its_start_ends_cleanly(tmp_path):
             longest = 1.2 * (time.monotonic() - begun)
         assert [path.name.startswith('.out') for path in folder.iterdir()] == [True]
         left = list(folder.iterdir())  # by the kill
-        for moment, again in moments(20):
-            with started(command, **PIPES) as process:
-                ended = interrupted(process, moment * longest, again)
+        for ended in interrupted_starts(command, longest, 20):
             assert ended == (130, '', '')
             assert list(folder.iterdir()) == left
 
 
-def gearkin_doing(main: str) -> subprocess.CompletedProcess[str]:
+def gearkin_doing(main: str) -> tuple[int, str, str]:
     """Run gearkin with something else to do, which can interrupt() it."""
-    return gearkin(
+    done = gearkin(
         code=f"""
 import os, signal, sys, time
 from gear_kinematics.__main__ import gearkin
@@ -168,10 +169,11 @@ cli.main = main
 sys.exit(gearkin())
 """
     )
+    return done.returncode, done.stdout, done.stderr
 
 
 def test_a_second_signal_does_not_disturb_the_clean_up_after_the_first():
-    done = gearkin_doing("""
+    ended = gearkin_doing("""
 def main():
     try:
         interrupt()
@@ -180,21 +182,20 @@ def main():
         interrupt()
         print('cleaned up')
 """)
-    assert (done.returncode, done.stdout, done.stderr) == (130, 'cleaned up\n', '')
+    assert ended == (130, 'cleaned up\n', '')
 
 
 def test_an_interruption_that_python_drops_is_repeated():
-    done = gearkin_doing("""
+    ended = gearkin_doing("""
 class Interrupting:
     def __del__(self):
         interrupt()
         time.sleep(60.0)
 def main():
     Interrupting()
-    while True:
-        time.sleep(60.0)
+    time.sleep(60.0)
 """)
-    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+    assert ended == (130, '', '')
 
 
 @pytest.mark.parametrize('end', ['', 'while True: time.sleep(60.0)'], ids=['ends', 'hangs'])
@@ -207,14 +208,13 @@ except KeyboardInterrupt:
     print('lost')
 {end}
 """)
-    done = gearkin_doing(f"""
+    ended = gearkin_doing(f"""
 def main():
     sys.path.insert(0, {str(tmp_path)!r})
     import imported
-    while True:
-        time.sleep(60.0)
+    time.sleep(60.0)
 """)
-    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+    assert ended == (130, '', '')
 
 
 def test_a_background_job_of_a_script_is_not_interrupted(tmp_path):
@@ -242,13 +242,7 @@ def test_gearkin_needs_no_open_streams(streams, tmp_path):
     report = tmp_path / 'report.json'
     command = [sys.executable, '-c', GEARKIN, 'validate', '--jobs', '2']
     for bags, code in (([BAG, BAGS / 'driver_faults'], 0), ([tmp_path / 'none'], 2)):
-        done = subprocess.run(
-            closing(streams, *command, *bags, '--json', report),
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=DEADLINE,
-        )
+        done = finished(closing(streams, *command, *bags, '--json', report))
         assert done.returncode == code, done.stderr
         assert 'Traceback' not in done.stderr
         assert bool(done.stdout) == (code == 0 and '>&-' not in streams.split())
@@ -273,39 +267,26 @@ def test_an_error_that_cannot_be_said_has_its_exit_code():
 
 # What is not installed.
 
-ROS = "rclpy is not installed: source a ROS 2 installation, or pip install 'gear_kinematics[ros]'"
-
 
 @pytest.mark.parametrize(
-    'arguments', [['demo'], ['replay', BAG], ['validate', '--live', BAG]], ids=lambda x: x[0]
+    ('program', 'package'),
+    [
+        ('gearkin', 'rclpy'),
+        ('gear_state_publisher', 'rclpy'),
+        ('gear_state_publisher', 'visualization_msgs'),
+    ],
 )
-def test_without_ros_there_is_one_line_that_names_the_extra(arguments):
-    done = gearkin(*arguments, code=f'import sys; sys.modules["rclpy"] = None; {GEARKIN}')
-    assert (done.returncode, done.stdout, done.stderr) == (2, '', f'gearkin: {ROS}\n')
-
-
-def test_without_ros_the_node_says_so():
+def test_without_ros_or_its_messages_there_is_one_line_that_names_the_extra(program, package):
     code = (
-        'import sys; sys.modules["rclpy"] = None\n'
-        'from gear_kinematics.__main__ import gear_state_publisher\n'
-        'sys.exit(gear_state_publisher())'
+        f'import sys; sys.modules[{package!r}] = None\n'
+        f'from gear_kinematics.__main__ import {program}; sys.exit({program}())'
     )
-    done = gearkin(code=code)
+    done = gearkin(*(['demo'] if program == 'gearkin' else []), code=code)
     assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr == f'gear_state_publisher: {ROS}\n'
-
-
-def test_without_a_message_package_the_node_names_it():
-    code = (
-        'import sys; sys.modules["visualization_msgs"] = None\n'
-        'from gear_kinematics.__main__ import gear_state_publisher\n'
-        'sys.exit(gear_state_publisher())'
+    assert done.stderr == (
+        f'{program}: {package} is not installed: source a ROS 2 installation, or '
+        "pip install 'gear_kinematics[ros]'\n"
     )
-    done = gearkin(code=code)
-    assert done.returncode == 2
-    [line] = done.stderr.splitlines()
-    assert line.startswith('gear_state_publisher: ')
-    assert 'visualization_msgs' in line
 
 
 # Shared memory.
@@ -316,25 +297,11 @@ def in_shared_memory(size: str, *command: object) -> list[str]:
     return with_mounts(f'-t tmpfs -o size={size} none /dev/shm', *command)
 
 
-@pytest.mark.parametrize(
-    ('program', 'arguments'),
-    [
-        ('gear_state_publisher', NODE),
-        *(
-            ('gearkin', [sys.executable, '-c', GEARKIN, *arguments])
-            for arguments in (['demo'], ['replay', BAG], ['validate', '--live', BAG])
-        ),
-    ],
-    ids=['node', 'demo', 'replay', 'validate --live'],
-)
-def test_without_shared_memory_there_is_one_line_and_no_bus_error(program, arguments):
-    done = subprocess.run(
-        in_shared_memory('4k', *arguments),
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=DEADLINE,
-    )
+@pytest.mark.parametrize('command', [['demo'], ['replay', BAG], ['validate', '--live', BAG], None])
+def test_without_shared_memory_there_is_one_line_and_no_bus_error(command):
+    program = 'gearkin' if command else 'gear_state_publisher'
+    words = [sys.executable, '-c', GEARKIN, *command] if command else NODE
+    done = finished(in_shared_memory('4k', *words))
     assert (done.returncode, done.stdout) == (2, '')
     assert done.stderr == (
         f'{program}: ROS cannot start, /dev/shm is full: remove what crashed processes left '

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from gear_kinematics import plotting
 from gear_kinematics.bag.trajectory import Trajectory
-from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import progress, warn_if_teeth_cannot_mesh, write_file
-from gear_kinematics.commands.targets import add_force, check_targets
+from gear_kinematics.commands import ExitCode, arguments, bags, drawing
+from gear_kinematics.commands.files import check_targets, write_file
+from gear_kinematics.commands.output import progress
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 
@@ -20,13 +20,7 @@ _AMBIGUOUS = 0.5  # turns of the rotor from frame to frame: its direction cannot
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument('out', metavar='FILE', help='image file: .gif or .mp4')
-    arguments.add_mechanism(parser)
-    arguments.add_sizes(parser)
-    add_force(parser)
-    arguments.add_quiet(parser)
-    motions = parser.add_mutually_exclusive_group()
-    bags.add_recording(parser, motions)
+    motions = drawing.add_image(parser, '.gif or .mp4')
     motions.add_argument(
         '--speed',
         type=float,
@@ -43,14 +37,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--width', type=int, default=420, metavar='PX', help='of the frames (default: %(default)s)'
     )
-    arguments.add_branch(parser)
+    drawing.add_branch(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Draw the frames, write the file and print its length."""
+    path = Path(options.out)
     check_targets(options, {'FILE': options.out})
-    plotting.check_animation(Path(options.out))
-    config = arguments.node_parameters(options)
+    plotting.check_animation(path)
+    config = arguments.load_config(options, options.bag)
     mechanism, module = config.mechanism, config.module
     for name, (low, high) in _BOUNDS.items():
         if not low <= (given := getattr(options, name)) <= high:
@@ -62,18 +57,18 @@ def run(options: argparse.Namespace) -> ExitCode:
         content = plotting.animate(
             mechanism,
             module,
-            Path(options.out),
+            path,
             frames,
             fps=options.fps,
             width=options.width,
-            branch=arguments.branch(options, mechanism),
+            branch=drawing.branch(options, mechanism),
             progress=lambda done: bars.update(task, completed=done),
         )
     write_file(options.out, content)
     if options.quiet:
         return ExitCode.DONE
     print(f'{options.out}: {count} frames, {options.fps} per second')
-    warn_if_teeth_cannot_mesh(mechanism, module)
+    drawing.warn_if_teeth_cannot_mesh(mechanism, module)
     step = frames.longest_step
     if step > _AMBIGUOUS:
         rate = 0.5 * options.rate * _AMBIGUOUS / step

@@ -1,16 +1,20 @@
-"""Arguments about recordings that several commands have in common."""
+"""Arguments about bags, and the files beside them, that several commands have in common."""
 
 import argparse
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
 from gear_kinematics.bag import fleet
 from gear_kinematics.bag.trajectory import Trajectory, read_trajectory
-from gear_kinematics.commands.arguments import positive
+from gear_kinematics.commands.arguments import beside, count, positive
 from gear_kinematics.commands.output import message_progress, progress
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
+
+CALIBRATION = 'calibration.yaml'
+"""Name of a calibration beside a bag."""
 
 
 def add_rotor(parser: argparse._ActionsContainer, *, configured: bool = True) -> None:
@@ -34,21 +38,6 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
     for topic in ('output', 'poses'):
         text = '(default: found by type and name)'
         parser.add_argument(f'--{topic}-topic', metavar='NAME', help=text)
-
-
-def add_encoders(parser: argparse.ArgumentParser) -> None:
-    """Add the options for both encoders in a bag; `load_config` applies `--max-gap`."""
-    topics = parser.add_argument_group('topics of a bag')
-    add_rotor(topics)
-    topics.add_argument(
-        '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
-    )
-    topics.add_argument(
-        '--max-gap',
-        type=positive,
-        metavar='S',
-        help='between interpolated rotor states (default: transmission_error_max_gap)',
-    )
 
 
 def add_recording(
@@ -90,13 +79,58 @@ def recording(
         return whole.between(start, start + duration)
 
 
-def distributed(
+def add_calibration(parser: argparse.ArgumentParser) -> None:
+    """Add the option for a calibration of the gear."""
+    parser.add_argument(
+        '--calibration',
+        type=Path,
+        metavar='FILE',
+        help='calibration of the gear (default: the parameter `calibration`, or else '
+        f'{CALIBRATION} beside the bag)',
+    )
+
+
+def calibration_path(
+    options: argparse.Namespace, config: NodeParameters, bag: Path | None
+) -> Path | None:
+    """The given calibration, or that of the parameters, or the one in the bag's folder."""
+    if given := options.calibration or config.calibration:
+        return Path(given)
+    return beside(bag, CALIBRATION) if bag else None
+
+
+def load_calibration(
+    options: argparse.Namespace, config: NodeParameters, bag: Path | None
+) -> Calibration | None:
+    """Load the calibration at `calibration_path`.
+
+    Raises:
+        ValueError: if it cannot be used for the gear, or the parameters describe none.
+    """
+    gear, path = config.gear, calibration_path(options, config, bag)
+    return Calibration.load(path, gear) if path else None
+
+
+def add_fleet(ways: argparse._ActionsContainer) -> None:
+    """Add the options that distribute many recordings; see `results`."""
+    ways.add_argument('--jobs', type=count, default=1, metavar='N', help='processes')
+    ways.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
+
+
+def results(
     options: argparse.Namespace,
     work: fleet.Work[fleet.Task, fleet.Report],
     tasks: Sequence[fleet.Task],
     unit: str,
+    run: Callable[[fleet.Task], fleet.Report],
 ) -> Iterator[tuple[fleet.Task, fleet.Report]]:
-    """Work in processes or on a cluster, as the options of `add_fleet` say, showing progress."""
+    """Yield tasks and reports as they are ready: of `run`, or of `work` if `add_fleet` says so.
+
+    Processes and clusters do the work with a progress in the unit; `run` shows its own.
+    """
+    if not options.scheduler and options.jobs == 1:
+        yield from ((task, run(task)) for task in tasks)
+        return
     done = (
         fleet.on_cluster(work, tasks, options.scheduler)
         if options.scheduler

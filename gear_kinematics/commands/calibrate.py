@@ -5,8 +5,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode, arguments, bags, sources
-from gear_kinematics.commands.output import Reporter, complain, message_progress, write
+from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands.encoders import add_recordings, sources
+from gear_kinematics.commands.files import write_text
+from gear_kinematics.commands.output import complain, message_progress
+from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import fit, judge, to_calibration
@@ -18,7 +21,7 @@ from gear_kinematics.parameters import NodeParameters
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
+    add_recordings(parser, 'rotor', 'output', 'torque', 'time')
     parser.add_argument(
         '-o',
         '--output',
@@ -32,11 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='judge this calibration by recordings that it was not made from, and make none',
     )
-    arguments.add_config(parser)
-    arguments.add_ratio(parser)
-    sources.add_options(parser, 'rotor', 'output', 'torque', 'time')
-    bags.add_encoders(parser)
-    arguments.add_report_forms(parser)
+    add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -58,7 +57,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         estimate_ratio=options.fit_ratio,
     )
     if result.helps:
-        write(options.output, to_calibration(result).text())
+        write_text(options.output, to_calibration(result).text())
     reporter.write(
         document(result, options.output), [arguments.config_path(options, options.recordings[0])]
     )
@@ -89,6 +88,6 @@ def _read(
     for path in options.recordings:
         try:
             with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-                yield read_encoders(path, config, sources.given(options), progress)
+                yield read_encoders(path, config, sources(options), progress)
         except (ValueError, OSError) as error:
             complain(error)

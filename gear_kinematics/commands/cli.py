@@ -5,6 +5,7 @@ Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
 
 import argparse
 import re
+import shlex
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -13,11 +14,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.commands import Command, ExitCode
-from gear_kinematics.commands.arguments import parsers
 from gear_kinematics.commands.extras import remedy
-from gear_kinematics.commands.origin import command_line
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
 from gear_kinematics.share import version
 from gear_kinematics.wire.nearest import among
@@ -50,6 +48,7 @@ class _Parser(argparse.ArgumentParser):
         super().__init__(**options)
         # By its own pattern, -58/3 would be an unknown option.
         self._negative_number_matcher = re.compile(r'-\d+(/\d+)?$|-\d*\.\d+$')
+        self.set_defaults(parser=self)  # that of the innermost subcommand remains
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Name the nearest choice, too."""
@@ -74,34 +73,30 @@ class _Parser(argparse.ArgumentParser):
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a subcommand; returns the exit code: 0 done, 1 a check failed, 2 unusable input."""
+    words = [*map(str, sys.argv[1:] if arguments is None else arguments)]
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
-    code = ExitCode.DONE
+    called = next((word for word in words if not word.startswith('-')), '')
     try:
-        options, unknown = _parser_for(arguments).parse_known_args(arguments)
+        parser = make_parser(*([] if called == 'completion' else [called]))
+        options, unknown = parser.parse_known_args(words)
         if unknown:
             options.parser.refuse(unknown)
-        options.command_line = command_line(arguments)
+        options.command_line = shlex.join(['gearkin', *words])
         # Overflows show in the results.
         with closed_pipe_ignored(), np.errstate(all='ignore'):
-            code = options.run(options)
+            return int(options.run(options))
     except (ValueError, OSError, RuntimeError) as error:
         complain(error)
-        code = ExitCode.UNUSABLE
     except ImportError as error:  # an optional package, on first use
         complain(remedy(error))
-        code = ExitCode.UNUSABLE
     except Exception as error:  # noqa: BLE001, the traceback is shown with --debug
-        complain(unexpected(error, debug='--debug' in (arguments or sys.argv)))
-        code = ExitCode.UNUSABLE
-    return code
+        from gear_kinematics.bag.errors import unexpected  # noqa: PLC0415, slow
 
-
-def _parser_for(arguments: Sequence[str] | None) -> argparse.ArgumentParser:
-    """Build the parser with the arguments of the subcommand that is called, if any."""
-    words = sys.argv[1:] if arguments is None else arguments
-    called = next((word for word in words if not word.startswith('-')), '')
-    return make_parser(*([] if called == 'completion' else [called]))
+        complain(unexpected(error, debug='--debug' in words))
+    else:
+        return ExitCode.DONE  # nobody reads the rest
+    return ExitCode.UNUSABLE
 
 
 def make_parser(*called: str) -> argparse.ArgumentParser:
@@ -124,6 +119,4 @@ def make_parser(*called: str) -> argparse.ArgumentParser:
             '--debug', action='store_true', help='print the traceback of an unexpected error'
         )
         added.set_defaults(run=command.run)
-        for each in parsers(added):
-            each.set_defaults(parser=each)
     return parser

@@ -7,7 +7,7 @@ from pathlib import Path
 from gear_kinematics.bag import Bag, TopicError
 from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import Topics, find_rotor_topic
-from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
+from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import printable
@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     bags.add_rotor(parser)
     bags.add_outputs(parser)
     arguments.add_quiet(parser)
-    calibrations.add_option(parser)
+    bags.add_calibration(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     parser.add_argument(
@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the bag, with its parameters beside it, and print the number of its messages."""
     config = arguments.load_config(options, options.bag)
-    calibration = calibrations.load(options, config, options.bag)
+    calibration = bags.load_calibration(options, config, options.bag)
     with (
         bags.naming(options.bag, options.out),
         Bag(options.bag) as bag,
@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         except TopicError as error:
             raise TopicError(f'{error}; --topics says which topics to copy') from error
     if not options.quiet:
-        _tell(options.out, result)
+        _print_summary(options.out, result)
     if result.rotor_input.mostly_rejected:
         missing = result.rotor_input.missing_joint
         joints = f': {missing}' if missing else ''
@@ -71,13 +71,13 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _files(options: argparse.Namespace, config: NodeParameters) -> dict[str, bytes]:
     """The files with which the bag was computed, which `gearkin validate` finds beside it."""
     files = {}
-    if calibration := calibrations.find(options, config, options.bag):
-        files[calibrations.BESIDE] = calibration.read_bytes()
-    used = replace(config, calibration=calibrations.BESIDE if calibration else '')
+    if calibration := bags.calibration_path(options, config, options.bag):
+        files[bags.CALIBRATION] = calibration.read_bytes()
+    used = replace(config, calibration=bags.CALIBRATION if calibration else '')
     return {default_config().name: used.as_file().encode(), **files}
 
 
-def _tell(out: Path, result: ComputeResult) -> None:
+def _print_summary(out: Path, result: ComputeResult) -> None:
     rotor = result.rotor_input
     rejected = ', '.join(f'{cause} {number}' for cause, number in rotor.rejected.items())
     print(

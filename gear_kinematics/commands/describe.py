@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Reporter
+from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table, number
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
@@ -49,13 +49,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_mechanism(parser)
     arguments.add_sizes(parser)
-    arguments.add_report_forms(parser)
+    add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Report the facts."""
     reporter = Reporter(options)
-    config = arguments.node_parameters(options)
+    config = arguments.load_config(options)
     described, size = config.mechanism, config.module
     facts = [*_facts(described), *_tooth_facts(described, size)]
     values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)

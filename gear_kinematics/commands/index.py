@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Reporter, write
+from gear_kinematics.commands import ExitCode, arguments, bracing
+from gear_kinematics.commands.files import write_text
+from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import vernier
-from gear_kinematics.kinematics.preload import Preload, ring_phase
+from gear_kinematics.kinematics.preload import Preload, Stiffness, ring_phase
 from gear_kinematics.kinematics.vernier import Choice, PinSetting
 from gear_kinematics.measurement.preload.file import MeasuredPreload, read_advice
 from gear_kinematics.measurement.wording import PERCENT, plain, plus_minus
@@ -44,6 +45,8 @@ class _Row(NamedTuple):
     choice: Choice
     preload: float | None
     """N·m; None without a stiffness."""
+    preload_error: float | None
+    """`preload` minus that at the wanted turn, N·m."""
 
 
 class _Answer(NamedTuple):
@@ -70,7 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_mechanism(parser)
     ways = parser.add_mutually_exclusive_group()
-    arguments.add_ring_turn(ways)
+    bracing.add_ring_turn(ways)
     ways.add_argument(
         '--preload',
         type=float,
@@ -92,18 +95,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--phase-b', action='store_true', help='add the turn for the cam phase of branch B'
     )
-    arguments.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
+    bracing.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
     parser.add_argument(
         '--neighbours', type=int, default=3, metavar='N', help='on either side (default: 3)'
     )
-    arguments.add_report_forms(parser)
+    add_report_forms(parser)
     parser.add_argument(
         '--drawing', metavar='FILE', help='draw the holes as SVG on a page of A4 (-: stdout)'
     )
     parser.add_argument(
         '--mirrored', action='store_true', help='draw as seen along the z axis, not against it'
     )
-    arguments.add_stiffness(parser)
+    bracing.add_stiffness(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -118,7 +121,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         notes = [' '.join(fact) for fact in _outcome(answer)]
         drawing = draw(answer.ring_teeth, setting, notes, mirrored=options.mirrored)
     if options.drawing:
-        write(options.drawing, f'{drawing}<!-- {MARK} -->\n')
+        write_text(options.drawing, f'{drawing}<!-- {MARK} -->\n')
     reporter.write(
         Document('gearkin index', (_section(answer, drawing),), _data(answer)),
         [arguments.config_path(options)],
@@ -127,60 +130,59 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _answer(options: argparse.Namespace) -> _Answer:
-    known, bracing = arguments.stiffness(options), arguments.ring_turn(options)
+    stiffness, turn = bracing.stiffness(options), bracing.ring_turn(options)
     backlash = options.backlash or 0.0
-    measured = None
-    if options.measured:
-        if known:
-            raise ValueError('--measured contains the stiffness and backlash, give no others')
-        measured = read_advice(options.measured)
-        if options.load and options.load != measured.load:
-            made = f'for {measured.load:g} N·m' if measured.load else 'without --load'
-            raise ValueError(f'{options.measured}: made {made}, not for {options.load:g} N·m')
-        known, backlash = measured.preload.stiffness, measured.preload.play
-        # The greatest turn that may be needed suffices.
-        bracing = measured.least.high
-    elif options.load:
-        raise ValueError('--load needs --measured')
-    if bracing is None and options.preload is None and not options.phase_b:
+    measured = _measured(options, stiffness)
+    if measured:
+        stiffness, backlash = measured.preload.stiffness, measured.preload.play
+        turn = measured.least.high  # the greatest that may be needed suffices
+    if turn is None and options.preload is None and not options.phase_b:
         raise ValueError('give --angle, --degrees, --preload, --measured or --phase-b')
     if not 0 <= options.neighbours <= _MAX_NEIGHBOURS:
         raise ValueError(f'--neighbours must be 0 to {_MAX_NEIGHBOURS}, not {options.neighbours}')
-    # The vernier alone does not depend on the satellite.
-    pair = (
-        arguments.mechanism(options)
-        if known or options.phase_b or not options.ring_teeth
-        else None
-    )
-    ring_teeth = pair.ring_teeth if pair else options.ring_teeth
+    pair, ring_teeth = None, options.ring_teeth
+    if stiffness or options.phase_b or not ring_teeth:  # the vernier alone needs no satellite
+        pair = arguments.load_config(options).mechanism
+        ring_teeth = pair.ring_teeth
     if measured and pair and not math.isclose(measured.scale, ring_teeth / pair.satellite_teeth):
         raise ValueError(f'{options.measured}: measured on a gear with other teeth')
-    phase = ring_phase(pair) if pair and options.phase_b else None
     if options.preload is not None:
-        if not (pair and known):
+        if not (pair and stiffness):
             raise ValueError('--preload needs the stiffness of branches and shaft')
-        wanted = Preload.from_torque(known, abs(options.preload))
-        bracing = math.copysign(wanted.ring_turn(pair, backlash), options.preload)
+        wanted = Preload.from_torque(stiffness, abs(options.preload))
+        turn = math.copysign(wanted.ring_turn(pair, backlash), options.preload)
+    phase = ring_phase(pair) if pair and options.phase_b else None
     in_phase = phase or 0.0
-    wanted_turn = arguments.within_a_turn(in_phase + (bracing or 0.0))
 
-    def preload(turn: float) -> float | None:
-        if not (pair and known):
-            return None
-        return Preload.from_ring_turn(pair, known, turn - in_phase, backlash).torque
-
+    ring_turn = bracing.within_a_turn(in_phase + (turn or 0.0))
     start = vernier.pin_setting(ring_teeth, *(options.start or (0, 0, 0)))
-    choices = vernier.choices(ring_teeth, wanted_turn, start, options.neighbours)
-    rows = tuple(_Row(choice, preload(choice.ring_turn)) for choice in choices)
-    return _Answer(
-        ring_teeth,
-        start,
-        phase,
-        wanted_turn,
-        preload(wanted_turn),
-        rows,
-        measured,
+    choices = vernier.choices(ring_teeth, ring_turn, start, options.neighbours)
+    if not (pair and stiffness):
+        rows = tuple(_Row(choice, None, None) for choice in choices)
+        return _Answer(ring_teeth, start, phase, ring_turn, None, rows)
+    at_wanted, *at_choices = (
+        Preload.from_ring_turn(pair, stiffness, angle - in_phase, backlash).torque
+        for angle in (ring_turn, *(choice.ring_turn for choice in choices))
     )
+    rows = tuple(
+        _Row(choice, preload, preload - at_wanted)
+        for choice, preload in zip(choices, at_choices, strict=True)
+    )
+    return _Answer(ring_teeth, start, phase, ring_turn, at_wanted, rows, measured)
+
+
+def _measured(options: argparse.Namespace, stiffness: Stiffness | None) -> MeasuredPreload | None:
+    if not options.measured:
+        if options.load:
+            raise ValueError('--load needs --measured')
+        return None
+    if stiffness:
+        raise ValueError('--measured contains the stiffness and backlash, give no others')
+    measured = read_advice(options.measured)
+    if options.load and options.load != measured.load:
+        made = f'for {measured.load:g} N·m' if measured.load else 'without --load'
+        raise ValueError(f'{options.measured}: made {made}, not for {options.load:g} N·m')
+    return measured
 
 
 def _data(answer: _Answer) -> dict[str, Any]:
@@ -203,10 +205,10 @@ def _data(answer: _Answer) -> dict[str, Any]:
                 'ring_turn': choice.ring_turn,
                 'error': choice.error,
                 'preload': preload,
-                'preload_error': _more(preload, answer.preload),
+                'preload_error': error,
                 'settings': [_pins(setting) for setting in choice.settings],
             }
-            for choice, preload in answer.rows
+            for choice, preload, error in answer.rows
         ],
     }
 
@@ -219,10 +221,6 @@ def _pins(setting: PinSetting) -> dict[str, Any]:
         'turn': str(setting.turn),
         'body_turn': str(setting.body_turn),
     }
-
-
-def _more(preload: float | None, wanted: float | None) -> float | None:
-    return None if preload is None or wanted is None else preload - wanted
 
 
 def _section(answer: _Answer, drawing: str) -> Section:
@@ -247,8 +245,8 @@ def _section(answer: _Answer, drawing: str) -> Section:
 
 
 def _figure(answer: _Answer) -> Figure:
-    steps = np.array([choice.steps for choice, _ in answer.rows], np.float64)
-    error = np.array([arc_seconds(choice.error) for choice, _ in answer.rows])
+    steps = np.array([choice.steps for choice, *_ in answer.rows], np.float64)
+    error = np.array([arc_seconds(choice.error) for choice, *_ in answer.rows])
     line = Line('position', Pen.FIRST, steps, error, points=True)
     label = 'position, steps from the nearest'
     return Figure((Panel('', label, 'error of the turn [″]', (line,), levels=((0.0, 'wanted'),)),))
@@ -264,7 +262,7 @@ def _pinning(answer: _Answer) -> Iterator[tuple[str, str]]:
 
 
 def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
-    choice, preload = answer.nearest
+    choice, preload, more = answer.nearest
     error = f'{arc_seconds(choice.error):+.3f}″'
     yield 'turn', f'{arc(choice.ring_turn)} for a wanted {arc(answer.ring_turn)} ({error})'
     if answer.phase is not None:
@@ -283,9 +281,9 @@ def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
         )
         if measured.price:
             yield 'price', f'{plus_minus(measured.price)} N·m more friction'
-    if preload is not None and answer.preload is not None:
-        error = f'{preload - answer.preload:+.2g}'
-        yield 'preload', f'{preload:.4g} N·m for a wanted {answer.preload:.4g} N·m ({error} N·m)'
+    if preload is not None:
+        wanted = f'{answer.preload:.4g} N·m'
+        yield 'preload', f'{preload:.4g} N·m for a wanted {wanted} ({more:+.2g} N·m)'
 
 
 def _position_table(answer: _Answer) -> Table:
@@ -293,7 +291,7 @@ def _position_table(answer: _Answer) -> Table:
     if answer.preload is not None:
         columns += ['preload [N·m]', 'error [N·m]']
     rows = []
-    for choice, preload in answer.rows:
+    for choice, preload, more in answer.rows:
         cells = [
             f'{choice.steps:+}' if choice.steps else '0',
             ' or '.join(str(setting.tooth) for setting in choice.settings),
@@ -302,8 +300,8 @@ def _position_table(answer: _Answer) -> Table:
             arc(choice.ring_turn),
             f'{arc_seconds(choice.error):+.3f}',
         ]
-        if preload is not None and answer.preload is not None:
-            cells += [f'{preload:.4f}', f'{preload - answer.preload:+.4f}']
+        if preload is not None:
+            cells += [f'{preload:.4f}', f'{more:+.4f}']
         tone = Tone.PLAIN if choice.steps else Tone.CHOSEN
         rows.append(tuple(Cell(text, tone) for text in cells))
     return Table(tuple(columns), tuple(rows), words=())

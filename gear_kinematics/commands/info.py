@@ -49,13 +49,13 @@ def run(options: argparse.Namespace) -> ExitCode:
         if summary.damage:
             faults.append(summary.damage)
         if not options.quiet:
-            _tell(str(path), summary, verbose=options.verbose)
+            _print_summary(str(path), summary, verbose=options.verbose)
     for fault in faults:
         complain(fault)
     return ExitCode.UNUSABLE if faults else ExitCode.DONE
 
 
-def _tell(name: str, summary: Summary, *, verbose: bool) -> None:
+def _print_summary(name: str, summary: Summary, *, verbose: bool) -> None:
     print(printable(f'{name}: {"; ".join(_parts_of_line(summary))}'))
     if verbose:
         table = Table.of_items(_TOPIC, summary.topics, words=('', 'part', 'joints', 'type'))

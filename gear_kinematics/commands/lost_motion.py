@@ -3,12 +3,13 @@
 import argparse
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode, arguments, bags, sources
-from gear_kinematics.commands.output import Reporter, complain, message_progress
+from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands.encoders import add_recordings, sources
+from gear_kinematics.commands.output import complain, message_progress
+from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.measurement.answer import Limits
 from gear_kinematics.measurement.compare import groups as grouping
 from gear_kinematics.measurement.compare.quantities import at_common_torque
@@ -35,9 +36,7 @@ from gear_kinematics.report.document import Verdict
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     shares = ' and '.join(f'{100.0 * share:g}' for share in STIFFNESS_SHARES)
-    parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
-    arguments.add_config(parser)
-    arguments.add_ratio(parser)
+    add_recordings(parser, 'angle', 'torque', 'rotor', 'output', 'time')
     parser.add_argument(
         '--rated-torque',
         type=arguments.positive,
@@ -52,12 +51,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='N·m',
         help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
     )
-    sources.add_options(parser, 'angle', 'torque', 'rotor', 'output', 'time')
-    bags.add_encoders(parser)
     motion = parser.add_argument_group('motion of both encoders')
     motion.add_argument(
         '--travel',
-        type=arguments.positive,
+        type=_degrees,
         metavar='DEG',
         help='of the output that confirms a reversal (default: transmission_error_travel)',
     )
@@ -73,7 +70,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '-v', '--verbose', action='store_true', help='print tables and remarks in a pipe, too'
     )
-    arguments.add_report_forms(parser, junit=True)
+    add_report_forms(parser, junit=True)
+
+
+def _degrees(text: str) -> float:
+    return math.radians(arguments.positive(text))
+
+
+def _arc_minutes(text: str) -> float:
+    return arguments.positive(text) / ARC_MINUTES
 
 
 def _add_limits(parser: argparse.ArgumentParser) -> None:
@@ -81,7 +86,7 @@ def _add_limits(parser: argparse.ArgumentParser) -> None:
         'limits', 'exit code 1 where one is exceeded, or cannot be shown to hold'
     )
     for name in ('hysteresis', 'lost-motion', 'backlash'):
-        limits.add_argument(f'--max-{name}', type=arguments.positive, metavar='ARCMIN')
+        limits.add_argument(f'--max-{name}', type=_arc_minutes, metavar='ARCMIN')
     limits.add_argument('--min-stiffness', type=arguments.positive, metavar='N·m/rad')
 
 
@@ -124,14 +129,20 @@ def _add_several(parser: argparse.ArgumentParser) -> None:
         help='under which there must be no play (default: none)',
     )
     ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
-    arguments.add_fleet(several.add_mutually_exclusive_group())
+    bags.add_fleet(several.add_mutually_exclusive_group())
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Measure every recording, even if others are unusable, and compare them."""
     _check(options)
+    limits = Limits(
+        options.max_hysteresis,
+        options.max_lost_motion,
+        options.max_backlash,
+        options.min_stiffness,
+    )
     reporter = Reporter(options, len(options.recordings), compared=True, brief=not options.verbose)
-    outcomes = list(_outcomes(options))
+    outcomes = _outcomes(options)
     reports = [outcome.report for outcome in outcomes if outcome.report]
     damage = [report.recording.damage for report in reports]
     for text in (*(outcome.error for outcome in outcomes), *damage):
@@ -140,7 +151,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     verdict = None
     if reports:
         configs = (arguments.config_path(options, path) for path in options.recordings)
-        found = document(*_compared(reports, options), _limits(options))
+        found = document(*_compared(reports, options), limits)
         verdict = found.verdict
         reporter.write(found, configs)
     if len(reports) < len(outcomes) or any(damage):
@@ -165,22 +176,14 @@ def _check(options: argparse.Namespace) -> None:
         check_pattern(options.preloads)
 
 
-def _limits(options: argparse.Namespace) -> Limits:
-    hysteresis, lost_motion, backlash = (
-        most and most / ARC_MINUTES
-        for most in (options.max_hysteresis, options.max_lost_motion, options.max_backlash)
-    )
-    return Limits(hysteresis, lost_motion, backlash, options.min_stiffness)
-
-
 def _names(paths: Sequence[Path]) -> list[str]:
     """Name recordings by their files, or by their paths where those are the same."""
     known = Counter(path.name for path in paths)
     return [path.name if known[path.name] == 1 else str(path) for path in paths]
 
 
-def _outcomes(options: argparse.Namespace) -> Iterator[Outcome]:
-    """Measure the recordings, in processes or on a cluster if so told, in their order."""
+def _outcomes(options: argparse.Namespace) -> list[Outcome]:
+    """Measure the recordings; returns the outcomes in their order."""
     paths = options.recordings
     found: dict[int, Outcome] = {}
     tasks: list[Task] = []
@@ -189,19 +192,14 @@ def _outcomes(options: argparse.Namespace) -> Iterator[Outcome]:
             tasks.append(_task(number, path, name, options))
         except (ValueError, OSError) as error:
             found[number] = Outcome(None, str(error))
-    found |= {task.number: outcome for task, outcome in _measured(tasks, options)}
-    return (found[number] for number in range(len(paths)))
 
-
-def _measured(
-    tasks: Sequence[Task], options: argparse.Namespace
-) -> Iterator[tuple[Task, Outcome]]:
-    if options.scheduler or options.jobs > 1:
-        yield from bags.distributed(options, WORK, tasks, 'recordings')
-        return
-    for task in tasks:
+    def measure(task: Task) -> Outcome:
         with message_progress(task.name, quiet=options.quiet) as report_progress:
-            yield task, measure_recording(task, report_progress)
+            return measure_recording(task, report_progress)
+
+    for task, outcome in bags.results(options, WORK, tasks, 'recordings', measure):
+        found[task.number] = outcome
+    return [found[number] for number in range(len(paths))]
 
 
 def _compared(
@@ -247,8 +245,6 @@ def _compared(
 
 def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, path)
-    if options.travel is not None:
-        config = replace(config, transmission_error_travel=math.radians(options.travel))
     corners = options.stiffness_torques and tuple(sorted(options.stiffness_torques))
     return Task(
         number,
@@ -256,6 +252,6 @@ def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Ta
         name,
         config,
         Request(options.rated_torque, corners, options.fit_ratio, options.delay),
-        sources.given(options),
+        sources(options),
         options.debug,
     )

@@ -7,10 +7,9 @@ from typing import Any
 
 from gear_kinematics import plotting
 from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory
-from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
-from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
+from gear_kinematics.commands import ExitCode, arguments, bags, drawing
+from gear_kinematics.commands.files import check_targets, write_file
 from gear_kinematics.commands.paper_size import add_paper, image_file
-from gear_kinematics.commands.targets import add_force, check_targets
 from gear_kinematics.kinematics import (
     Gear,
     Mechanism,
@@ -30,33 +29,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
     def add(name: str, text: str, draw: Callable[..., bytes], **options: Any) -> Any:
         figure = figures.add_parser(name, help=text, description=text)
-        figure.add_argument('out', metavar='FILE', help='image file: .png, .svg, .pdf ...')
-        arguments.add_mechanism(figure)
-        arguments.add_sizes(figure)
+        motions = drawing.add_image(figure, '.png, .svg, .pdf ...', **options)
         add_paper(figure)
-        add_force(figure)
-        arguments.add_quiet(figure)
-        motions = figure.add_mutually_exclusive_group()
-        bags.add_recording(figure, motions, **options)
         figure.set_defaults(draw=draw)
         return figure, motions
 
     scheme, motions = add(
         'scheme', 'the bodies of a branch and their centres', _scheme, lasting=False
     )
-    arguments.add_branch(scheme)
+    drawing.add_branch(scheme)
     motions.add_argument('--angle', type=float, metavar='RAD', help='rotor angle')
     motions.add_argument(
         '--degrees', type=float, metavar='DEG', help='rotor angle in degrees (default: 40)'
     )
     add('roses', 'the paths of the centres of the Oldham couplings', _roses)
-    for name, text, draw in (
-        ('slides', 'slides and sliding speeds of the Oldham couplings', _slides),
-        ('output', 'angle and rate of the output shaft', _output),
-    ):
-        figure, motions = add(name, text, draw)
-        if draw is _output:
-            calibrations.add_option(figure)
+    _, of_slides = add('slides', 'slides and sliding speeds of the Oldham couplings', _slides)
+    output, of_output = add('output', 'angle and rate of the output shaft', _output)
+    bags.add_calibration(output)
+    for motions in (of_slides, of_output):
         motions.add_argument(
             '--speed', type=float, metavar='RAD/S', help='rotor speed (default: 3000 rpm)'
         )
@@ -66,19 +56,19 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Draw the figure and write its file."""
     check_targets(options, {'FILE': options.out})
     file = image_file(options, options.out)
-    config = arguments.node_parameters(options)
+    config = arguments.load_config(options, options.bag)
     # The output needs no more than the ratio.
     gear = config.gear if options.draw is _output else config.mechanism
     write_file(options.out, options.draw(options, config, gear, file))
     if options.draw is _scheme and isinstance(gear, Mechanism) and not options.quiet:
-        warn_if_teeth_cannot_mesh(gear, config.module)
+        drawing.warn_if_teeth_cannot_mesh(gear, config.module)
     return ExitCode.DONE
 
 
 def _scheme(
     options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, file: ImageFile
 ) -> bytes:
-    branch = arguments.branch(options, mechanism)
+    branch = drawing.branch(options, mechanism)
     rotor = _rotor(options, config)
     return plotting.scheme(mechanism, config.module, file, rotor, branch)
 
@@ -104,14 +94,13 @@ def _slides(
     options: argparse.Namespace, config: NodeParameters, mechanism: Mechanism, file: ImageFile
 ) -> bytes:
     moved = _moved(options, config, turns=1)
-    by_angle = not options.bag
-    return plotting.slides(mechanism, file, moved, by_angle=by_angle)
+    return plotting.slides(mechanism, file, moved, by_angle=not options.bag)
 
 
 def _output(
     options: argparse.Namespace, config: NodeParameters, gear: Gear, file: ImageFile
 ) -> bytes:
-    calibration = calibrations.load(options, config, options.bag)
+    calibration = bags.load_calibration(options, config, options.bag)
     cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
     moved = _moved(options, config, turns=cycle)
     return plotting.output(gear, file, moved, calibration)

@@ -5,25 +5,17 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import Reporter
+from gear_kinematics.commands import ExitCode, arguments, bracing
+from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism, vernier
 from gear_kinematics.kinematics.preload import Preload, braced
 from gear_kinematics.kinematics.vernier import PinSetting
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc, arc_seconds
 
-_LOADS = 4
-"""Rows of the table on either side of zero load, in addition to the thresholds."""
-_NEAT = (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8, 10)
-"""Spacings of the loads in the table, times a power of ten."""
-_BEYOND = 1.2
-"""Least range of table and plot / greater threshold."""
-_DECIMALS = 9
-"""Most decimals in the table."""
+_MAX_DECIMALS = 9
+"""Of the torques in the table."""
 
 
 class _Answer(NamedTuple):
@@ -43,33 +35,28 @@ class _Answer(NamedTuple):
     """Preload of the setting."""
     max_load: float
     """Range of table and plot, N·m."""
-
-    @property
-    def loads(self) -> list[float]:
-        """Loads of the table, N·m: evenly spaced, with the thresholds in between."""
-        even = np.linspace(-self.max_load, self.max_load, 2 * _LOADS + 1).tolist()
-        thresholds = (self.preload.threshold_a, self.preload.threshold_b)
-        return sorted({*even, *(load for load in thresholds if abs(load) < self.max_load)})
+    loads: list[float]
+    """Of the table, N·m."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_mechanism(parser)
     ways = parser.add_mutually_exclusive_group(required=True)
-    arguments.add_ring_turn(ways)
-    arguments.add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
+    bracing.add_ring_turn(ways)
+    bracing.add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
     ways.add_argument(
         '--wanted-preload', type=float, metavar='N·m', help='of both branches without a load'
     )
     ways.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    arguments.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
+    bracing.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
     parser.add_argument(
         '--max-load', type=float, metavar='N·m', help='range of table and plot, on either side'
     )
-    arguments.add_report_forms(parser)
-    arguments.add_stiffness(parser)
+    add_report_forms(parser)
+    bracing.add_stiffness(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -94,28 +81,31 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _answer(options: argparse.Namespace) -> _Answer:
-    pair, known = arguments.mechanism(options), arguments.stiffness(options)
+    pair, stiffness = arguments.load_config(options).mechanism, bracing.stiffness(options)
     backlash = options.backlash or 0.0
-    if known is None:
+    if stiffness is None:
         raise ValueError('the stiffness of branches and shaft is missing; see --help')
     start = vernier.pin_setting(pair.ring_teeth, *(options.start or (0, 0, 0)))
     if options.setting:
         setting = vernier.pin_setting(pair.ring_teeth, *options.setting)
         turn = pinned_turn = vernier.angle_between(start.turn, setting.turn)
     else:
+        wanted = None
         if options.wanted_preload is not None:
-            turn = Preload.from_torque(known, options.wanted_preload).ring_turn(pair, backlash)
+            wanted = Preload.from_torque(stiffness, options.wanted_preload)
         elif options.wanted_threshold is not None:
-            turn = Preload.from_limit(known, options.wanted_threshold).ring_turn(pair, backlash)
-        else:
-            turn = arguments.ring_turn(options) or 0.0
-        turn = arguments.within_a_turn(turn)
+            wanted = Preload.from_limit(stiffness, options.wanted_threshold)
+        turn = wanted.ring_turn(pair, backlash) if wanted else bracing.ring_turn(options) or 0.0
+        turn = bracing.within_a_turn(turn)
         [nearest] = vernier.choices(pair.ring_teeth, turn, start)
         setting, pinned_turn = nearest.settings[0], nearest.ring_turn
     preload, pinned = (
-        Preload.from_ring_turn(pair, known, angle, backlash) for angle in (turn, pinned_turn)
+        Preload.from_ring_turn(pair, stiffness, angle, backlash) for angle in (turn, pinned_turn)
     )
     branch_a, branch_b = braced(pair)
+    max_load = plotting.load_range(preload) if options.max_load is None else options.max_load
+    if not 0.0 < max_load < math.inf:
+        raise ValueError(f'--max-load must be finite and greater than 0, not {max_load}')
     return _Answer(
         pair,
         (branch_a.name, branch_b.name),
@@ -125,20 +115,9 @@ def _answer(options: argparse.Namespace) -> _Answer:
         setting,
         pinned_turn,
         pinned,
-        _max_load(options.max_load, preload),
+        max_load,
+        plotting.loads_to_list(preload, max_load),
     )
-
-
-def _max_load(given: float | None, preload: Preload) -> float:
-    if given is not None:
-        if not 0.0 < given < math.inf:
-            raise ValueError(f'--max-load must be finite and greater than 0, not {given}')
-        return given
-    thresholds = (preload.threshold_a, -preload.threshold_b)
-    farthest = max((load for load in thresholds if load < math.inf), default=0.0) or 1.0
-    spacing = _BEYOND * farthest / _LOADS
-    decade = 10.0 ** math.floor(math.log10(spacing))
-    return _LOADS * next(n * decade for n in _NEAT if n * decade >= spacing)
 
 
 def _data(answer: _Answer) -> dict[str, Any]:
@@ -199,8 +178,8 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load'
         stiffness = _stiffness(known.both_in_mesh)
         yield 'both mesh', f'while |load| < {preload.limit:.4g} N·m: {stiffness}'
-        yield f'branch {a}', _leaving(preload.threshold_a, b, known.branch_b_alone)
-        yield f'branch {b}', _leaving(preload.threshold_b, a, known.branch_a_alone)
+        yield f'branch {a}', _threshold(preload.threshold_a, b, known.branch_b_alone)
+        yield f'branch {b}', _threshold(preload.threshold_b, a, known.branch_a_alone)
     else:
         yield 'preload', f'none; a play of {arc(preload.play)} remains'
         yield f'branch {a}', f'carries negative loads alone: {_stiffness(known.branch_a_alone)}'
@@ -213,7 +192,7 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         yield 'gives', f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
 
 
-def _leaving(threshold: float, other: str, left: float) -> str:
+def _threshold(threshold: float, other: str, left: float) -> str:
     if math.isinf(threshold):
         return 'never leaves mesh'
     return f'leaves mesh at {threshold:+.4g} N·m; branch {other} alone: {_stiffness(left)}'
@@ -225,11 +204,8 @@ def _stiffness(value: float) -> str:
 
 def _split_table(answer: _Answer) -> Table:
     preload, (a, b) = answer.preload, answer.names
-    leaving = {}
-    if preload.torque:
-        leaving[preload.threshold_a] = f'branch {a} leaves mesh'
-        leaving[preload.threshold_b] = f'branch {b} leaves mesh'
-    decimals = min(max(0, 3 - math.floor(math.log10(answer.max_load))), _DECIMALS)
+    marks = plotting.leaving_mesh(preload, answer.names)
+    decimals = min(max(0, 3 - math.floor(math.log10(answer.max_load))), _MAX_DECIMALS)
     split = preload.split(answer.loads)
     rows = []
     for load, *torques, turn in zip(answer.loads, *split, strict=True):
@@ -238,7 +214,7 @@ def _split_table(answer: _Answer) -> Table:
             (
                 *(Cell(f'{cell:.{decimals}f}') for cell in cells),
                 Cell(f'{arc_seconds(turn):.1f}'),
-                Cell(leaving.get(load, '')),
+                Cell(marks.get(load, '')),
             )
         )
     columns = ('load [N·m]', f'branch {a} [N·m]', f'branch {b} [N·m]', 'output turns [″]', 'mesh')

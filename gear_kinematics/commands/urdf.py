@@ -5,7 +5,8 @@ import sys
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments
-from gear_kinematics.commands.output import warn_if_teeth_cannot_mesh, write_file
+from gear_kinematics.commands.drawing import warn_if_teeth_cannot_mesh
+from gear_kinematics.commands.files import write_file
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import meshes
 from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl

@@ -1,19 +1,14 @@
 """`gearkin validate`: compare recorded outputs with outputs recomputed from the rotor topic."""
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
-from gear_kinematics.commands import ExitCode, arguments, bags, calibrations
-from gear_kinematics.commands.output import (
-    Reporter,
-    complain,
-    message_progress,
-    warn_of_shared_memory,
-)
-from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.commands import ExitCode, arguments, bags
+from gear_kinematics.commands.output import complain, message_progress, warn_of_shared_memory
+from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport
@@ -32,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(parser)
     bags.add_rotor(parser)
     bags.add_outputs(parser)
-    calibrations.add_option(parser)
+    bags.add_calibration(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     angle, position = Tolerances()
     parser.add_argument('--tolerance-angle', type=float, default=angle, metavar='RAD')
@@ -55,8 +50,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
-    arguments.add_fleet(way)
-    arguments.add_report_forms(parser, junit=True)
+    bags.add_fleet(way)
+    add_report_forms(parser, junit=True)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -77,10 +72,9 @@ def run(options: argparse.Namespace) -> ExitCode:
         raise ValueError('; '.join(dict.fromkeys(faults.values())))
     if options.live:
         warn_of_shared_memory(participants=2)
-    order = {str(path): number for number, path in enumerate([*found.bags, *found.faults])}
-    reports = [unusable(path, fault) for path, fault in faults.items()]
-    reports += _reports(options, tasks)
-    reports.sort(key=lambda report: order[report.bag])
+    judged = {path: unusable(path, fault) for path, fault in faults.items()}
+    judged |= _validated(options, tasks)
+    reports = [judged[path] for path in (*found.bags, *found.faults)]
     for report in reports:
         if report.error:
             complain(
@@ -91,35 +85,35 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
-    file = arguments.config_path(options, bag)
     config = arguments.load_config(options, bag)
-    calibration = calibrations.find(options, config, bag)
     return Task(
         bag,
         config,
-        config=str(file),
+        config=str(arguments.config_path(options, bag)),
         tolerances=tolerances,
         allow_offset=options.allow_offset,
         strict=options.strict,
         rotor_topic=options.rotor_topic,
         output_topic=options.output_topic,
         poses_topic=options.poses_topic,
-        calibration=Calibration.load(calibration, config.gear) if calibration else None,
-        calibration_file=str(calibration or ''),
+        calibration=bags.load_calibration(options, config, bag),
+        calibration_file=str(bags.calibration_path(options, config, bag) or ''),
         debug=options.debug,
     )
 
 
-def _reports(options: argparse.Namespace, tasks: Sequence[Task]) -> Iterator[BagReport]:
-    if options.scheduler or options.jobs > 1:
-        for task, report in bags.distributed(options, WORK, tasks, 'bags'):
-            yield replace(report, bag=str(task.bag))  # as it was given
-        return
+def _validated(options: argparse.Namespace, tasks: Sequence[Task]) -> dict[Path, BagReport]:
     play = None
     if options.live:  # needs ROS, unlike the validation of a recording
         from gear_kinematics.ros.live import live_messages  # noqa: PLC0415
 
         play = live_messages
-    for task in tasks:
+
+    def validate(task: Task) -> BagReport:
         with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
-            yield validate_bag(task, report_progress, play)
+            return validate_bag(task, report_progress, play)
+
+    return {
+        task.bag: replace(report, bag=str(task.bag))  # as it was given
+        for task, report in bags.results(options, WORK, tasks, 'bags', validate)
+    }

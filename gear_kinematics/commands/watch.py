@@ -1,18 +1,11 @@
 """`gearkin watch`: a running node live, on a page or in the terminal."""
 
 import argparse
-import asyncio
-import threading
-from collections.abc import Callable
-from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
-
-if TYPE_CHECKING:
-    from gear_kinematics.watch.watcher import Watcher
 
 _MAX_PORT = 65535
 
@@ -47,9 +40,15 @@ def run(options: argparse.Namespace) -> ExitCode:
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
+
+    if options.text:
+        from gear_kinematics.watch.text import show  # noqa: PLC0415
+    else:
+        from gear_kinematics.watch.server import serve  # noqa: PLC0415, an extra
+
+        show = partial(serve, port=options.port)
     from gear_kinematics.watch.watcher import Watcher  # noqa: PLC0415
 
-    show = _show_text if options.text else _serve(options.port)
     console = Console()
     watcher = Watcher(options.node, options.record)
     with stopped_by_signals() as stopped:
@@ -68,35 +67,3 @@ def _port(text: str) -> int:
     if not 0 <= (port := int(text)) <= _MAX_PORT:
         raise argparse.ArgumentTypeError(f'must be from 0 to {_MAX_PORT}, not {text}')
     return port
-
-
-_Show = Callable[['Watcher', Console, Callable[[], bool]], None]
-
-
-def _show_text(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
-    from gear_kinematics.watch.text import show  # noqa: PLC0415
-
-    show(watcher, console, stopped)
-
-
-def _serve(port: int) -> _Show:
-    """Return the function that serves the page, after a look whether it can."""
-    from gear_kinematics.watch.server import Server  # noqa: PLC0415, an extra
-    from gear_kinematics.watch.text import wait_and_list  # noqa: PLC0415
-
-    def serve(watcher: 'Watcher', console: Console, stopped: Callable[[], bool]) -> None:
-        server = Server(watcher, port)
-        console.print(f'Open {server.address}', soft_wrap=True, markup=False, highlight=False)
-
-        def list_drivers() -> None:
-            with suppress(BrokenPipeError):  # nobody reads it
-                wait_and_list(watcher, console, stopped)
-
-        lister = threading.Thread(target=list_drivers)
-        lister.start()
-        try:
-            asyncio.run(server.run(stopped))
-        finally:
-            lister.join()
-
-    return serve

@@ -7,11 +7,14 @@ an unknown suffix and ModuleNotFoundError without matplotlib.
 from gear_kinematics.plotting.animation import animate, check_animation
 from gear_kinematics.plotting.mechanism import outlines, scheme
 from gear_kinematics.plotting.motion import output, roses, slides
-from gear_kinematics.plotting.preload import torque_split
+from gear_kinematics.plotting.preload import leaving_mesh, load_range, loads_to_list, torque_split
 
 __all__ = [
     'animate',
     'check_animation',
+    'leaving_mesh',
+    'load_range',
+    'loads_to_list',
     'outlines',
     'output',
     'roses',

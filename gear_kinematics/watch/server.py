@@ -5,15 +5,19 @@ import hmac
 import json
 import secrets
 import socket
+import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import asdict
 from typing import Any
 
+from rich.console import Console
 from tornado.httpserver import HTTPServer
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from gear_kinematics.watch.page import drawing, watch_page
+from gear_kinematics.watch.text import wait_and_list
 from gear_kinematics.watch.view import View
 from gear_kinematics.watch.watcher import PERIOD, Answer, Watcher
 
@@ -23,6 +27,25 @@ _NAMES = (HOST, 'localhost')
 another one; a forwarded port has another number."""
 _LARGEST = 4096  # bytes of a command
 _PING = 20.0  # s
+
+
+def serve(
+    watcher: Watcher, console: Console, stopped: Callable[[], bool], *, port: int = 0
+) -> None:
+    """Serve the page until stopped; its address and the drivers are printed."""
+    server = Server(watcher, port)
+    console.print(f'Open {server.address}', soft_wrap=True, markup=False, highlight=False)
+
+    def list_drivers() -> None:
+        with suppress(BrokenPipeError):  # nobody reads it
+            wait_and_list(watcher, console, stopped)
+
+    lister = threading.Thread(target=list_drivers)
+    lister.start()
+    try:
+        asyncio.run(server.run(stopped))
+    finally:
+        lister.join()
 
 
 class Server:

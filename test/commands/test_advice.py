@@ -14,52 +14,54 @@ from gear_kinematics.commands.cli import main
 
 SERVO = BAGS / 'servo_point_to_point'
 JOINT_STATE = 'sensor_msgs/msg/JointState'
-ROS = "rclpy is not installed: source a ROS 2 installation, or pip install 'gear_kinematics[ros]'"
-
-
-def plain(package: str, extra: str) -> str:
-    return f"{package} is not installed: pip install 'gear_kinematics[{extra}]'"
+EXTRAS = {
+    'rclpy': 'ros',
+    'plotly': 'html',
+    'matplotlib': 'plot',
+    'distributed': 'dask',
+    'tornado': 'watch',
+}
 
 
 # Packages that are missing.
 
-MISSING = [
-    ('rclpy', ROS, ['demo']),
-    ('rclpy', ROS, ['replay', SERVO]),
-    ('rclpy', ROS, ['validate', '--live', SERVO]),
-    ('plotly', plain('plotly', 'html'), ['validate', SERVO, '--html', 'a.html']),
-    ('plotly', plain('plotly', 'html'), ['lost-motion', SERVO, '--html', 'a.html']),
-    ('plotly', plain('plotly', 'html'), ['calibrate', SERVO, '--html', 'a.html']),
-    ('matplotlib', plain('matplotlib', 'plot'), ['validate', SERVO, '--plot', 'a.png']),
-    ('matplotlib', plain('matplotlib', 'plot'), ['lost-motion', SERVO, '--plot', 'a.png']),
-    ('matplotlib', plain('matplotlib', 'plot'), ['plot', 'output', 'a.png', '--bag', SERVO]),
-    ('matplotlib', plain('matplotlib', 'plot'), ['animate', 'a.gif', '--bag', SERVO]),
-    ('distributed', plain('distributed', 'dask'), ['validate', SERVO, '--scheduler', 'tcp://x:1']),
-    (
-        'distributed',
-        plain('distributed', 'dask'),
-        ['lost-motion', SERVO, '--scheduler', 'tcp://x:1'],
-    ),
-]
+LAZY = tuple(
+    f'gear_kinematics.{name}' for name in ('ros.live', 'ros.replay', 'ros.demo', 'watch.')
+)
+"""Imported where ROS or a page is needed."""
+READERS = ('validate', 'lost-motion', 'calibrate')
+MISSING = {
+    'rclpy': ['demo', 'replay SERVO', 'validate --live SERVO', 'init'],
+    'plotly': [f'{command} SERVO --html a.html' for command in READERS],
+    'matplotlib': [
+        *('validate SERVO --plot a.png', 'lost-motion SERVO --plot a.png'),
+        *('plot output a.png --bag SERVO', 'animate a.gif --bag SERVO'),
+        'preload --angle 0.001 --branch-stiffness 3000 --shaft-stiffness 1000 --plot a.png',
+    ],
+    'distributed': [f'{command} SERVO --scheduler tcp://x:1' for command in READERS[:2]],
+    'tornado': ['watch'],
+}
+"""Commands that need a package."""
 
 
 @pytest.mark.parametrize(
-    ('package', 'error', 'arguments'), MISSING, ids=lambda value: ' '.join(map(str, value))[:40]
+    ('package', 'command'),
+    [(package, command) for package, commands in MISSING.items() for command in commands],
 )
-def test_a_missing_package_is_told_before_any_work(
-    package, error, arguments, tmp_path, monkeypatch
-):
+def test_a_missing_package_is_named_before_any_work(package, command, tmp_path, monkeypatch):
     for name in [name for name in sys.modules if name.split('.')[0] == package]:
         monkeypatch.delitem(sys.modules, name)
-    for name in [name for name in sys.modules if name.startswith('gear_kinematics.ros.')]:
-        if name.endswith(('.live', '.replay', '.demo')):
-            module = sys.modules['gear_kinematics.ros']
-            monkeypatch.delattr(module, name.rpartition('.')[2], raising=False)
-            monkeypatch.delitem(sys.modules, name)
+    for name in [name for name in sys.modules if name.startswith(LAZY)]:
+        room, _, module = name.rpartition('.')
+        monkeypatch.delattr(sys.modules[room], module, raising=False)
+        monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, package, None)
     monkeypatch.setattr(Bag, 'messages', None)  # no work
     monkeypatch.chdir(tmp_path)
-    assert refusal(*arguments) == error
+    instead = 'source a ROS 2 installation, or ' if package == 'rclpy' else ''
+    assert refusal(*command.replace('SERVO', str(SERVO)).split()) == (
+        f"{package} is not installed: {instead}pip install 'gear_kinematics[{EXTRAS[package]}]'"
+    )
     assert list(tmp_path.iterdir()) == []
 
 
@@ -90,40 +92,32 @@ READING = [
     ['animate', 'a.gif', '--bag', 'motor'],
     ['validate', 'motor', '--output-topic', '/output_encoder'],
 ]
-names = pytest.mark.parametrize('command', READING, ids=lambda command: ' '.join(command[:2]))
 
 
-@names
-def test_every_command_tells_the_joints_and_the_bag(command, motor):
+@pytest.mark.parametrize('command', READING, ids=lambda command: ' '.join(command[:2]))
+def test_every_command_names_the_bag_and_what_is_in_it(command, motor):
     error = refusal(*command, '--joint', 'wheel', report='.*')
     assert error.startswith('motor: ')
     assert "no joint 'wheel' in it; did you mean `wheel_1`? there are: left, wheel_1" in error
-    assert {path.name for path in motor.absolute().parent.iterdir()} == {'motor'}
-
-
-@names
-def test_every_command_tells_the_topics_and_the_bag(command, motor):
     words = command[:2] if command[0] == 'validate' else command
     assert refusal(*words, '--rotor-topic', '/motor/state', report='.*') == (
         'motor: no topic /motor/state of type sensor_msgs/msg/JointState in it; '
         'did you mean `/motor/states`? there are: /motor/states, /output_encoder'
     )
-    assert motor.exists()
+    assert {path.name for path in motor.absolute().parent.iterdir()} == {'motor'}
 
 
 @pytest.mark.parametrize(
-    'command',
-    [command for command in READING if command[0] in {'compute', 'plot'}],
-    ids=lambda command: ' '.join(command[:2]),
+    'command', ['compute motor out', 'plot output a.png --bag motor'], ids=lambda text: text[:7]
 )
-def test_the_joint_that_is_given_is_read(command, motor, capsys):
-    assert main([*command, '--joint', 'wheel_1']) == 0
+@pytest.mark.usefixtures('motor')
+def test_the_joint_that_is_given_is_read(command, capsys):
+    assert main([*command.split(), '--joint', 'wheel_1']) == 0
     assert capsys.readouterr().err == ''
-    assert motor.exists()
 
 
 @pytest.mark.parametrize('command', ['calibrate', 'lost-motion'])
-def test_a_missing_joint_of_the_output_is_told_with_those_that_there_are(command, motor):
+def test_a_missing_joint_of_the_output_is_answered_with_those_that_there_are(command, motor):
     Path('my.yaml').write_text('/**: {ros__parameters: {output_encoder_joint: outer}}')
     assert refusal(command, motor, '--joint', 'wheel_1', '--config', 'my.yaml') == (
         "motor: /output_encoder: no joint 'outer' in it; did you mean `out`? there are: out"
@@ -146,40 +140,31 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ('arguments', 'error'),
+    ('command', 'error'),
     [
-        (['valdate', 'a'], "'valdate'; did you mean `validate`? there are: animate, calibrate, "),
-        (['plot', 'sheme', 'a'], "'sheme'; did you mean `scheme`? there are: output, roses, "),
-        (['compute', 'a', 'b', '--storage', 'mcp'], "'mcp'; did you mean `mcap`? there are: mcap"),
-        (['replay', 'a', '--lopp'], '--lopp; did you mean `--loop`? there are: --as, --clock, '),
-        (['plot', 'scheme', 'a', '--brnch'], '--brnch; did you mean `--branch`? there are: --an'),
-        (['replay', 'a', 'b'], 'unrecognized arguments: b; see gearkin replay --help'),
+        ('valdate a', "'valdate'; did you mean `validate`? there are: animate, calibrate, "),
+        ('plot sheme a', "'sheme'; did you mean `scheme`? there are: output, roses, "),
+        ('compute a b --storage mcp', "'mcp'; did you mean `mcap`? there are: mcap"),
+        ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --as, --clock, '),
+        ('plot scheme a --brnch', '--brnch; did you mean `--branch`? there are: --an'),
+        ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
+        ('plot scheme a.png --branch A', "no branch 'A'; did you mean `a`? there a"),
+        ('urdf --config my.yaml', 'did you mean `module`?; there are: ring_teeth, '),
+        ('urdf --config two.yaml --node /lift/x', 'only of /left/x, /right/x; did '),
+        ('compute moto out', 'moto: no such file or folder; did you mean `motor`? there '),
+        ('validate moto', 'moto: no bag there; did you mean `motor`? there are: motor'),
+        ('replay motor --topics /motor/state', 'did you mean `/motor/states`? there '),
+        ('replay motor --topics /a /b --as c', '--as names one topic, not 2'),
+        ('replay motor --topics /a --joint c', '--topics excludes --rotor-topic'),
+        ('plot scheme a.png --joint m', '--joint needs --bag'),
     ],
 )
-def test_misspelt_words_are_told_with_those_that_there_are(arguments, error):
-    assert error in refusal(*arguments)
-
-
-@pytest.mark.parametrize(
-    ('arguments', 'error'),
-    [
-        (['plot', 'scheme', 'a.png', '--branch', 'A'], "no branch 'A'; did you mean `a`? there a"),
-        (['urdf', '--config', 'my.yaml'], 'did you mean `module`?; there are: ring_teeth, '),
-        (['urdf', '--config', 'two.yaml', '--node', '/lift/x'], 'only of /left/x, /right/x; did '),
-        (['compute', 'moto', 'out'], 'moto: no such file or folder; did you mean `motor`? there '),
-        (['validate', 'moto'], 'moto: no bag there; did you mean `motor`? there are: motor'),
-        (['replay', 'motor', '--topics', '/motor/state'], 'did you mean `/motor/states`? there '),
-        (['replay', 'motor', '--topics', '/a', '/b', '--as', 'c'], '--as names one topic, not 2'),
-        (['replay', 'motor', '--topics', '/a', '--joint', 'c'], '--topics excludes --rotor-topic'),
-        (['plot', 'scheme', 'a.png', '--joint', 'm'], '--joint needs --bag'),
-    ],
-)
-def test_unknown_names_are_told_with_those_that_there_are(arguments, error, motor):
+def test_unknown_names_are_answered_with_those_that_there_are(command, error, motor):
     Path('my.yaml').write_text('/**: {ros__parameters: {modul: 1.0}}')
     Path('two.yaml').write_text(
         '/left/x: {ros__parameters: {module: 0.1}}\n/right/x: {ros__parameters: {module: 0.1}}'
     )
-    assert error in refusal(*arguments)
+    assert error in refusal(*command.split())
     assert motor.exists()
 
 
@@ -195,16 +180,16 @@ def test_files_beside_a_bag_that_cannot_be_used_do_not_stop_the_others(
     Path('broken/actuator.yaml').write_text('{')
     Path('uncalibrated/calibration.yaml').write_text('schema: none')
     assert main(['validate', 'broken', 'sound', 'uncalibrated', 'nowhere']) == 2
-    told = capsys.readouterr()
-    assert 'sound: verdict: passed\n' in told.out
-    assert told.out.endswith('summary: 4 bags: 1 passed, 0 failed, 3 unusable\n')
-    broken, uncalibrated, nowhere = told.err.splitlines()
+    printed = capsys.readouterr()
+    assert 'sound: verdict: passed\n' in printed.out
+    assert printed.out.endswith('summary: 4 bags: 1 passed, 0 failed, 3 unusable\n')
+    broken, uncalibrated, nowhere = printed.err.splitlines()
     assert broken.startswith('gearkin: broken/actuator.yaml: not YAML')
     assert uncalibrated.startswith('gearkin: uncalibrated/calibration.yaml: ')
     assert nowhere.startswith('gearkin: nowhere: no bag there')
 
 
-def test_the_error_about_a_stretch_of_a_bag_names_it(motor):
+def test_the_error_about_a_part_of_a_bag_names_it(motor):
     words = ['plot', 'output', 'a.png', '--bag', motor, '--joint', 'wheel_1']
     error = 'motor: no rotor states from 9 s to inf s; they are from 0 s to 0.99 s'
     assert refusal(*words, '--start-offset', '9') == error

@@ -355,8 +355,8 @@ def test_imports_within_bag_point_one_way(imports):
 
 
 def test_commands_import_nothing_of_each_other(imports):
-    shared = ('arguments', 'bags', 'calibrations', 'extras', 'origin', 'output')
-    shared += ('paper_size', 'sources', 'targets')
+    shared = ('arguments', 'bags', 'bracing', 'drawing', 'encoders', 'extras', 'files', 'output')
+    shared += ('paper_size', 'reporter')
     commands = {Path(path).stem for path in imports if path.startswith('commands/')}
     commands -= {'__init__', 'cli', *shared}
     assert {'validate', 'compute', 'plot'} < commands

@@ -20,9 +20,13 @@ GEARKIN = 'import sys; from gear_kinematics.__main__ import gearkin; sys.exit(ge
 
 def gearkin(*arguments, code=GEARKIN, **options) -> subprocess.CompletedProcess[str]:
     """Run a command to its end."""
-    command = [sys.executable, '-c', code, *map(str, arguments)]
+    return finished([sys.executable, '-c', code, *arguments], **options)
+
+
+def finished(command, **options) -> subprocess.CompletedProcess[str]:
+    """Run a program to its end, whatever its exit code."""
     options = {'stdout': subprocess.PIPE, 'stderr': subprocess.PIPE, 'timeout': DEADLINE} | options
-    return subprocess.run(command, text=True, check=False, **options)
+    return subprocess.run([*map(str, command)], text=True, check=False, **options)
 
 
 def gearkin_here(*arguments, cwd='.') -> subprocess.CompletedProcess[str]:

@@ -1,22 +1,22 @@
-"""Which files a command may write: nothing of the user's is replaced by a report."""
+"""Files that a command writes: nothing of the user's is replaced by a report."""
 
 import argparse
 import errno
 import os
-from collections.abc import Callable, Iterator, Mapping
+import stat
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from gear_kinematics.bag.finding import is_recording
+from gear_kinematics.commands.output import closed_pipe_ignored
 from gear_kinematics.correction.calibration_file import is_calibration
 from gear_kinematics.report.mark import is_report
 
 _INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check', 'measured')
 """Options and arguments that name files to read."""
-_REPORT = 'report', is_report
-_KINDS: Mapping[str, tuple[str, Callable[[Path], bool]]] = {
-    '-o': ('calibration', is_calibration),
-}
-"""What options replace, if not reports."""
+_REPLACEABLE = {'-o': ('calibration', is_calibration)}
+"""Files that options may replace, if not reports."""
 
 
 def add_force(parser: argparse.ArgumentParser) -> None:
@@ -38,6 +38,7 @@ def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]
     Raises:
         ValueError: naming the first file that must not or cannot be written.
     """
+    inputs = {given.resolve() for given in _inputs(options)}
     files: dict[Path, str] = {}
     for option, name in targets.items():
         if not name or name == '-':
@@ -49,26 +50,18 @@ def check_targets(options: argparse.Namespace, targets: Mapping[str, str | None]
         if path in files:
             raise ValueError(f'{files[path]} and {option} are both to write {name}')
         files[path] = option
-        fault = _is_input(path, options) or _is_recording(path)
-        if fault:
-            raise ValueError(f'{option} {name}: {fault} is never replaced; name a file to write')
+        if path in inputs or is_recording(path):
+            kind = 'what is read' if path in inputs else 'a recording'
+            raise ValueError(f'{option} {name}: {kind} is never replaced; name a file to write')
         _check_folder(name, path)
         if not path.exists() or options.force or not path.stat().st_size:
             continue
-        kind, recognised = _KINDS.get(option, _REPORT)
+        kind, recognised = _REPLACEABLE.get(option, ('report', is_report))
         if not recognised(path):
             raise ValueError(
                 f'{option} {name}: there is something else than a {kind} of gearkin; '
                 '--force replaces it'
             )
-
-
-def _is_recording(path: Path) -> str:
-    return 'a recording' if is_recording(path) else ''
-
-
-def _is_input(path: Path, options: argparse.Namespace) -> str:
-    return 'what is read' if path in {given.resolve() for given in _inputs(options)} else ''
 
 
 def _inputs(options: argparse.Namespace) -> Iterator[Path]:
@@ -90,3 +83,37 @@ def _check_folder(name: str, path: Path) -> None:
     else:
         return
     raise ValueError(f'{name}: {os.strerror(number)}')
+
+
+def write_text(target: str, text: str) -> None:
+    """Write a file like `write_file`; '-' is stdout."""
+    if target == '-':
+        with closed_pipe_ignored():
+            print(text, end='' if text.endswith('\n') else '\n')
+    else:
+        write_file(target, text.encode())
+
+
+def write_file(target: str, content: bytes) -> None:
+    """Write a file completely or not at all.
+
+    Raises:
+        ValueError: if the file cannot be written, naming it.
+    """
+    given = Path(target)
+    path = given.resolve()
+    unfinished = path.with_name(f'.gearkin.{os.getpid()}.tmp')  # never too long a name
+    try:
+        if given.exists() and not given.is_file():  # such as a pipe, which must not be replaced
+            given.write_bytes(content)
+            return
+        with unfinished.open('xb') as file:  # follows no existing link
+            if path.exists():
+                os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
+            file.write(content)
+        unfinished.replace(path)
+    except OSError as error:
+        raise ValueError(f'{target}: {error.strerror}') from error
+    finally:
+        with suppress(OSError):
+            unfinished.unlink()

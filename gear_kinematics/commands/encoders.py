@@ -1,0 +1,98 @@
+"""The options for recordings of encoders and torques, common to `lost-motion` and `calibrate`."""
+
+import argparse
+from pathlib import Path
+
+from gear_kinematics.commands.arguments import add_config, count, positive
+from gear_kinematics.commands.bags import add_rotor
+from gear_kinematics.kinematics import GearRatio
+from gear_kinematics.measurement.csv_files import ANGLE_UNITS, Sources
+
+_COLUMNS = {
+    'angle': 'under torque',
+    'torque': 'N·m',
+    'rotor': 'angle of the rotor',
+    'output': 'angle of the output encoder',
+    'time': 's, unless its name ends in a unit',
+}
+
+
+def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
+    """Add the recordings, and the options on how to read them.
+
+    `load_config` applies `--ratio`, `--joint` and `--max-gap`, and `sources` returns the others.
+
+    Args:
+        parser: of the command.
+        roles: what the columns of CSV files can be, of `_COLUMNS`.
+    """
+    parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
+    add_config(parser)
+    ways = parser.add_mutually_exclusive_group()
+    ways.add_argument(
+        '--ratio',
+        type=_ratio,
+        metavar='I',
+        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+        'from the teeth)',
+    )
+    ways.add_argument(
+        '--fit-ratio', action='store_true', help='estimate the gear ratio from the recording'
+    )
+    group = parser.add_argument_group('columns of a CSV', 'by default found by name')
+    for role in roles:
+        group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
+    group.add_argument(
+        '--angle-unit', choices=ANGLE_UNITS, help='of all angles (default: by name, or rad)'
+    )
+    what = 'angle and torque are' if 'angle' in roles else 'the torque is'
+    group.add_argument(
+        '--on-rotor',
+        action='store_true',
+        help=f'{what} of the rotor, unless the name of the column says output',
+    )
+    encoders = parser.add_argument_group('encoders')
+    encoders.add_argument(
+        '--rotor-counts',
+        '--counts',
+        type=count,
+        metavar='N',
+        help='steps per turn of the encoder of the rotor, or of the angle column: in them are the '
+        'angles of columns such as motor_inc (default: from the readings)',
+    )
+    encoders.add_argument(
+        '--output-counts', type=count, metavar='N', help='the same of the output encoder'
+    )
+    topics = parser.add_argument_group('topics of a bag')
+    add_rotor(topics)
+    topics.add_argument(
+        '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
+    )
+    topics.add_argument(
+        '--max-gap',
+        type=positive,
+        metavar='S',
+        help='between interpolated rotor states (default: transmission_error_max_gap)',
+    )
+
+
+def sources(options: argparse.Namespace) -> Sources:
+    """The columns and topics given by the options."""
+    names = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
+    return Sources(
+        **names,
+        unit=options.angle_unit,
+        on_rotor=options.on_rotor,
+        rotor_counts=options.rotor_counts,
+        output_counts=options.output_counts,
+        rotor_topic=options.rotor_topic,
+        encoder_topic=options.encoder_topic,
+    )
+
+
+def _ratio(text: str) -> str:
+    """Check a gear ratio, and write it as the parameter `gear_ratio`."""
+    try:
+        return str(GearRatio.parse(text))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error

@@ -1,0 +1,120 @@
+"""The options for reports, and their output in every form."""
+
+import argparse
+import hashlib
+import sys
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from datetime import UTC, datetime
+from importlib import import_module
+from pathlib import Path
+from types import MappingProxyType
+
+from gear_kinematics.commands.arguments import add_quiet
+from gear_kinematics.commands.files import add_force, check_targets, write_file, write_text
+from gear_kinematics.commands.output import Console, closed_pipe_ignored
+from gear_kinematics.commands.paper_size import add_paper, image_file
+from gear_kinematics.report.document import Document, Origin, printable
+from gear_kinematics.report.html import to_html
+from gear_kinematics.report.image import to_image
+from gear_kinematics.report.json import to_json
+from gear_kinematics.report.junit import to_junit
+from gear_kinematics.report.text import render
+from gear_kinematics.share import version
+
+_FORMS: Mapping[str, Callable[[Document], str]] = {
+    'json': to_json,
+    'junit': to_junit,
+    'html': to_html,
+}
+
+
+def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) -> None:
+    """Add the options for files of the report, which `Reporter` writes."""
+    for form in _FORMS:
+        if junit or form != 'junit':
+            parser.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
+    parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+    add_paper(parser)
+    add_force(parser)
+    add_quiet(parser)
+
+
+class Reporter:
+    """Writes a document in the forms given by the options of `add_report_forms`."""
+
+    def __init__(
+        self,
+        options: argparse.Namespace,
+        sections: int = 1,
+        others: Mapping[str, str | None] = MappingProxyType({}),
+        *,
+        compared: bool = False,
+        brief: bool = False,
+    ) -> None:
+        """Check that everything can be written, before any other work.
+
+        Args:
+            options: the parsed arguments.
+            sections: number of sections of the document.
+            others: targets of further options, which the command writes itself.
+            compared: whether the last section compares the others, and has the figure of the plot.
+            brief: whether a section that passed is one line in a pipe.
+
+        Raises:
+            ValueError: if options exclude each other, or a file must not or cannot be written.
+            ModuleNotFoundError: if a form needs a package that is not installed.
+        """
+        self._options, self._brief = options, brief
+        self._forms = {form: target for form in _FORMS if (target := getattr(options, form, None))}
+        given = {f'--{form}': target for form, target in self._forms.items()}
+        given |= {'--plot': options.plot, **others}
+        to_stdout = [option for option, target in given.items() if target == '-']
+        if len(to_stdout) > 1:
+            raise ValueError(f'only one report can go to stdout, not {" and ".join(to_stdout)}')
+        if '--html' in to_stdout and sys.stdout.isatty():
+            raise ValueError('--html -: a page goes into a file or a pipe, not to a terminal')
+        check_targets(options, given)
+        self._silent = bool(to_stdout)
+        if not options.plot and (options.width_mm, options.dpi) != (None, None):
+            raise ValueError('--width-mm and --dpi need --plot')
+        if options.plot:
+            if sections > 1 and not compared:
+                raise ValueError('--plot takes one recording')
+            self._image = image_file(options, options.plot)
+        if 'html' in self._forms:
+            import_module('plotly')
+
+    def write(self, document: Document, configs: Iterable[Path] = ()) -> None:
+        """Print the document, unless a form of it goes to stdout, and write the files.
+
+        Args:
+            document: the report.
+            configs: the parameter files that were used.
+        """
+        plot: str | None = self._options.plot
+        document = replace(document, origin=self._origin(configs))
+        if not self._silent:
+            with closed_pipe_ignored():
+                shown = document.of_failed() if self._options.quiet else document
+                render(shown, Console(), brief=self._brief)
+        if plot:
+            if not document.figure:
+                raise ValueError(f'{plot}: there is nothing to plot')
+            write_file(plot, to_image(document.figure, self._image))
+        for form, target in self._forms.items():
+            write_text(target, _FORMS[form](document))
+
+    def _origin(self, configs: Iterable[Path]) -> Origin:
+        """Describe this moment, the command and its parameter files, each of them once.
+
+        Raises:
+            OSError: if one of the files has become unreadable.
+        """
+        digests = {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in configs}
+        return Origin(
+            version(),
+            datetime.now(UTC).strftime('%Y-%m-%d %H:%M:%S UTC'),
+            printable(self._options.command_line),
+            tuple((printable(str(path)), digest) for path, digest in digests.items()),
+        )
