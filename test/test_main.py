@@ -103,7 +103,7 @@ def test_nothing_heavy_is_imported_before_signals_are_handled():
     ('command', 'unused'),
     [
         ('--version', 'bag commands correction kinematics parameters report wire'),
-        ('--help', 'bag correction kinematics measurement parameters plotting shape state'),
+        ('--help', 'bag correction measurement parameters plotting state validation'),
         (f'info {BAG}', 'measurement plotting validation watch'),
         (f'validate {BAG}', 'measurement plotting watch'),
         ('describe', 'measurement validation watch'),

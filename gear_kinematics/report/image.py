@@ -37,9 +37,9 @@ _METADATA = {
 _WITH_EXIF = 'jpg', 'jpeg', 'tif', 'tiff', 'webp'
 _SOFTWARE = 0x0131
 """The tag in Exif."""
-_FOLDER = Path(__file__).parent
+_FOLDER = '/'
 """To import matplotlib in: it obeys a matplotlibrc in the current folder, which may come with a
-recording."""
+recording. There are no modules either that could be imported in place of others."""
 _PANEL = (6.0, 5.2)  # inches, side by side
 _STACKED = (7.5, 3.0)  # inches
 _TALLEST = 12.0  # inches, up to which stacked panels have this height

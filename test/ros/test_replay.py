@@ -161,8 +161,8 @@ def test_part_of_a_bag_is_played_at_half_the_rate_with_its_time_on_clock(
     assert_took(heard, process, 2.0 * 0.7)
     messages = [decode(data, 'rosgraph_msgs/msg/Clock').clock for data in data_of(clock)]
     times = [message.sec * SECOND + message.nanosec for message in messages]
-    # The clock is discovered late, and a busy machine publishes less often.
-    assert 10 < len(times) <= 0.5 + 100.0 * 2.0 * 0.7
+    # At both ends there is a tick. The clock may be discovered late, and a busy machine is slower.
+    assert 10 < len(times) <= 1 + round(100.0 * 2.0 * 0.7)
     assert all(a < b for a, b in pairwise(times))
     assert times[0] >= 1.2 * SECOND
     assert times[-1] <= 1.9 * SECOND
