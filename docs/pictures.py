@@ -50,7 +50,7 @@ OF_RECORDINGS = {
 """Pages of recordings that `record` makes."""
 OTHER_GEAR = '/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}'
 VIEW = {'width': 1100, 'height': 1000}  # pixels
-LIVE_VIEW = {'width': 1100, 'height': 640}  # pixels
+LIVE_VIEW = {'width': 1100, 'height': 740}  # pixels
 COLOURS = 64
 
 
@@ -93,7 +93,8 @@ def photograph_live(tab: Page, target: Path) -> None:
         address = process.stdout.readline().split()[-1]
         tab.set_viewport_size(LIVE_VIEW)
         tab.goto(address)
-        tab.get_by_text('Rotor input: healthy.').wait_for()
+        tab.get_by_text('healthy').wait_for()
+        tab.wait_for_timeout(10_000.0)  # the span of the curves, ms
         keep(tab.screenshot(), target)
 
 

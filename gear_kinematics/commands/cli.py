@@ -4,6 +4,7 @@ Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
 """
 
 import argparse
+import os
 import re
 import shlex
 import sys
@@ -76,6 +77,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = [*map(str, sys.argv[1:] if arguments is None else arguments)]
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
+    if not os.environ.get('COLUMNS', 'unset').strip('0'):
+        del os.environ['COLUMNS']  # rich would print nothing
     called = next((word for word in words if not word.startswith('-')), '')
     try:
         parser = make_parser(*([] if called == 'completion' else [called]))

@@ -56,8 +56,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             with watcher:
                 show(watcher, console, lambda: stopped() or watcher.ended)
         finally:
-            if watcher.farewell:
-                console.print(watcher.farewell, soft_wrap=True, markup=False, highlight=False)
+            if watcher.exit_message:
+                console.print(watcher.exit_message, soft_wrap=True, markup=False, highlight=False)
         if stopped():
             raise KeyboardInterrupt
     return ExitCode.DONE

@@ -10,10 +10,11 @@ from rclpy.qos import QoSCompatibility, QoSProfile, ReliabilityPolicy, qos_check
 from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
-from gear_kinematics.state.diagnostics import GraphFaults, Report
+from gear_kinematics.state.diagnostics import Fault, GraphFaults, Report
 
 _POLICIES = 'reliability', 'durability', 'deadline', 'liveliness', 'liveliness_lease_duration'
 """Policies in which a subscription can request more than a publisher offers."""
+_TWO_NODES = 'Stop one of the two nodes, or give each its own namespace.'
 
 
 def diagnostic_array(node: Node, reports: Mapping[str, Report | None]) -> DiagnosticArray:
@@ -51,7 +52,7 @@ def find_faults(
     """
     own_name = node.get_fully_qualified_name()
     errors = [
-        f'incompatible QoS on {subscription.topic}: {policy} (driver {full_name(driver)})'
+        _incompatible(subscription.topic, policy, f'driver {full_name(driver)}')
         for subscription in subscriptions
         for driver in node.get_publishers_info_by_topic(subscription.topic)
         for policy in _unmet(subscription.qos_profile, driver.qos_profile)
@@ -65,7 +66,7 @@ def find_faults(
         # Ask the graph: in a publisher's own profile some policies are left to the middleware.
         if own_offer := offers.pop(own_name, None):
             warnings += [
-                f'incompatible QoS on {topic}: {policy} (listener {full_name(listener)})'
+                _incompatible(topic, policy, f'listener {full_name(listener)}')
                 for listener in node.get_subscriptions_info_by_topic(topic)
                 for policy in _unmet(listener.qos_profile, own_offer)
             ]
@@ -73,16 +74,21 @@ def find_faults(
             for other in offers:
                 shared[other].append(topic)
     for other, topics in shared.items():
-        warnings.append(f'{other} also publishes {", ".join(topics)}')
+        warnings.append(Fault(f'{other} also publishes {", ".join(topics)}', _TWO_NODES))
     names = node.get_node_names_and_namespaces()
     if names.count((node.get_name(), node.get_namespace())) > 1:
-        warnings.append(f'another node is named {own_name}')
+        warnings.append(Fault(f'another node is named {own_name}', _TWO_NODES))
     return GraphFaults(errors, warnings)
 
 
 def full_name(endpoint: TopicEndpointInfo) -> str:
     """Return the full name of the node of an endpoint."""
     return f'{endpoint.node_namespace.rstrip("/")}/{endpoint.node_name}'
+
+
+def _incompatible(topic: str, policy: str, other: str) -> Fault:
+    advice = 'Change the quality of service of one of the two.'
+    return Fault(f'incompatible QoS on {topic}: {policy} ({other})', advice)
 
 
 def _unmet(requested: QoSProfile, offered: QoSProfile) -> Iterator[str]:

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.correction.reversals import Reversals
@@ -18,6 +18,24 @@ from gear_kinematics.state.rotor_input import RotorInput
 OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""
 
+_NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
+_NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
+_NOT_COMPARED = 'Check that both drivers are running, and that their clocks agree.'
+_TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
+
+
+class Fault(str):
+    """The message of a fault, with what to do about it."""
+
+    __slots__ = ('advice',)
+    advice: str
+
+    def __new__(cls, message: str, advice: str) -> Self:
+        """Take both; the advice is a sentence."""
+        fault = super().__new__(cls, message)
+        fault.advice = advice
+        return fault
+
 
 @dataclass(frozen=True, slots=True)
 class Report:
@@ -26,13 +44,24 @@ class Report:
     level: int
     message: str
     values: dict[str, str]
+    """Where there are faults, `advice` is what to do about them."""
+
+    @classmethod
+    def of(
+        cls, errors: Sequence[Fault], warnings: Sequence[Fault], values: dict[str, str]
+    ) -> Self:
+        """Report on faults, or that there are none."""
+        level = ERROR if errors else WARN if warnings else OK
+        if faults := (*errors, *warnings):
+            values['advice'] = ' '.join(dict.fromkeys(fault.advice for fault in faults))
+        return cls(level, '; '.join(faults) or 'ok', values)
 
 
 class GraphFaults(NamedTuple):
-    """Faults in the connections with other nodes, one text each."""
+    """Faults in the connections with other nodes."""
 
-    errors: Sequence[str] = ()
-    warnings: Sequence[str] = ()
+    errors: Sequence[Fault] = ()
+    warnings: Sequence[Fault] = ()
 
 
 @dataclass(slots=True)
@@ -66,22 +95,24 @@ class InputMonitor:
         rate = new['received'] / elapsed if elapsed > 0.0 else 0.0
 
         age = now - (self.started if self.last_input is None else self.last_input)
-        errors, warnings = [], []
+        errors: list[Fault] = []
+        warnings: list[Fault] = []
         if age > rotor_input.parameters.input_timeout:
-            errors.append(f'no input for {age:.1f} s')
+            errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
         if not rotor_input.referenced:
-            errors.append('not referenced')
+            errors.append(Fault('not referenced', _NOT_REFERENCED))
         errors += self.graph.errors
         if newly_rejected:
             warnings.append(_rejections(newly_rejected))
         if new['lost']:
-            warnings.append(f'lost {new["lost"]}')
+            warnings.append(_losses(new['lost']))
         if new['unsent']:
-            warnings.append(f'not sent {new["unsent"]}')
+            warnings.append(
+                Fault(f'not sent {new["unsent"]}', 'Look for a listener that is stuck.')
+            )
         if self.drivers > 1:
-            warnings.append(f'{self.drivers} drivers')
+            warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))
         warnings += self.graph.warnings
-        level = ERROR if errors else WARN if warnings else OK
         values = {
             'rate (Hz)': f'{rate:.1f}',
             'received': str(rotor_input.received),
@@ -98,7 +129,7 @@ class InputMonitor:
             'referenced': str(rotor_input.referenced).lower(),
             'loop-closure residual (m)': _residual(rotor_input),
         }
-        return Report(level, '; '.join(errors + warnings) or 'ok', values)
+        return Report.of(errors, warnings, values)
 
 
 @dataclass(slots=True)
@@ -136,20 +167,20 @@ class EncoderMonitor:
 
         warnings = []
         if silent:
-            warnings.append(f'no output_encoder for {age:.1f} s')
+            warnings.append(Fault(f'no output_encoder for {age:.1f} s', _NO_INPUT))
         elif not compared:
-            warnings.append('no rotor angle of the same time')
+            warnings.append(Fault('no rotor angle of the same time', _NOT_COMPARED))
         if newly_rejected:
             warnings.append(_rejections(newly_rejected))
         if newly_lost:
-            warnings.append(f'lost {newly_lost}')
+            warnings.append(_losses(newly_lost))
         # Without new samples, the statistics are out of date.
         error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
         if (
             error.peak_to_peak is not None
             and error.peak_to_peak > parameters.transmission_error_limit
         ):
-            warnings.append(f'peak to peak {error.peak_to_peak:.3g} rad')
+            warnings.append(Fault(f'peak to peak {error.peak_to_peak:.3g} rad', _TOO_LARGE))
         values = {
             'received': str(encoder.received),
             'compared': str(matched),
@@ -166,14 +197,22 @@ class EncoderMonitor:
         }
         if fit and error.samples:
             if not fit.fits:
-                warnings.append('calibration no longer fits')
+                warnings.append(Fault('calibration no longer fits', 'Calibrate the gear again.'))
             values['explained by the calibration (%)'] = _percent(fit.explained)
             values['outside the interval (%)'] = _percent(fit.outside)
-        return Report(WARN if warnings else OK, '; '.join(warnings) or 'ok', values)
+        return Report.of([], warnings, values)
 
 
-def _rejections(counts: Counter[str]) -> str:
-    return f'rejected: {", ".join(f"{cause} {count}" for cause, count in counts.items())}'
+def _rejections(counts: Counter[str]) -> Fault:
+    causes = ', '.join(f'{cause} {count}' for cause, count in counts.items())
+    advice = 'docs/diagnostics.md explains why messages are rejected.'
+    if 'joint missing' in counts:
+        advice = 'Set rotor_joint to one of the joints of the driver.'
+    return Fault(f'rejected: {causes}', advice)
+
+
+def _losses(count: int) -> Fault:
+    return Fault(f'lost {count}', 'The middleware has not delivered these messages.')
 
 
 def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:

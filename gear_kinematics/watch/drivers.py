@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Collection
+from contextlib import suppress
 from dataclasses import dataclass
 
 from rclpy.node import Node
@@ -20,10 +21,8 @@ class Driver:
     """A topic of type JointState that is not of a gear's node."""
 
     topic: str
-    joints: tuple[str, ...]
-    """As `rotor_joint` selects them; empty before the first message."""
-    rate: float
-    """Messages per second."""
+    joints: tuple[str, ...]  # as `rotor_joint` selects them; empty before the first message
+    rate: float  # messages per second
     publishers: int
 
 
@@ -66,13 +65,10 @@ class Drivers:
 
 
 def _joints(latest: Latest) -> tuple[str, ...]:
-    if not latest.last:
-        return ()
-    try:
-        names = joint_names(joint_state_layout(latest.last.data))
-    except MalformedMessageError:
-        return ()
-    return tuple(name.decode(errors='replace') for name in names)
+    with suppress(MalformedMessageError):
+        names = joint_names(joint_state_layout(latest.last.data)) if latest.last else ()
+        return tuple(name.decode(errors='replace') for name in names)
+    return ()
 
 
 def listen(seconds: float) -> list[Driver]:

@@ -22,23 +22,15 @@ from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
 _PATIENCE = 2.0  # s: a service that has not found this client yet loses the request
-_SHOWN = (
-    topics.OUTPUT_STATE,
-    topics.CORRECTED_STATE,
-    topics.CORRECTED_INTERVAL,
-    topics.TRANSMISSION_ERROR,
-)
+_SHOWN = topics.OUTPUT_STATE, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
 
 
 class Joint(NamedTuple):
     """The only joint of the latest message of a topic."""
 
-    position: float
-    """rad."""
-    velocity: float | None
-    """rad/s."""
-    age: float
-    """s since the message was received."""
+    position: float  # rad
+    velocity: float | None  # rad/s
+    age: float  # s since the message was received
 
 
 class Status(NamedTuple):
@@ -48,38 +40,25 @@ class Status(NamedTuple):
     level: int
     message: str
     values: Mapping[str, str]
-    at: float
-    """When it came; s of a steady clock."""
+    at: float  # when it came; s of a steady clock
 
 
 class GearNode:
-    """Follows a node that may end and start again."""
+    """Follows a node, by its full name, that may end and start again."""
 
     def __init__(self, node: Node, name: str) -> None:
-        """Begin to follow.
-
-        Args:
-            node: subscribes and calls services.
-            name: full name of the node of the gear.
-        """
-        self._node = node
+        self._node = node  # subscribes and calls services
         self.name = name
         self.running = False
-        self.parameters: NodeParameters | None = None
-        """Of the node; None until it has told them."""
+        self.parameters: NodeParameters | None = None  # None until it has told them
         self.gear: Gear | None = None
-        self.known = False
-        """Whether the node has told its parameters since it started."""
-        self.restarts = -1
-        """How often it has been seen to start again."""
-        self.outputs: dict[str, str] = {}
-        """Names of its topics by those without remapping."""
-        self.heard: list[str] = []
-        """Names of the topics that it hears."""
-        self.inputs: dict[str, str] = {}
-        """Those of them that are known, as in `outputs`."""
-        self.statuses: dict[str, Status] = {}
-        """Diagnostics by subject."""
+        self.known = False  # whether it has told its parameters since it started
+        self.fault = ''  # why these cannot be used
+        self.restarts = -1  # how often it has been seen to start again
+        self.outputs: dict[str, str] = {}  # names of its topics by those without remapping
+        self.heard: list[str] = []  # names of the topics that it hears
+        self.inputs: dict[str, str] = {}  # those of them that are known, as in `outputs`
+        self.statuses: dict[str, Status] = {}  # diagnostics by subject
         self.home = node.create_client(Trigger, f'{name}/home')
         self._latest: dict[str, Latest] = {}
         self._diagnostics: PolledSubscription | None = None
@@ -88,7 +67,6 @@ class GearNode:
         self._deadline = 0.0  # s of a steady clock, for the answer
         self._names: list[str] = []
         self._publishers: set[bytes] = set()
-        self._readers: dict[str, JointReader] = {}
 
     def look(self) -> None:
         """See in the graph whether it runs, and which topics it has."""
@@ -127,8 +105,7 @@ class GearNode:
         if latest is None or latest.last is None:
             return None
         try:
-            reader = self._readers.setdefault(topic, JointReader(''))
-            _, _, position, velocity, _ = reader.read(latest.last.data)
+            _, _, position, velocity, _ = JointReader('').read(latest.last.data)
         except RejectedInputError:
             return None
         return Joint(position, velocity, latest.age or 0.0)
@@ -139,15 +116,16 @@ class GearNode:
 
     def _subscribe(self, outputs: dict[str, str]) -> None:
         for name in _SHOWN:
-            topic, latest = outputs.get(name), self._latest.get(name)
-            if latest and latest.topic != topic:
+            topic = outputs.get(name, '')
+            if name in self._latest and self._latest[name].topic != topic:
                 self._latest.pop(name).close()
             if topic and name not in self._latest:
                 self._latest[name] = Latest(self._node, topic, JointState)
         topic = outputs[topics.DIAGNOSTICS]
-        if self._diagnostics is None or self._diagnostics.topic != topic:
-            if self._diagnostics:
-                self._diagnostics.close()
+        if self._diagnostics and self._diagnostics.topic != topic:
+            self._diagnostics.close()
+            self._diagnostics = None
+        if self._diagnostics is None:
             self._diagnostics = PolledSubscription(
                 self._node, topic, DiagnosticArray, ReliabilityPolicy.BEST_EFFORT, raw=False
             )
@@ -156,10 +134,13 @@ class GearNode:
     def _read_parameters(self) -> None:
         """Take the next step: ask for the names, then for the values, again until they come."""
         if self._asked is not None and self._asked.done():
-            answer, self._asked = self._asked.result(), None
-            self._deadline = 0.0
+            answer, self._asked, self._deadline = self._asked.result(), None, 0.0
             if not self._names:
-                self._names = [name for name in answer.result.names if _is_ours(name)]
+                self._names = [
+                    name
+                    for name in answer.result.names
+                    if name in PARAMETERS or name.rpartition('.')[2] in BRANCH_PARAMETERS
+                ]
             elif len(answer.values) == len(self._names):
                 self._take_parameters(map(parameter_value_to_python, answer.values))
                 return
@@ -169,18 +150,21 @@ class GearNode:
             if not self._client.services_are_ready():
                 return
             self._deadline = time.monotonic() + _PATIENCE
-            self._asked = (
-                self._client.get_parameters(self._names)
-                if self._names
-                else self._client.list_parameters([], 0)
-            )
+            names, client = self._names, self._client
+            self._asked = client.get_parameters(names) if names else client.list_parameters([], 0)
 
     def _take_parameters(self, values: Any) -> None:
-        # An older version of the node can lack some.
-        self.parameters = NodeParameters.of(dict(zip(self._names, values, strict=True)))
-        self.gear = self.parameters.gear
-        self.known, self._deadline = True, math.inf
-
-
-def _is_ours(name: str) -> bool:
-    return name in PARAMETERS or name.rpartition('.')[2] in BRANCH_PARAMETERS
+        given = dict(zip(self._names, values, strict=True))  # an older node can lack some
+        self._names, self._deadline = [], time.monotonic() + _PATIENCE
+        try:
+            for name, value in given.items():
+                known = PARAMETERS.get(name) or BRANCH_PARAMETERS[name.rpartition('.')[2]]
+                if fault := known.fault(name, value):
+                    raise ValueError(fault)
+            parameters = NodeParameters.of(given)
+            self.gear = parameters.gear
+        except ValueError as error:
+            self.fault = str(error)
+        else:
+            self.parameters, self.fault, self.known = parameters, '', True
+            self._deadline = math.inf

@@ -21,7 +21,10 @@ _ENOUGH = 2  # names by which a node is known, however the others are remapped
 
 def gear_nodes(node: Node) -> list[str]:
     """Find the full names of the nodes of gears: they have ~/home, and topics of known names."""
-    running = set(_full_names(node))
+    running = {
+        f'{namespace.rstrip("/")}/{name}'
+        for name, namespace in node.get_node_names_and_namespaces()
+    }
     owners = (
         service.rpartition('/')[0]
         for service, types in node.get_service_names_and_types()
@@ -60,13 +63,8 @@ def inputs_of(heard: Iterable[str]) -> dict[str, str]:
 def known_as(expected: Mapping[str, str], found: Mapping[str, str]) -> dict[str, str]:
     """Tell which topic is which, where some are remapped.
 
-    Args:
-        expected: types of topics by the name that they have without remapping.
-        found: types of topics by full name.
-
-    Returns:
-        Full names by expected name: of the same last part, and what is left if that is one of a
-        type on either side. The others are left out.
+    From types by the name without remapping and by full name, returns full names by the former: of
+    the same last part, and what is left if that is one of a type on either side.
     """
     relative = {topics.base_name(name): name for name in expected}
     known = {
@@ -109,10 +107,3 @@ def _topics_of(name: str, ask: Callable[[str, str], Any]) -> dict[str, str]:
     with suppress(rclpy_implementation.NodeNameNonExistentError):
         found = ask(base, namespace or '/')
     return {topic: types[0] for topic, types in found}
-
-
-def _full_names(node: Node) -> list[str]:
-    return [
-        f'{namespace.rstrip("/")}/{name}'
-        for name, namespace in node.get_node_names_and_namespaces()
-    ]

@@ -10,34 +10,32 @@ _BODY = """\
 <header class="bar">
 <h1>gearkin watch</h1>
 <span id="node"></span>
-<span id="state" class="badge">connecting</span>
+<span><span id="state" class="badge">connecting</span> <span id="duration"></span></span>
 <div class="buttons">
 <button type="button" id="home" disabled>Home</button>
 <button type="button" id="record" disabled>Record</button>
 </div>
 </header>
-<p id="words"></p>
-<p id="answer" role="status"></p>
-<p id="recording"></p>
 <main>
 <section class="live" aria-label="mechanism and values">
 <div id="mechanism" class="motion"></div>
-<div class="values">
-<dl id="readings"></dl>
-<figure id="curve" hidden>
-<svg viewBox="0 0 600 120" preserveAspectRatio="none" role="img" aria-label="transmission error">
-<line x1="0" x2="600" vector-effect="non-scaling-stroke"/>
-<polyline vector-effect="non-scaling-stroke"/></svg>
-<figcaption></figcaption>
-</figure>
-</div>
+<dl id="values"></dl>
+<div id="curves"></div>
+<template id="curve"><figure><figcaption><span></span><span></span></figcaption>
+<svg viewBox="0 0 300 100" preserveAspectRatio="none" aria-hidden="true">
+<line x1="0" x2="300" vector-effect="non-scaling-stroke"/>
+<path vector-effect="non-scaling-stroke"/></svg></figure></template>
 </section>
-<section id="diagnostics"><h2>Diagnostics</h2><ul id="sentences"></ul></section>
+<section class="live"><h2>Diagnostics</h2><dl id="diagnostics"></dl></section>
 <section><details id="drivers"><summary>Drivers: topics of type JointState</summary>
 <div class="scroll"><table><thead><tr><th scope="col" class="words">joint</th>
 <th scope="col" class="words">topic</th><th scope="col" class="number">rate</th><td></td></tr>
 </thead><tbody></tbody></table></div></details></section>
-</main>
+</main><div id="messages">
+<p id="message"></p><p id="answer" role="status"></p>
+<p id="command" hidden><code></code> <button type="button">Copy</button></p>
+<p id="recording"></p>
+</div>
 """
 
 

@@ -26,12 +26,9 @@ class NeverExecuted(CallbackGroup):  # type: ignore[misc]  # rclpy has no types
 class Taken(NamedTuple):
     """A message as it came."""
 
-    data: Any
-    """CDR, or the message."""
-    received: int
-    """ns."""
-    number: int | None
-    """Its number among those of its publisher; None where the middleware does not count."""
+    data: Any  # CDR, or the message
+    received: int  # ns
+    number: int | None  # among those of its publisher; None where the middleware does not count
 
 
 class PolledSubscription:
@@ -59,14 +56,10 @@ class PolledSubscription:
 
     def take(self) -> Iterator[Taken]:
         """Yield what has come since the last time, at most one full queue."""
-        handle, kind, raw = (
-            self._subscription.handle,
-            self._subscription.msg_type,
-            self._subscription.raw,
-        )
-        with handle:
+        source = self._subscription
+        with source.handle:
             for _ in range(DEPTH):
-                if (taken := handle.take_message(kind, raw)) is None:
+                if (taken := source.handle.take_message(source.msg_type, source.raw)) is None:
                     return
                 data, about = taken
                 received = about['received_timestamp'] or time.time_ns()
@@ -81,26 +74,21 @@ class PolledSubscription:
         self._node.destroy_subscription(self._subscription)
 
 
-class Latest:
+class Latest(PolledSubscription):
     """The latest message of a topic, and the rate at which they come.
 
     Best effort is compatible with every publisher, and asks for no acknowledgements.
     """
 
     def __init__(self, node: Node, topic: str, message_type: type) -> None:
-        self._source = PolledSubscription(node, topic, message_type, ReliabilityPolicy.BEST_EFFORT)
+        super().__init__(node, topic, message_type, ReliabilityPolicy.BEST_EFFORT)
         self.last: Taken | None = None
         self._count = 0
-        self._counts: deque[tuple[float, int]] = deque()  # by time, s
-
-    @property
-    def topic(self) -> str:
-        """Name of the topic."""
-        return self._source.topic
+        self._counts = deque([(time.monotonic(), 0)])  # by time, s
 
     def poll(self) -> None:
         """Take what has come."""
-        for taken in self._source.take():
+        for taken in self.take():
             self.last = taken
             self._count += 1
         now = time.monotonic()
@@ -118,11 +106,3 @@ class Latest:
     def age(self) -> float | None:
         """Time since the last message, s; None before the first."""
         return (time.time_ns() - self.last.received) / SECOND if self.last else None
-
-    def publishers(self) -> int:
-        """Count the publishers that are connected."""
-        return self._source.publishers()
-
-    def close(self) -> None:
-        """Unsubscribe."""
-        self._source.close()

@@ -1,20 +1,21 @@
 """Records topics to a bag, message by message as they come, and counts what is lost."""
 
 import time
-from collections import Counter
 from collections.abc import Iterable, Mapping
-from contextlib import ExitStack
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
-from types import MappingProxyType
 from typing import NamedTuple
 
+from diagnostic_msgs.msg import DiagnosticArray
+from geometry_msgs.msg import PoseArray
 from rclpy.node import Node
 from rclpy.qos import ReliabilityPolicy
+from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import BagError, LiveBagWriter, Message
-from gear_kinematics.watch.polled import PolledSubscription, Taken
+from gear_kinematics.watch.polled import PolledSubscription
+from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import header_stamp
 
 _PERIOD = 0.01  # s between looks into the queues, which hold 2000 messages
@@ -22,113 +23,114 @@ _PATIENCE = 2.0  # s to wait for the answers to the last inputs
 _FLUSH_PERIOD = 1.0  # s; as much is missing at most if the process is killed
 
 
+RECORDED_TYPES = {
+    topics.JOINT_STATE: JointState,
+    topics.POSE_ARRAY: PoseArray,
+    topics.TOPICS[topics.DIAGNOSTICS].type: DiagnosticArray,
+}  # classes by name
+
+
 class Recorded(NamedTuple):
     """What a recording holds."""
 
     path: Path
     seconds: float
-    counts: Mapping[str, int]
-    """Messages by topic."""
-    lost: int | None
-    """Messages that are missing between those; None if the middleware does not number them."""
-    error: str
-    """Why the recording ended by itself; '' while it goes on."""
+    counts: Mapping[str, int]  # messages by topic
+    lost: int  # messages that are missing on the topics whose losses are counted
+    uncounted: tuple[str, ...]  # topics of several publishers, or of messages without numbers
+    error: str  # why the recording ended by itself; '' while it goes on
 
-    @property
-    def messages(self) -> int:
-        """Messages of all topics."""
-        return sum(self.counts.values())
+    def __str__(self) -> str:
+        lost = f'{self.lost} lost'
+        if self.uncounted:
+            lost += f', not counted on {", ".join(self.uncounted)}'
+        return f'{sum(self.counts.values())} messages, {lost}'
 
 
 class _Channel:
-    """A topic, and the number that its next message should have."""
+    """A topic that is recorded: reliably, unless a publisher offers less."""
 
-    def __init__(self, node: Node, topic: str, message_type: type) -> None:
-        # Reliable, unless a publisher offers less.
-        self.source = PolledSubscription(
-            node, topic, message_type, ReliabilityPolicy.BEST_AVAILABLE
-        )
+    def __init__(self, node: Node, topic: str, kind: str) -> None:
+        reliability = ReliabilityPolicy.BEST_AVAILABLE
+        self.source = PolledSubscription(node, topic, RECORDED_TYPES[kind], reliability)
+        self.type = kind
         self.count = 0
         self.lost = 0
-        self.numbered = True
-        self.stamp = -1
-        """Of the latest message, ns."""
-        self._last: int | None = None
+        self.counted = True  # whether every loss is known
+        self.stamp = -1  # of the latest message, ns
+        self._last: list[int] = []  # numbers of the latest messages, in each publisher's counting
 
     def take(self) -> list[Message]:
         """Take what has come."""
         topic = self.source.topic
         taken = list(self.source.take())
         if taken:
-            self._count_losses(taken)
+            self.count += len(taken)
             self.stamp = header_stamp(taken[-1].data)
+            # Which of several has sent a message is not known.
+            self.counted &= self.source.publishers() <= 1
+        for message in taken:
+            self._count_losses(message.number)
         return [(topic, message.received, message.data) for message in taken]
 
-    def _count_losses(self, taken: list[Taken]) -> None:
-        self.count += len(taken)
-        several = self.source.publishers() > 1  # which of them sent a message is not known
-        for message in taken:
-            if message.number is None:
-                self.numbered = False
-            elif self._last is not None and message.number > self._last and not several:
-                self.lost += message.number - self._last - 1
-            self._last = message.number
+    def _count_losses(self, number: int | None) -> None:
+        # A publisher can come and go unseen, or take another's place. Each counts from 1: a number
+        # below all others begins a new counting, and any other belongs to the nearest.
+        if number is None:
+            self.counted = False
+            return
+        before = max((last for last in self._last if last < number), default=None)
+        if before is not None:
+            self.lost += number - before - 1
+            self._last.remove(before)
+        self._last.append(number)
 
 
 class Recording:
     """A recording in progress.
 
     One thread takes the messages from the middleware and another writes them, so that a slow disk
-    does not make the queues overflow.
+    does not make the queues overflow. BagError is raised if the folder cannot be created.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        topics: Mapping[str, tuple[str, type]],
-        path: Path,
-        answers: Mapping[str, str] = MappingProxyType({}),
-    ) -> None:
-        """Begin to record.
-
-        Args:
-            node: subscribes; subscriptions are made and removed by the caller's thread only.
-            topics: type of each topic, by name and as a class.
-            path: folder to create.
-            answers: topics whose messages have the stamps of those that they answer, each with
-                the topic of these.
-
-        Raises:
-            BagError: if it exists already or cannot be written.
-        """
+    def __init__(self, path: Path) -> None:
         self.path = path
         self._bag = LiveBagWriter(path)
-        with ExitStack() as stack:
-            stack.enter_context(self._bag)
-            for topic, (message_type, _) in topics.items():
-                self._bag.add_topic(topic, message_type)
-            self._open = stack.pop_all()
+        self._bag.__enter__()
         self._began = time.monotonic()
-        self._seconds: float | None = None
+        self._seconds = 0.0  # at its end
         self._error = ''
-        self._channels = [_Channel(node, topic, kind) for topic, (_, kind) in topics.items()]
-        by_topic = {channel.source.topic: channel for channel in self._channels}
-        self._answers = {by_topic[topic]: by_topic[asked] for topic, asked in answers.items()}
+        self._channels: dict[str, _Channel] = {}  # by topic
+        self._answers: dict[str, str] = {}
         self._stopping = Event()
         self._queue: SimpleQueue[list[Message] | None] = SimpleQueue()
         self._threads = [Thread(target=self._take), Thread(target=self._write)]
         for thread in self._threads:
             thread.start()
 
+    def add(self, node: Node, types: Mapping[str, str], answers: Mapping[str, str]) -> None:
+        """Record topics from now on; those that are recorded already are left alone.
+
+        Args:
+            node: subscribes; subscriptions are made and removed by the caller's thread only.
+            types: names of the types by topic.
+            answers: topics whose messages have the stamps of those that they answer, each with
+                the topic of these.
+        """
+        for topic, kind in types.items():
+            if topic not in self._channels:
+                self._channels[topic] = _Channel(node, topic, kind)
+        self._answers |= answers
+
     def status(self) -> Recorded:
         """What there is so far."""
-        numbered = all(channel.numbered for channel in self._channels)
-        elapsed = time.monotonic() - self._began
+        channels = list(self._channels.items())
         return Recorded(
             self.path,
-            elapsed if self._seconds is None else self._seconds,
-            Counter({channel.source.topic: channel.count for channel in self._channels}),
-            sum(channel.lost for channel in self._channels) if numbered else None,
+            self._seconds or time.monotonic() - self._began,
+            {topic: channel.count for topic, channel in channels},
+            sum(channel.lost for _, channel in channels if channel.counted),
+            tuple(topic for topic, channel in channels if not channel.counted),
             self._error,
         )
 
@@ -138,42 +140,55 @@ class Recording:
         self._stopping.set()
         for thread in self._threads:
             thread.join()
-        for channel in self._channels:
+        for channel in self._channels.values():
             channel.source.close()
-        error = BagError(self._error) if self._error else None
         try:
-            self._open.__exit__(type(error) if error else None, error, None)
+            self._bag.__exit__(BagError if self._error else None, None, None)
         except BagError as problem:
-            self._error = self._error or str(problem)
+            self._fail(problem)
         return self.status()
 
     def _take(self) -> None:
-        stopping = False
-        while not stopping:
-            stopping = self._stopping.wait(_PERIOD)
-            self._pass_on(self._channels)
-        # A node that is behind has not answered the last inputs yet.
-        end = time.monotonic() + _PATIENCE
-        while time.monotonic() < end and any(
-            answer.stamp < asked.stamp for answer, asked in self._answers.items()
-        ):
-            time.sleep(_PERIOD)
-            self._pass_on(self._answers)
-        self._queue.put(None)
+        try:
+            stopping = False
+            while not stopping:
+                stopping = self._stopping.wait(_PERIOD)
+                self._pass_on(list(self._channels.values()))
+            # A node that is behind has not answered the last inputs yet.
+            waiting = [
+                (self._channels[answer], self._channels[asked])
+                for answer, asked in self._answers.items()
+                if {answer, asked} <= self._channels.keys()
+            ]
+            end = time.monotonic() + _PATIENCE
+            while time.monotonic() < end and any(a.stamp < b.stamp for a, b in waiting):
+                time.sleep(_PERIOD)
+                self._pass_on([answer for answer, _ in waiting])
+        except Exception as error:  # noqa: BLE001, ends the recording, and is shown
+            self._fail(error)
+        finally:
+            self._queue.put(None)
 
     def _pass_on(self, channels: Iterable[_Channel]) -> None:
         messages = [message for channel in channels for message in channel.take()]
         self._queue.put(sorted(messages, key=lambda message: message[1]))
 
     def _write(self) -> None:
-        flushed = time.monotonic()
+        flushed, known = time.monotonic(), 0
         while (messages := self._queue.get()) is not None:
             if self._error:
                 continue
             try:
+                for topic, channel in list(self._channels.items())[known:]:
+                    self._bag.add_topic(topic, channel.type)
+                    known += 1
                 self._bag.write_all(messages)
                 if time.monotonic() >= flushed + _FLUSH_PERIOD:
                     self._bag.flush()
                     flushed = time.monotonic()
-            except BagError as error:
-                self._error = str(error)
+            except Exception as error:  # noqa: BLE001, as above
+                self._fail(error)
+
+    def _fail(self, error: Exception) -> None:
+        cause = str(error) if isinstance(error, BagError) else f'{type(error).__name__}: {error}'
+        self._error = self._error or cause

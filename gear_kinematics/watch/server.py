@@ -3,6 +3,7 @@
 import asyncio
 import hmac
 import json
+import logging
 import secrets
 import socket
 import threading
@@ -25,13 +26,11 @@ HOST = '127.0.0.1'
 _NAMES = (HOST, 'localhost')
 """Host names of requests. A page elsewhere whose name is made to lead here (DNS rebinding) has
 another one; a forwarded port has another number."""
-_LARGEST = 4096  # bytes of a command
+_LARGEST = 4096  # bytes of a request's body, and of a command
 _PING = 20.0  # s
 
 
-def serve(
-    watcher: Watcher, console: Console, stopped: Callable[[], bool], *, port: int = 0
-) -> None:
+def serve(watcher: Watcher, console: Console, stopped: Callable[[], bool], port: int = 0) -> None:
     """Serve the page until stopped; its address and the drivers are printed."""
     server = Server(watcher, port)
     console.print(f'Open {server.address}', soft_wrap=True, markup=False, highlight=False)
@@ -52,15 +51,7 @@ class Server:
     """The page, with a new secret in its address."""
 
     def __init__(self, watcher: Watcher, port: int = 0) -> None:
-        """Open the port.
-
-        Args:
-            watcher: gives what is shown, and does what is asked.
-            port: 0 takes a free one.
-
-        Raises:
-            OSError: if the port is taken.
-        """
+        """Open the port, or a free one; raises OSError if it is taken."""
         token = secrets.token_urlsafe(24)
         self._socket = socket.create_server((HOST, port))
         self._socket.setblocking(False)  # noqa: FBT003, its only argument
@@ -73,13 +64,9 @@ class Server:
         )
         self.address = f'http://{HOST}:{self._socket.getsockname()[1]}/{token}/'
 
-    def close(self) -> None:
-        """Close the port without having served."""
-        self._socket.close()
-
     async def run(self, stopped: Callable[[], bool]) -> None:
-        """Serve until stopped."""
-        server = HTTPServer(self._application)
+        """Serve until stopped; requests have no body, and a large one is refused unread."""
+        server = HTTPServer(self._application, max_body_size=_LARGEST)
         server.add_socket(self._socket)
         try:
             while not stopped():  # noqa: ASYNC110, a signal only sets a flag
@@ -92,22 +79,19 @@ class Server:
 class _Guarded(RequestHandler):
     """Refuses whoever does not know the token, and pages of other origins."""
 
+    _origins: tuple[str | None, ...] = (None,)  # beside its own
+
     def initialize(self, watcher: Watcher, token: str) -> None:
         """Take what all requests have in common."""
         self._watcher, self._token = watcher, token
 
     def prepare(self) -> None:
-        """Check a request before anything else.
-
-        Raises:
-            HTTPError: if it is refused.
-        """
-        given = self.path_args[0].encode()
-        origin = self.request.headers.get('Origin')
+        """Check a request before anything else; raises HTTPError if it is refused."""
+        origins = (*self._origins, f'http://{self.request.host}')
         if (
             self.request.host_name not in _NAMES
-            or not hmac.compare_digest(given, self._token.encode())
-            or (origin is not None and origin != f'http://{self.request.host}')
+            or not hmac.compare_digest(self.path_args[0].encode(), self._token.encode())
+            or self.request.headers.get('Origin') not in origins
         ):
             raise HTTPError(403)
 
@@ -120,6 +104,11 @@ class _Guarded(RequestHandler):
         self.set_header('Referrer-Policy', 'no-referrer')
         self.set_header('X-Content-Type-Options', 'nosniff')
 
+    def log_exception(self, kind: Any, error: Any, trace: Any) -> None:
+        """Say what went wrong, without the address, which has the token."""
+        if not isinstance(error, HTTPError | WebSocketClosedError | asyncio.CancelledError):
+            logging.getLogger(__name__).error('', exc_info=(kind, error, trace))
+
 
 class _Page(_Guarded):
     async def get(self, _token: str) -> None:
@@ -130,19 +119,7 @@ class _Page(_Guarded):
 class _Live(_Guarded, WebSocketHandler):
     """Sends the latest view at most thirty times a second, and takes commands."""
 
-    def check_origin(self, origin: str) -> bool:
-        """Take only the page itself; `prepare` has refused other origins."""
-        return origin == f'http://{self.request.host}'
-
-    def prepare(self) -> None:
-        """Check a request; browsers always name the origin of a WebSocket.
-
-        Raises:
-            HTTPError: if it is refused.
-        """
-        super().prepare()
-        if 'Origin' not in self.request.headers:
-            raise HTTPError(403)
+    _origins = ()  # browsers always name that of a WebSocket
 
     def open(self, _token: str) -> None:
         """Begin to send."""
@@ -154,41 +131,31 @@ class _Live(_Guarded, WebSocketHandler):
 
     async def on_message(self, message: str | bytes) -> None:
         """Do what a button asks for, and answer in words."""
+        watcher = self._watcher
         try:
             command = json.loads(message)
-            answer = await self._do(command)
-        except (ValueError, KeyError, TypeError):
+            match command['do']:
+                case 'configure':
+                    asked = watcher.configure(str(command['topic']), str(command['joint']))
+                case 'home' | 'record' | 'stop' as name:
+                    asked = getattr(watcher, name)()
+                case other:
+                    raise ValueError(other)
+            answer = await asyncio.wrap_future(asked)
+        except (ValueError, KeyError, TypeError, RecursionError):
             answer = Answer('There is no such command.', done=False)
         await self.write_message({'answer': answer._asdict()})
-
-    async def _do(self, command: dict[str, Any]) -> Answer:
-        watcher = self._watcher
-        match command['do']:
-            case 'home':
-                asked = watcher.home()
-            case 'record':
-                asked = watcher.record()
-            case 'stop':
-                asked = watcher.stop()
-            case 'configure':
-                asked = watcher.configure(str(command['topic']), str(command['joint']))
-            case other:
-                raise ValueError(other)
-        return await asyncio.wrap_future(asked)
 
     async def _send(self) -> None:
         drawn = View().gear
         loop = asyncio.get_running_loop()
-        try:
+        with suppress(WebSocketClosedError):
             while True:
                 due = loop.time() + PERIOD
-                watcher = self._watcher
-                view = watcher.view
+                watcher, view = self._watcher, self._watcher.view
                 if view.gear != drawn:
                     drawn = view.gear
                     html = await loop.run_in_executor(None, drawing, watcher.drawn, watcher.module)
                     await self.write_message({'drawing': html})
                 await self.write_message({'view': asdict(view)})  # until it has gone out
                 await asyncio.sleep(due - loop.time())
-        except WebSocketClosedError:
-            pass

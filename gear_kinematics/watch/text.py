@@ -26,13 +26,8 @@ _REFRESH = 0.1  # s
 _LINES = 1.0  # s between lines in a pipe
 _PATIENCE = 5.0  # s to wait for a driver
 _COUNTING = 1.5  # s to measure the rates of those that are found
-_STYLES = {'': '', 'notable': 'yellow', 'bad': 'bold red'}
-_STATES = {
-    'none': ('no node', 'bold magenta'),
-    'connecting': ('connecting', 'bold magenta'),
-    'connected': ('connected', 'bold green'),
-    'ended': ('ended', 'bold red'),
-}
+_STYLES = {'': 'bold', 'stale': 'dim', 'notable': 'yellow', 'pass': 'green', 'unusable': 'magenta'}
+_BAD = 'bold red'  # the style of all other tones
 
 
 def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
@@ -70,26 +65,31 @@ def wait_and_list(watcher: Watcher, console: Console, stopped: Callable[[], bool
 
 def _print_lines(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
     wait_and_list(watcher, console, stopped)
-    due = time.monotonic()
+    due, said = time.monotonic(), ''
     while not stopped():
         if time.monotonic() >= due:
             due += _LINES
-            now = datetime.now().astimezone().isoformat(timespec='seconds')
-            console.print(Text(f'{now} {line(watcher.view)}'), soft_wrap=True)
+            new = line(watcher.view)
+            if new != said:  # as long as there is no node, it is the same
+                now = datetime.now().astimezone().isoformat(timespec='seconds')
+                console.print(Text(f'{now} {new}'), soft_wrap=True)
+            said = new
         time.sleep(_REFRESH)
 
 
 def line(view: View) -> str:
     """Put a view into one line."""
-    facts = [
-        f'{reading.name} {reading.value}' + (f' ({reading.detail})' if reading.detail else '')
-        for reading in view.readings
-    ]
-    state, _ = _STATES[view.state]
+    values, diagnostics = (
+        '; '.join(
+            f'{entry.name} {entry.value}' + (f' ({entry.detail})' if entry.detail else '')
+            for entry in entries
+        )
+        for entries in (view.values, view.diagnostics)
+    )
     recording = f'recording {view.recording}' if view.recording else view.failure
-    parts = [f'{view.node} {state}'.strip(), view.words, '; '.join(facts)]
-    parts += [sentence.text for sentence in view.sentences] if view.state == 'connected' else []
-    return printable(' | '.join(part for part in (*parts, recording) if part))
+    state = ' '.join(part for part in (view.node, view.state, view.duration) if part)
+    parts = (state, view.message, values, diagnostics, recording)
+    return printable(' | '.join(part for part in parts if part))
 
 
 def _show_table(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
@@ -109,70 +109,47 @@ def _show_table(watcher: Watcher, console: Console, stopped: Callable[[], bool])
 
 def table(view: View, answer: Answer | None = None) -> RenderableType:
     """Show a view, and the answer to the last command, as a table."""
-    state, style = _STATES[view.state]
-    parts: list[RenderableType] = [
-        Text.assemble(('gearkin watch ', 'bold'), f'{view.node} ', (state, style))
-    ]
-    if view.words:
-        parts.append(Text(view.words))
-    parts.append(Text())
+    state = (f'{view.state} {view.duration}', _STYLES.get(view.tone, _BAD))
+    title = Text.assemble(('gearkin watch ', 'bold'), f'{view.node} ', state)
     grid = RichTable.grid(padding=(0, 2))
-    for reading in view.readings:
-        value = Text(reading.value, _STYLES[reading.tone] or 'bold')
-        grid.add_row(Text(reading.name, 'dim'), value, Text(reading.detail, 'dim'))
-    if view.readings:
-        parts += [grid, Text()]
-    parts += [Text(printable(text.text), _STYLES[text.tone]) for text in view.sentences]
-    if view.state == 'none':
-        parts += [_drivers(view.drivers), Text('gearkin init writes a parameter file for one.')]
+    parts: list[RenderableType] = [title, Text(printable(view.message)), grid, Text()]
+    for entry in (*view.values, *view.diagnostics):
+        name, value, detail = map(printable, (entry.name, entry.value, entry.detail))
+        style = _STYLES.get(entry.tone, _BAD)
+        grid.add_row(Text(name, 'dim'), Text(value, style), Text(detail, 'dim'))
+    if view.state == 'no node':
+        for driver in view.drivers:
+            joints = Text(printable(', '.join(driver.joints)))
+            grid.add_row(Text(driver.topic), joints, Text(f'{driver.rate:.0f} Hz'))
+        parts.append(Text('gearkin init writes a parameter file for one.'))
     if view.recording:
         parts.append(Text.assemble(('● ', 'red'), f'recording to {view.recording}'))
     elif view.failure:
-        parts.append(Text(printable(view.failure), _STYLES['bad']))
+        parts.append(Text(printable(view.failure), _BAD))
     if answer:
-        parts.append(Text(printable(answer.text), '' if answer.done else _STYLES['bad']))
+        parts.append(Text(printable(str(answer)), '' if answer.done else _BAD))
     record = 'stop recording' if view.recording else 'record'
     parts += [Text(), Text(f'h home   r {record}   q end', 'dim')]
     return Group(*parts)
 
 
-def _drivers(drivers: Sequence[Driver]) -> RenderableType:
-    grid = RichTable.grid(padding=(0, 2))
-    grid.add_row(*(Text(heading, 'dim') for heading in ('topic', 'joints', 'rate')))
-    for driver in drivers:
-        joints = printable(', '.join(driver.joints))
-        grid.add_row(Text(driver.topic), Text(joints), Text(f'{driver.rate:.0f} Hz'))
-    return grid
-
-
 @contextmanager
 def _keys() -> Iterator[Callable[[float], str]]:
-    """Take single keys from the terminal; yields a function that waits some s for one.
-
-    The end of the input is q.
-    """
-    if not sys.stdin.isatty():
-
-        def wait(timeout: float) -> str:
-            time.sleep(timeout)
-            return ''
-
-        yield wait
-        return
-    descriptor = sys.stdin.fileno()
-    before = termios.tcgetattr(descriptor)
+    """Yield a function that waits some s for a key; the end of the input is q."""
+    terminals = [sys.stdin.fileno()] if sys.stdin.isatty() else []
+    before = [termios.tcgetattr(terminal) for terminal in terminals]
 
     def read(timeout: float) -> str:
-        ready, _, _ = select.select([descriptor], [], [], timeout)
-        if not ready:
-            return ''
+        ready, _, _ = select.select(terminals, [], [], timeout)
         try:
-            return os.read(descriptor, 1).decode(errors='replace').lower() or 'q'
+            return os.read(ready[0], 1).decode(errors='replace').lower() or 'q' if ready else ''
         except OSError:  # the terminal is gone
             return 'q'
 
     try:
-        tty.setcbreak(descriptor)
+        for terminal in terminals:
+            tty.setcbreak(terminal)
         yield read
     finally:
-        termios.tcsetattr(descriptor, termios.TCSADRAIN, before)
+        for terminal, attributes in zip(terminals, before, strict=True):
+            termios.tcsetattr(terminal, termios.TCSADRAIN, attributes)

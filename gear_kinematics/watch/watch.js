@@ -1,30 +1,28 @@
-// Shows what the server sends, and sends it what the buttons ask for. The poses of the bodies are in
-// page.css.
+// Shows what the server sends, and sends it what the buttons ask for; page.css poses the bodies.
 'use strict';
 (() => {
   const RETRY = 1000; // ms
-  const TONES = {none: 'unusable', connecting: 'unusable', connected: 'pass', ended: 'fail'};
-  const STATES = {none: 'no node', connecting: 'connecting', connected: 'connected', ended: 'ended'};
+  const SPAN = 10; // s of a curve
   const find = id => document.getElementById(id);
-  const mechanism = find('mechanism');
-  const curve = find('curve');
-  const drivers = find('drivers');
-  const home = find('home');
-  const record = find('record');
+  const [mechanism, drivers, home, record, command] =
+    ['mechanism', 'drivers', 'home', 'record', 'command'].map(find);
   let server;
   let frame; // the latest one that is not shown yet
   let recording = false;
-  let errors = []; // [time in s, seconds of arc]
-  let listed = ''; // the drivers as they are shown
+  const curves = {}; // [time in s, value or null] by name
 
   function set(element, text, className = '') {
     if (element.textContent !== text) element.textContent = text;
     if (element.className !== className) element.className = className;
   }
 
-  function make(tag, text = '', className = '') {
+  function fill(parent, ...texts) {
+    texts.forEach(([text, className], k) => set(parent.children[k], text, className));
+  }
+
+  function make(tag, ...children) {
     const element = document.createElement(tag);
-    set(element, text, className);
+    element.append(...children);
     return element;
   }
 
@@ -33,72 +31,62 @@
     while (parent.children.length < count) parent.append(child());
   }
 
-  function showReadings(readings) {
-    const list = find('readings');
-    resize(list, readings.length, () => {
-      const item = make('div');
-      item.append(make('dt'), make('dd'), make('dd', '', 'detail'));
-      return item;
-    });
-    readings.forEach(({name, value, detail, tone}, k) => {
-      const [term, text, more] = list.children[k].children;
-      set(term, name);
-      set(text, value, tone);
-      set(more, detail, 'detail');
-    });
+  function showEntries(list, entries) {
+    resize(list, entries.length, () => make('div', make('dt'), make('dd'), make('dd')));
+    entries.forEach(({name, value, detail, tone}, k) => fill(list.children[k], [name], [value, tone],
+      [detail, 'detail']));
   }
 
-  function showSentences(sentences) {
-    const list = find('sentences');
-    resize(list, sentences.length, () => make('li'));
-    sentences.forEach(({text, tone}, k) => set(list.children[k], text, tone));
-  }
-
-  function showCurve({error, window: span}) {
+  function showCurve(figure, {name, unit, value}) {
     const now = performance.now() / 1000;
-    if (error !== null) errors.push([now, error]);
-    errors = errors.filter(([time]) => time > now - span);
-    curve.hidden = errors.length < 2;
-    if (curve.hidden) return;
-    const values = errors.map(([, value]) => value);
-    const [low, high] = [Math.min(...values), Math.max(...values)];
-    const room = Math.max(high - low, 1e-3);
-    const place = value => (114 - 108 * (value - low) / room).toFixed(1);
-    const points = errors.map(([time, value]) => `${(600 + 600 * (time - now) / span).toFixed(1)},${place(value)}`);
-    curve.querySelector('polyline').setAttribute('points', points.join(' '));
-    const zero = curve.querySelector('line');
-    zero.setAttribute('y1', place(0));
-    zero.setAttribute('y2', place(0));
-    set(curve.querySelector('figcaption'),
-      `transmission error of the last ${span} s: ${low.toFixed(1)}″ to ${high.toFixed(1)}″`);
+    const points = (curves[name] ?? []).filter(([time]) => time > now - SPAN);
+    points.push([now, value]);
+    curves[name] = points;
+    const values = points.map(([, known]) => known).filter(known => known !== null);
+    const [low, high] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 0];
+    const scale = 88 / Math.max(high - low, 1e-3);
+    const height = known => (50 - scale * (known - (low + high) / 2)).toFixed(1);
+    const path = points.map(([time, known], k) => known === null ? '' :
+      `${(points[k - 1]?.[1] ?? null) === null ? 'M' : 'L'}` +
+      `${(300 + 300 * (time - now) / SPAN).toFixed(1)},${height(known)}`);
+    figure.querySelector('path').setAttribute('d', path.join(''));
+    for (const end of ['y1', 'y2']) figure.querySelector('line').setAttribute(end, height(0));
+    fill(figure.firstElementChild, [`${name}, ${SPAN} s`],
+      [values.length ? `${low.toFixed(1)} to ${high.toFixed(1)}${unit}` : 'no values']);
   }
 
-  function showDrivers(found, open) {
-    const rows = found.flatMap(({topic, joints, rate, publishers}) =>
-      (joints.length ? joints : ['']).map(joint => ({topic, joint, rate, publishers})));
+  function driverRow() {
+    const button = make('button', 'Write config');
+    const row = make('tr', make('td'), make('td'), make('td'), make('td', button));
+    button.addEventListener('click', () => send({do: 'configure', ...row.driver}));
+    return row;
+  }
+
+  function showDrivers(found) {
+    const rows = found.flatMap(({joints, ...more}) =>
+      (joints.length ? joints : ['']).map(joint => ({joint, ...more})));
     const body = drivers.querySelector('tbody');
-    const names = JSON.stringify(rows.map(({topic, joint}) => [topic, joint]));
-    if (names !== listed) {
-      if (!listed) drivers.open = open;
-      listed = names;
-      body.replaceChildren(...rows.map(({topic, joint}) => {
-        const row = make('tr');
-        const last = make('td');
-        row.append(make('td', joint, 'words'), make('td', topic, 'words'), make('td', '', 'number'), last);
-        if (joint) {
-          const button = make('button', 'Write config');
-          button.type = 'button';
-          button.setAttribute('aria-label', `Write config for joint ${joint} on ${topic}`);
-          button.addEventListener('click', () => send({do: 'configure', topic, joint}));
-          last.append(button);
-        }
-        return row;
-      }));
-    }
-    rows.forEach(({rate, publishers}, k) => {
-      const several = publishers > 1 ? `, ${publishers} drivers` : '';
-      set(body.children[k].children[2], `${rate.toFixed(0)} Hz${several}`, 'number');
+    resize(body, rows.length, driverRow);
+    rows.forEach(({topic, joint, rate, publishers}, k) => {
+      const row = body.children[k];
+      const button = row.querySelector('button');
+      row.driver = {topic, joint};
+      fill(row, [joint, 'words'], [topic, 'words'],
+        [`${rate.toFixed(0)} Hz${publishers > 1 ? `, ${publishers} drivers` : ''}`, 'number']);
+      button.hidden = !joint;
+      button.setAttribute('aria-label', `Write config for joint ${joint} on ${topic}`);
     });
+  }
+
+  function showState(state, tone, duration, message) {
+    const name = state.replace(' ', '-');
+    if (document.body.className !== name) {
+      document.body.className = name;
+      drivers.open = state === 'no node'; // there it is what matters
+    }
+    set(find('state'), state, `badge ${tone}`);
+    set(find('duration'), duration);
+    set(find('message'), message);
   }
 
   function show() {
@@ -106,28 +94,33 @@
     frame = undefined;
     if (!now) return;
     if (now.rotor !== null) {
-      mechanism.style.setProperty('--rotor', `${now.rotor}deg`);
-      mechanism.style.setProperty('--output', `${now.output}deg`);
+      for (const name of ['rotor', 'output']) mechanism.style.setProperty(`--${name}`, `${now[name]}deg`);
     }
     recording = now.recording !== '';
+    const running = !['no node', 'connecting', 'ended'].includes(now.state);
+    showState(now.state, now.tone, now.duration, now.message);
     set(find('node'), now.node);
-    set(find('state'), STATES[now.state], `badge ${TONES[now.state]}`);
-    set(find('words'), now.words);
     set(find('recording'), now.recording ? `Recording to ${now.recording}` : now.failure,
-      now.recording ? 'on' : 'bad');
+      now.recording ? '' : 'bad');
     set(record, recording ? 'Stop recording' : 'Record', recording ? 'on' : '');
-    home.disabled = now.state !== 'connected' || recording;
-    record.disabled = !recording && now.state !== 'connected' && !now.drivers.length;
-    showReadings(now.readings);
-    showSentences(now.sentences);
-    showCurve(now);
-    showDrivers(now.drivers, now.state === 'none');
-    document.body.classList.toggle('old', now.state !== 'connected');
-    document.body.classList.toggle('none', now.state === 'none');
+    home.disabled = !running || recording;
+    record.disabled = !recording && !running && !now.drivers.length;
+    showEntries(find('values'), now.values);
+    showEntries(find('diagnostics'), now.diagnostics);
+    resize(find('curves'), now.curves.length,
+      () => find('curve').content.firstElementChild.cloneNode(true));
+    now.curves.forEach((curve, k) => showCurve(find('curves').children[k], curve));
+    showDrivers(now.drivers);
   }
 
-  function send(command) {
-    if (server.readyState === WebSocket.OPEN) server.send(JSON.stringify(command));
+  function showAnswer({text, done, command: line}) {
+    set(find('answer'), text, done ? '' : 'bad');
+    fill(command, [line], ['Copy']);
+    command.hidden = !line;
+  }
+
+  function send(message) {
+    if (server.readyState === WebSocket.OPEN) server.send(JSON.stringify(message));
   }
 
   function connect() {
@@ -135,22 +128,24 @@
     server.addEventListener('message', ({data}) => {
       const message = JSON.parse(data);
       if ('drawing' in message) mechanism.innerHTML = message.drawing;
-      if ('answer' in message) set(find('answer'), message.answer.text, message.answer.done ? '' : 'bad');
+      if ('answer' in message) showAnswer(message.answer);
       if ('view' in message) {
         if (!frame) requestAnimationFrame(show);
         frame = message.view;
       }
     });
     server.addEventListener('close', () => {
-      set(find('state'), 'no connection', 'badge fail');
-      set(find('words'), 'gearkin watch has ended, or cannot be reached. Trying again.');
+      showState('no connection', 'fail', '', 'gearkin watch has ended, or cannot be reached. Trying again.');
       home.disabled = record.disabled = true;
-      document.body.classList.add('old');
       setTimeout(connect, RETRY);
     });
   }
 
   home.addEventListener('click', () => send({do: 'home'}));
   record.addEventListener('click', () => send({do: recording ? 'stop' : 'record'}));
+  command.querySelector('button').addEventListener('click', async ({target}) => {
+    await navigator.clipboard.writeText(command.querySelector('code').textContent);
+    set(target, 'Copied');
+  });
   connect();
 })();

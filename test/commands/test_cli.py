@@ -102,7 +102,8 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
     }
 
 
-def test_describe_prints_numbers_for_people(capsys):
+def test_describe_prints_numbers_for_people(capsys, monkeypatch):
+    monkeypatch.setenv('COLUMNS', '0')  # as of a terminal that does not know its width
     """Rounded, but for parameters, and small angles in minutes and seconds of arc."""
     assert main(['describe', '--eccentricity', '0.00110013']) == 0
     lines = dict(line.split(': ', 1) for line in capsys.readouterr().out.splitlines())

@@ -127,6 +127,7 @@ def test_name_in_the_root_namespace_begins_with_one_slash(make):
     publisher(make('stranger', ''), f'{mine.get_namespace()}/out')
     [fault] = find_faults(mine, [], [publisher(mine)], ['out']).warnings
     assert fault == '/stranger also publishes out'
+    assert fault.advice == 'Stop one of the two nodes, or give each its own namespace.'
 
 
 def test_output_that_is_not_in_the_graph_yet_is_not_checked(make, monkeypatch):

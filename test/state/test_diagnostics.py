@@ -1,8 +1,10 @@
 """The report on the rotor input: levels, messages and values, with a simulated clock."""
 
 import math
+import re
 import struct
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -11,12 +13,13 @@ from live import SECOND, rotor_bytes
 from gear_kinematics.kinematics import solve
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state import diagnostics
-from gear_kinematics.state.diagnostics import ERROR, OK, WARN, GraphFaults, InputMonitor
+from gear_kinematics.state.diagnostics import ERROR, OK, WARN, Fault, GraphFaults, InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
 SETTINGS = NodeParameters.load()
 START = 1000.0
+ROOT = Path(__file__).resolve().parents[2]
 
 
 class Bench:
@@ -47,6 +50,7 @@ def unnormalised(seconds, nanoseconds) -> bytes:
     return good()[:4] + struct.pack('<iI', seconds, nanoseconds) + good()[12:]
 
 
+DEAF, MUTE, DOUBLE = Fault('deaf', 'Listen.'), Fault('mute', 'Speak.'), Fault('double', 'Stop.')
 BAD = rotor_bytes(1, position=[math.nan])
 NO_JOINT = rotor_bytes(1, ['wheel'], [1.0])
 
@@ -78,14 +82,12 @@ def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
     assert (report.level, report.message) == (WARN, 'rejected: position not finite 1')
 
 
-@pytest.mark.parametrize(('drivers', 'level'), [(0, OK), (1, OK), (2, WARN), (3, WARN)])
-def test_more_than_one_driver_is_a_warning(bench, drivers, level):
+@pytest.mark.parametrize(('drivers', 'message'), [(0, 'ok'), (1, 'ok'), (2, '2 drivers')])
+def test_more_than_one_driver_is_a_warning(bench, drivers, message):
     bench.feed(START + 0.5, good())
     bench.monitor.drivers = drivers
     report = bench.report(START + 1.0)
-    assert report.level == level
-    assert report.values['drivers'] == str(drivers)
-    assert (f'{drivers} drivers' in report.message) is (level == WARN)
+    assert (report.message, report.values['drivers']) == (message, str(drivers))
 
 
 def test_silence_beyond_the_timeout_is_an_error(bench):
@@ -115,31 +117,37 @@ def test_unreferenced_encoder_is_an_error_until_home():
 
 
 @pytest.mark.parametrize(
-    ('faults', 'level', 'message'),
+    ('faults', 'level', 'message', 'advice'),
     [
-        (GraphFaults(errors=['deaf']), ERROR, 'deaf'),
-        (GraphFaults(warnings=['mute', 'double']), WARN, 'mute; double'),
-        (GraphFaults(errors=['deaf'], warnings=['mute']), ERROR, 'deaf; mute'),
+        (GraphFaults(errors=[DEAF]), ERROR, 'deaf', 'Listen.'),
+        (GraphFaults(warnings=[MUTE, DOUBLE]), WARN, 'mute; double', 'Speak. Stop.'),
+        (GraphFaults(errors=[DEAF], warnings=[MUTE]), ERROR, 'deaf; mute', 'Listen. Speak.'),
     ],
 )
-def test_fault_in_the_graph_is_reported_as_long_as_it_lasts(bench, faults, level, message):
+def test_fault_in_the_graph_is_reported_as_long_as_it_lasts(bench, faults, level, message, advice):
     bench.feed(START + 0.5, good())
     bench.monitor.graph = faults
     for _ in range(2):
         report = bench.report(START + 1.0)
         assert (report.level, report.message) == (level, message)
+        assert report.values['advice'] == advice
     bench.monitor.graph = GraphFaults()
     report = bench.report(START + 1.0)
     assert (report.level, report.message) == (OK, 'ok')
+    assert 'advice' not in report.values
 
 
-def test_error_outranks_warning_and_both_are_reported(bench):
-    bench.feed(START + 0.5, BAD)
-    bench.monitor.graph = GraphFaults(warnings=['listener out of reach'])
-    report = bench.report(START + 3.0)
-    assert report.level == ERROR
-    for part in ('no input', 'listener out of reach', 'position not finite 1'):
-        assert part in report.message
+def test_every_fault_is_documented_with_its_level():
+    page = (ROOT / 'docs/diagnostics.md').read_text('utf-8')
+    documented = re.findall(r'^\| `([^`]+)` \| (WARN|ERROR) \|', page, re.MULTILINE)
+    bench = Bench(replace(SETTINGS, rotor_encoder='single_turn'))
+    bench.feed(START + 0.8, good(), *12 * [NO_JOINT])
+    bench.monitor.drivers, bench.monitor.lost, bench.monitor.unsent = 2, 3, 1
+    report = bench.report(START + 4.0)
+    assert report.message.split('; ') == [
+        message for message, _ in documented if not re.search('QoS|/', message)
+    ]
+    assert len(re.findall(r'\.(?: |$)', report.values['advice'])) == 6
 
 
 def test_values_count_what_happened(bench):
@@ -175,6 +183,7 @@ def test_values_count_what_happened(bench):
         'age of last input (s)': '0.250',
         'referenced': 'true',
         'loop-closure residual (m)': values['loop-closure residual (m)'],
+        'advice': 'docs/diagnostics.md explains why messages are rejected.',
     }
 
 
