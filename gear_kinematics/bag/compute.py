@@ -88,7 +88,7 @@ def compute(
     topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
     corrector = None
     if calibration:
-        corrector = Corrector(calibration)
+        corrector = Corrector(calibration, parameters.max_rotor_acceleration)
         topic_of |= corrected_beside(output_topic)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')

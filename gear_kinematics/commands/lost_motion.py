@@ -28,7 +28,7 @@ from gear_kinematics.measurement.lost_motion import (
     measure_recording,
 )
 from gear_kinematics.measurement.preload.section import over_preload
-from gear_kinematics.measurement.preload.settings import check_pattern, settings_of
+from gear_kinematics.measurement.preload.settings import settings_of
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import Verdict
 
@@ -172,8 +172,9 @@ def _check(options: argparse.Namespace) -> None:
         names = [name for number, name in enumerate(names) if number not in others]
     if options.positions is not None:
         grouping.positions_of(names, options.positions)
-    if options.preloads:
-        check_pattern(options.preloads)
+    if options.preloads is not None:
+        gear = arguments.load_config(options, options.recordings[0]).gear
+        settings_of(names, options.preloads, options.preload_unit, gear)
 
 
 def _names(paths: Sequence[Path]) -> list[str]:

@@ -79,13 +79,14 @@ class CalibratedOutput:
     """Corrects the output sample by sample, and compares the correction with measured errors."""
 
     def __init__(self, calibration: Calibration) -> None:
-        self._corrector = Corrector(calibration)
+        self.corrector = Corrector(calibration)
+        """Its `max_acceleration` can change any time."""
         self._referenced = True
         self.reset()
 
     def reset(self) -> None:
         """Forget the motion and the comparison, as after homing."""
-        self._corrector.reset()
+        self.corrector.reset()
         self._predicted: deque[tuple[int, float, float]] = deque(maxlen=_DEPTH)
         # The error, the error minus the deviation, the half width; rad.
         self._compared = SlidingWindow(3)
@@ -95,7 +96,7 @@ class CalibratedOutput:
         if referenced != self._referenced:  # the turns were homed
             self.reset()
             self._referenced = referenced
-        correction = self._corrector.correct(sample, segment=segment, referenced=referenced)
+        correction = self.corrector.correct(sample, segment=segment, referenced=referenced)
         if self._predicted and sample.stamp <= (last := self._predicted[-1][0]):
             if last - sample.stamp <= CLOCK_RESET:
                 return correction

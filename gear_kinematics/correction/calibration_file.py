@@ -20,6 +20,7 @@ UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
 _RATIO = re.compile(r'-?[0-9]{1,9}(/(?P<denominator>[0-9]{1,9}))?', re.ASCII)
 _GREATEST = 1e30  # no number of a real gear is near it
+_STEEPEST = 1e6  # the products with the greatest velocities of the rotor are finite
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
 
 
@@ -222,6 +223,11 @@ class Calibration:
             faults.append('a radius of the hysteresis must be greater than 0')
         if self.compliance is not None and self.spans.torque is None:
             faults.append('a compliance needs the span of the torque')
+        reach, slope = self._bounds()
+        if reach > math.pi:
+            faults.append(f"an error of the output of {reach:g} rad, beyond ±π, is no gear's")
+        if slope > _STEEPEST:
+            faults.append(f"an error of the output with a slope of {slope:g} is no gear's")
         if not 0.0 < self.half_width <= self.outside_half_width:
             faults.append('half_width must be greater than 0 and at most outside_half_width')
         spans = {name: getattr(self.spans, name) for name in ('speed', 'torque', 'angle')}
@@ -234,6 +240,18 @@ class Calibration:
         if [len(row) for row in self.covariance] != size * [size]:
             faults.append(f'covariance must have {size} rows of {size} numbers')
         return faults
+
+    def _bounds(self) -> tuple[float, float]:
+        """Bounds of the deviation, rad, and of its derivative along the ideal output angle."""
+        ratio, twist = abs(float(self.gear_ratio)), 0.0
+        if self.compliance and self.spans.torque:
+            least, most = self.spans.torque
+            twist = 0.5 * abs(self.compliance.coefficient) * (most - least)
+        orders = [(math.hypot(of.cos, of.sin), float(of.cycles) * ratio) for of in self.orders]
+        stops = [(stop.radius, abs(stop.coefficient)) for stop in self.hysteresis]
+        reach = sum(size for size, _ in orders) + sum(radius * slope for radius, slope in stops)
+        slope = sum(size * rate for size, rate in orders) + sum(slope for _, slope in stops)
+        return abs(self.constant) + twist + reach, slope
 
 
 def _described(ratio: Fraction, ring: int | None, satellite: int | None) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.correction.stops import StopOperators
-from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.wire.cdr import SECOND
 
@@ -18,6 +18,9 @@ Array = NDArray[Any]
 
 MAX_GAP = SECOND
 """ns between samples beyond which the plays are unknown again, as motion was missed."""
+_SAMPLING = SECOND // 10
+"""ns between samples beyond which the motion is not followed, whatever their usual period is; not
+beyond three periods either, since then messages were lost."""
 _SPEED_INTERVAL = SECOND // 10  # ns over which a missing velocity is averaged; begins at multiples
 
 
@@ -41,10 +44,12 @@ class Corrector:
     The half width is that of the file, or its `outside_half_width` where speed, torque or output
     angle are outside of what was calibrated. It grows by what the unknown can contribute: plays
     before a long enough travel, orders of the output while the rotor's turns are unknown, and
-    wind-up without an effort.
+    wind-up without an effort. In a gap, plays move as far as a reversal could have driven them.
     """
 
-    def __init__(self, calibration: Calibration) -> None:
+    def __init__(self, calibration: Calibration, max_acceleration: float = math.inf) -> None:
+        """Begin with unknown plays; `max_acceleration` of the rotor, rad/s², bounds reversals."""
+        self.max_acceleration = max_acceleration
         self._calibration = calibration
         self._ratio = float(calibration.gear_ratio)
         self._per_rotor = float(1 / calibration.gear_ratio)
@@ -57,7 +62,9 @@ class Corrector:
         )
         self._stops = StopOperators(calibration.hysteresis, self._per_rotor)
         self._mean_speed = _MeanSpeed()
-        self._segment = self._stamp = 0
+        self._segment = 0
+        self._stamps = 4 * (-SECOND,)  # of the last samples
+        self._last = RotorSample(0, RotorPosition(0, 0.0), None, None)
 
     def reset(self) -> None:
         """Forget the motion so far, as after homing: the plays are unknown."""
@@ -75,9 +82,15 @@ class Corrector:
             referenced: whether the rotor's turns are known.
         """
         stamp, (turns, angle), velocity, effort = sample
-        if segment != self._segment or not 0 <= stamp - self._stamp <= MAX_GAP:
+        first, second, third, last = self._stamps
+        gap = stamp - last
+        if segment != self._segment or not 0 <= gap <= MAX_GAP:
             self.reset()
-        self._segment, self._stamp = segment, stamp
+            self._segment = segment
+        elif gap > _SAMPLING or gap > last - first:
+            self._widen(gap, turns, angle, velocity)
+        self._stamps = second, third, last, stamp
+        self._last = sample
         hysteresis = self._stops.follow(turns, angle)
         if velocity is None:
             velocity = self._mean_speed.update(stamp, turns, angle)
@@ -106,22 +119,43 @@ class Corrector:
             segment: the plays are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
-        gap = np.diff(stamp, prepend=self._stamp)
+        gap = np.diff(stamp, prepend=self._stamps[-1])
         anew = (gap < 0) | (gap > MAX_GAP) | (np.diff(segment, prepend=self._segment) != 0)
-        velocity, hysteresis = velocity.copy(), np.empty((3, len(stamp)))
+        speed, hysteresis = velocity.copy(), np.empty((3, len(stamp)))
         for start, stop in pairwise([0, *np.flatnonzero(anew).tolist(), len(stamp)]):
-            rows = slice(start, stop)
-            hysteresis[:, rows] = self._stops.follow_all(turns[rows], angle[rows])
-            for row in start + np.flatnonzero(np.isnan(velocity[rows])):
-                velocity[row] = self._mean_speed.update(
+            if start < stop and anew[start]:
+                self.reset()
+            stamps = np.append(self._stamps, stamp[start:stop])
+            period = np.minimum(stamps[3:-1] - stamps[:-4], _SAMPLING)
+            gaps = start + np.flatnonzero(np.diff(stamps[3:]) > period)
+            for first, end in pairwise([start, *gaps.tolist(), stop]):
+                if first == end:
+                    continue
+                motion = turns[first:end], angle[first:end], velocity[first:end]
+                if first in gaps:
+                    self._widen(int(gap[first]), *(float(column[0]) for column in motion))
+                hysteresis[:, first:end] = self._stops.follow_all(*motion[:2])
+                *position, last_speed = (column[-1].item() for column in motion)
+                self._last = RotorSample(0, RotorPosition(*position), last_speed, None)
+            for row in start + np.flatnonzero(np.isnan(velocity[start:stop])):
+                speed[row] = self._mean_speed.update(
                     int(stamp[row]), int(turns[row]), float(angle[row])
                 )
-            if stop < len(stamp):
-                self.reset()
-        if len(stamp):
-            self._stamp, self._segment = int(stamp[-1]), int(segment[-1])
+            self._stamps = tuple(stamps[-4:].tolist())
+        if len(segment):
+            self._segment = int(segment[-1])
         torque = self._ratio * effort
-        return self._correction(np, turns, angle, velocity, torque, hysteresis, referenced)
+        return self._correction(np, turns, angle, speed, torque, hysteresis, referenced)
+
+    def _widen(self, gap: int, turns: float, angle: float, velocity: float | None) -> None:
+        """Let the plays have moved wherever the rotor could have turned within a gap, ns."""
+        _, (turns_before, angle_before), before, _ = self._last
+        before, velocity = (math.nan if v is None else v for v in (before, velocity))
+        travel = (turns - turns_before) * TURN + angle - angle_before
+        limits = gap / SECOND, self.max_acceleration
+        most = _farthest(travel, before, velocity, *limits)
+        least = -_farthest(-travel, -before, -velocity, *limits)
+        self._stops.widen(turns_before, angle_before, least, most)
 
     def _correction(
         self,
@@ -180,6 +214,24 @@ class Corrector:
             where(inside, file.half_width, file.outside_half_width) + unknown,
             history + where(xp.isnan(velocity), margin, 0.0),
         )
+
+
+def _farthest(
+    travel: float, before: float, after: float, time: float, acceleration: float
+) -> float:
+    """How far forward the rotor could have been between two samples, rad from the first.
+
+    That is where acceleration from the speed `before` and braking to the speed `after` meet: -inf
+    if not beyond both samples; inf if the limit of the acceleration does not hold, or a speed is
+    NaN.
+    """
+    faster = before - after + acceleration * time
+    meet = travel - after * time + 0.5 * acceleration * time * time
+    if not 0.0 <= meet <= faster * time < math.inf or not faster:
+        return math.inf
+    meet /= faster
+    farthest = before * meet + 0.5 * acceleration * meet * meet
+    return farthest if farthest > max(0.0, travel) else -math.inf
 
 
 def _choose(condition: bool, yes: float, no: float) -> float:  # noqa: FBT001, as np.where

@@ -9,7 +9,7 @@ late by τ lags by its speed times τ. So over the common angles
 which is a straight line over the difference of the signed speeds.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -76,26 +76,32 @@ def separate(
         return None
     blocks = [_blocks(pair) for pair in pairs]
     groups = blocks if len(blocks) >= _PAIRS else [row[None] for rows in blocks for row in rows]
-    left_out = [np.concatenate(groups)]
-    if len(groups) > 1:
-        left_out += [np.concatenate([*groups[:k], *groups[k + 1 :]]) for k in range(len(groups))]
+    rows = np.concatenate(groups)
+    centre = np.average(rows[:, 1:], axis=0, weights=rows[:, 0])
+    sums = np.array([_moments(rows, centre) for rows in groups])
+    whole = sums.sum(axis=0, keepdims=True)
+    sums = np.concatenate([whole, whole - sums]) if len(groups) > 1 else whole
+    # Without each group: means of difference and speed, variance of the speed, slope.
+    difference, speed, square, product = sums.T[1:] / sums.T[0]
+    variance = square - speed * speed
+    covariance = product - speed * difference
+    difference, speed = difference + centre[0], speed + centre[1]
 
-    def estimate(of: Callable[[Array], float], *others: Component) -> Estimate:
-        fits = [of(rows) for rows in left_out]
-        values = pseudo_values(fits).tolist() or fits
-        return replace(Estimate.of_mean(values, *others), repeats=len(pairs))
+    def estimate(fits: Array, *others: Component) -> Estimate:
+        values = pseudo_values(fits) if len(fits) > 1 else fits
+        return replace(Estimate.of_mean(values.tolist(), *others), repeats=len(pairs))
 
-    difference = estimate(lambda rows: float(_mean(rows)[0]), *others)
-    speed = float(_mean(left_out[0])[1])
-    noise = float(np.mean([_noise(pair) for pair in pairs]))
+    means = estimate(difference, *others), float(centre[1])
     if delay is not None:
         known = Estimate(delay, 0.0, np.inf, len(pairs))
-        lost_motion = estimate(lambda rows: float(_mean(rows) @ [1.0, -delay]), *others)
-        return Reversals(difference, speed, lost_motion, known)
-    if len(groups) <= _LEAST or not all(_varies(rows, noise) for rows in left_out):
-        return Reversals(difference, speed, None, None)
-    lost_motion = estimate(lambda rows: float(_mean(rows) @ [1.0, -_slope(rows)]), *others)
-    return Reversals(difference, speed, lost_motion, estimate(_slope))
+        return Reversals(*means, estimate(difference - delay * speed, *others), known)
+    noise = float(np.mean([_noise(pair) for pair in pairs]))
+    # Whether the speed varies, and not only by noise.
+    varies = (variance > (_SPREAD * speed) ** 2) & (noise <= _STEADY * variance)
+    if len(groups) <= _LEAST or not varies.all():
+        return Reversals(*means, None, None)
+    slope = covariance / variance
+    return Reversals(*means, estimate(difference - slope * speed, *others), estimate(slope))
 
 
 def _blocks(pair: Pair) -> Array:
@@ -105,16 +111,11 @@ def _blocks(pair: Pair) -> Array:
     return np.array([[len(row), *row[:, 1:].mean(axis=0)] for row in rows])
 
 
-def _mean(rows: Array) -> Array:
-    """Means of difference and speed."""
-    return np.average(rows[:, 1:], axis=0, weights=rows[:, 0])
-
-
-def _slope(rows: Array) -> float:
-    """Slope of the difference over the speed, s."""
-    difference, speed = (rows[:, 1:] - _mean(rows)).T
-    weighted = rows[:, 0] * speed
-    return float(weighted @ difference / (weighted @ speed))
+def _moments(rows: Array, centre: Array) -> Array:
+    """Sums over blocks, from a centre: of 1, difference, speed, its square, their product."""
+    difference, speed = (rows[:, 1:] - centre).T
+    terms = np.stack([np.ones(len(rows)), difference, speed, speed * speed, speed * difference])
+    return np.asarray(terms @ rows[:, 0])
 
 
 def _noise(pair: Pair) -> float:
@@ -123,10 +124,3 @@ def _noise(pair: Pair) -> float:
         return 0.0
     in_block = max(1.0, len(pair.speed) / _BLOCKS)
     return float(np.mean(np.diff(pair.speed, 2) ** 2)) / 6.0 / in_block
-
-
-def _varies(rows: Array, noise: float) -> bool:
-    """Whether the speed varies, and not only by noise."""
-    mean = _mean(rows)[1]
-    variance = float(np.average((rows[:, 2] - mean) ** 2, weights=rows[:, 0]))
-    return variance > (_SPREAD * mean) ** 2 and noise <= _STEADY * variance

@@ -47,6 +47,23 @@ class StopOperators:
         self._known = False  # whether these are the same; then only the first are moved on
         self._reference: int | None = None  # rotor turns
 
+    def widen(self, turns: float, angle: float, least: float, most: float) -> None:
+        """Let the plays have followed the rotor unseen, from an angle by `least` and `most`, rad.
+
+        These are inf and -inf where it was not beyond what is seen.
+        """
+        if self._reference is None:
+            return
+        if self._known:
+            self._most, self._known = self._least.copy(), False
+        x = self._output_angle(turns, angle)
+        low, high = x + least * self._per_rotor, x + most * self._per_rotor
+        if self._per_rotor < 0.0:
+            low, high = high, low
+        for k, (radius, _) in enumerate(self._stops):
+            self._least[k] = min(self._least[k], low + radius)
+            self._most[k] = max(self._most[k], high - radius)
+
     def follow(self, turns: int, angle: float) -> tuple[float, float, float]:
         """Follow the motion to the next sample at the rotor angle 2π turns + angle."""
         self._count_from(turns)
@@ -70,13 +87,14 @@ class StopOperators:
             near = np.abs(turns[start : start + _CHUNK] - self._reference) <= _FAR
             rows = slice(start, start + (len(near) if near.all() else int(np.argmin(near))))
             x = self._output_angle(turns[rows], angle[rows])
+            column = x[:, np.newaxis]
             before = np.array([self._least, self._least if self._known else self._most])
             least, most = ends = play_bounds(x, radii, *before)
             self._least, self._most = least[-1].tolist(), most[-1].tolist()
             plays = np.concatenate([before[:, np.newaxis], ends], axis=1)
             standing = 0.5 * (np.diff(plays, axis=1) == 0.0).sum(axis=0)
             found[:, rows] = (
-                (x[:, np.newaxis] - 0.5 * (least + most)) @ coefficients,
+                0.5 * ((column - least) + (column - most)) @ coefficients,
                 standing @ coefficients,
                 0.5 * (most - least) @ np.abs(coefficients),
             )

@@ -73,10 +73,11 @@ class Estimate:
     @property
     def uncertainty(self) -> float | None:
         """Expanded uncertainty, by Student's t for `COVERAGE` (GUM G.3)."""
-        if self.standard is None:
-            return None
+        if not self.standard:
+            return self.standard
         # Rounding must not cost a whole degree of freedom.
-        return student_t(int(min(self.degrees_of_freedom, _MANY) + 1e-6)) * self.standard
+        degrees = int(min(self.degrees_of_freedom, _MANY) + 1e-6)
+        return student_t(degrees) * self.standard if degrees else math.inf
 
     @property
     def clear(self) -> bool:

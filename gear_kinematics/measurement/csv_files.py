@@ -8,6 +8,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import partial
 from itertools import chain, product
 from pathlib import Path
 from typing import NamedTuple
@@ -61,8 +62,17 @@ _UNITS: Mapping[str, Mapping[str, float | None]] = {
 }
 """In SI units; None: counts of an encoder."""
 _KNOWN_UNITS = {unit for units in _UNITS.values() for unit in units}
-_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]$')
+_BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
+_ENDINGS = ('rad', 'deg', 'degree', 'degrees', 'rev', 'gon', 'min', 'sec', 'nm')
 _WORD = re.compile(r'[^\s_/-]+')
+_MOST_ROWS = 1_800_000
+"""Half an hour at 1 kHz: measuring takes up to 250 bytes a row."""
+_LEAST = 1e-30
+"""Numbers that are smaller are 0: of none of those that follow, squares and inverses underflow."""
+_LONGEST = 2**16
+"""Characters in a line."""
+_SHOWN = 800
+"""Characters of an error, as those of a file can be many."""
 _MOTEUS = {'position', 'torque', 'q_current'}
 """Registers of moteus motor controllers, which give positions in revolutions."""
 
@@ -140,7 +150,7 @@ def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
 
 def _column(role: str, name: str, given: Sources, common: str) -> Column:
     plain, unit, unknown = _split(name)
-    if unknown:
+    if unknown and not (given.unit and role in _ANGULAR):
         raise ValueError(f'{name}: the unit {unknown} is not known; known: {_listed(role)}')
     if role in _ANGULAR:
         unit = given.unit or unit or common
@@ -162,12 +172,12 @@ def _split(name: str) -> tuple[str, str, str]:
     """
     text, unit = name.strip().lower(), ''
     if brackets := _BRACKETS.search(text):
-        text, unit = text[: brackets.start()], brackets[1]
+        text, unit = text.replace(brackets[0], ' '), brackets[1]
     words = _WORD.findall(text)
-    last = words[-1] if len(words) > 1 else ''
+    last = words[-1] if words else ''
     if not unit and last in _KNOWN_UNITS:
         unit = words.pop()
-    likely = unit or (last if last.endswith(('rad', 'deg', 'rev', 'nm')) else '')
+    likely = unit or (last if last.endswith(_ENDINGS) else '')
     return '_'.join(words), unit, '' if likely in _KNOWN_UNITS else likely
 
 
@@ -186,16 +196,19 @@ def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
     Raises:
         RecordingError: if it cannot be read, or has no such columns.
     """
-    found, data = _read(path, sources)
+    found, data, every = _read(path, sources)
     quantities = np.array([values for role, values in data.items() if role != 'time'])
     usable = np.all(np.abs(quantities) <= LARGEST_ANGLE, axis=0)  # NaN compares false
     if not usable.any():
         raise RecordingError(f'{path}: no usable rows')
-    remarks = []
+    remarks = [f'one row of {every} is used: no more are kept in memory'] if every > 1 else []
     if left_out := int(np.count_nonzero(~usable)):
         remarks.append(f'{left_out} rows were left out: not finite, or too large')
     data['segment'] = np.cumsum(~usable)  # the motion in rows that are left out is unknown
-    data = {role: values[usable] for role, values in data.items()}
+    data = {
+        role: np.where(np.abs(rows := values[usable]) < _LEAST, 0.0, rows)
+        for role, values in data.items()
+    }
     start = None
     if 'time' in data:
         name, time = found['time'].name, data.pop('time')
@@ -254,44 +267,61 @@ def _described(found: Mapping[str, Column]) -> Iterable[str]:
         yield f'{role}{side} from {column.name} in {unit.replace("nm", "N·m")}'
 
 
-def _read(path: Path, sources: Sources) -> tuple[dict[str, Column], dict[str, Array]]:
-    """The columns that are needed, row by row, in SI units; NaN in empty rows."""
+def _read(path: Path, sources: Sources) -> tuple[dict[str, Column], dict[str, Array], int]:
+    """The columns that are needed, row by row, in SI units; NaN in empty rows.
+
+    Of long files only one row of many, the third result, so that their memory is bounded.
+    """
+    if path.exists() and not path.is_file():
+        raise RecordingError(f'{path}: not a regular file')
     try:
         with path.open(encoding='utf-8-sig') as file:
-            first = file.readline()
-            rows = csv.reader(chain([first], file), delimiter=max(',;\t', key=first.count))
+            first, lines = file.readline(_LONGEST), iter(partial(file.readline, _LONGEST), '')
+            if len(first) == _LONGEST:
+                raise ValueError(f'the first row is longer than {_LONGEST} characters')
+            rows = csv.reader(chain([first], lines), delimiter=max(',;\t', key=first.count))
             header = [name.strip() for name in next(rows)]
             for name, count in Counter(header).items():
                 if count > 1:
                     raise ValueError(f'more than one column {name!r}')
             found = find_columns(header, sources) if header else {}
-            values = _numbers(header, rows, found)
+            values, every = _numbers(header, rows, found)
     except (OSError, UnicodeDecodeError) as error:
         cause = getattr(error, 'strerror', None) or 'not text in UTF-8'
         raise RecordingError(f'{path}: {cause}') from error
     except (csv.Error, ValueError) as error:
-        raise RecordingError(f'{path}: {error}') from error
+        text = str(error)
+        if len(text) > _SHOWN:
+            text = f'{text[: _SHOWN // 2]} ... {text[-_SHOWN // 2 :]}'
+        raise RecordingError(f'{path}: {text}') from error
     if not len(values):
         raise RecordingError(f'{path}: no samples in it')
-    return found, {
-        role: values[:, place] * column.scale for place, (role, column) in enumerate(found.items())
-    }
+    columns = enumerate(found.items())
+    return found, {r: values[:, place] * column.scale for place, (r, column) in columns}, every
 
 
-def _numbers(header: list[str], rows: Iterable[list[str]], found: Mapping[str, Column]) -> Array:
+def _numbers(
+    header: list[str], rows: Iterable[list[str]], found: Mapping[str, Column]
+) -> tuple[Array, int]:
     readers = [
         (header.index(column.name), _number_or_nan if role == 'time' else float)
         for role, column in found.items()
     ]
     values = array('d')  # a row takes no more memory than its numbers
-    nothing = len(readers) * [math.nan]
+    width, every = len(readers), 1
+    nothing = width * [math.nan]
     for line, row in enumerate(rows, start=2):
+        if (line - 2) % every:
+            continue
+        if len(values) >= _MOST_ROWS * width > 0:
+            values = array('d', np.frombuffer(values).reshape(-1, width)[::2].tobytes())
+            every *= 2
         try:
             values.extend([read(row[place]) for place, read in readers] if row else nothing)
         except (IndexError, ValueError) as error:
             cause = 'too few columns' if isinstance(error, IndexError) else error
             raise ValueError(f'line {line}: {cause}') from error
-    return np.frombuffer(values).reshape(-1, max(1, len(readers)))
+    return np.frombuffer(values).reshape(-1, max(1, width)), every
 
 
 def _number_or_nan(text: str) -> float:

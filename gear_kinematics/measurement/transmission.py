@@ -32,6 +32,8 @@ _MIN_SAMPLES = 4.0
 """In a cycle."""
 _BINS = 8.0
 """Interpolated samples in the spectrum's shortest cycle."""
+_MOST_BINS = 100.0
+"""Interpolated samples for each one."""
 _MOST_TEETH = 100
 """In mesh per turn of the rotor of an unknown gear."""
 
@@ -275,9 +277,10 @@ def _spectrum(gear: Gear, runs: Sequence[_Run]) -> Spectrum | None:
         return None
     teeth = gear.ring_teeth if isinstance(gear, Mechanism) else _MOST_TEETH
     highest = min(2.5 * float(teeth * abs(gear.gear_ratio)), 0.5 / run.spacing)
-    if highest * run.turns < _MIN_CYCLES:
-        return None
     count = math.ceil(_BINS * highest * run.turns)
+    # Samples with a gap so wide tell no spectrum, which would be as long as it.
+    if highest * run.turns < _MIN_CYCLES or count > _MOST_BINS * len(run.angle):
+        return None
     at = run.low + (np.arange(count) + 0.5) * (run.high - run.low) / count
     error = np.interp(at, run.angle, run.error)
     window = np.hanning(count)

@@ -177,6 +177,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._encoder = OutputEncoder(parameters)  # discards earlier errors
             if self._calibrated:
                 self._calibrated.reset()
+        if self._calibrated:
+            self._calibrated.corrector.max_acceleration = parameters.max_rotor_acceleration
         self._messages = state_messages(parameters)
         if self._display:
             self._display.update(parameters)

@@ -23,8 +23,8 @@ Array = NDArray[Any]
 class RecomputedCorrection:
     """The correction at the samples of a recording; after a hole, the history is unknown."""
 
-    def __init__(self, calibration: Calibration) -> None:
-        self._corrector = Corrector(calibration)
+    def __init__(self, calibration: Calibration, max_acceleration: float) -> None:
+        self._corrector = Corrector(calibration, max_acceleration)
         self._last: int | None = None
         self._holes = 0
 

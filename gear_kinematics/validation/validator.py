@@ -100,7 +100,9 @@ class Validator:
         self._correction = None
         columns = list(SAMPLES)
         if task.calibration and corrected and not self._why_unjudged:
-            self._correction = RecomputedCorrection(task.calibration)
+            self._correction = RecomputedCorrection(
+                task.calibration, parameters.max_rotor_acceleration
+            )
             columns += [(name, np.float64) for name in Correction._fields]
             for topic, name in corrected.items():
                 self._judge([CORRECTED[topic](name, joint, self._expectation)])

@@ -301,6 +301,7 @@ def test_recordings_of_no_group_keep_their_own_torque(worn, capsys):
         (['--positions'], '--positions pos(?:ition)?[_ -]?(\\d+): there is no position in'),
         (['--trend'], '--trend needs 5 recordings'),
         (['--trend', '--preloads'], '--preloads cannot be combined with --trend'),
+        (['--preloads', '(x)'], '--preloads: there is no setting in the name'),
         (['--load', '2'], '--load needs --preloads'),
         (['--preload-unit', 'deg'], '--preload-unit needs --preloads'),
         (['--scheduler', 'nonsense'], 'nonsense: no Dask scheduler there: missing port number'),

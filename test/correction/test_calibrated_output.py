@@ -128,6 +128,14 @@ def test_clock_that_is_set_back_begins_anew():
     assert fit.fits
 
 
+def test_same_stamp_is_corrected_and_compared_once():
+    output = CalibratedOutput(MADE)
+    for k in (0, 1, 1, 2):
+        output.correct(sample(k, 10.0 * k), **INPUT)
+    output.compare([ErrorSample(START + PERIOD, AMPLITUDE, 0, 0.0, 1, 0.0)])
+    assert output.fit(WINDOW).samples == 1
+
+
 def test_homing_makes_the_play_unknown():
     made = calibration(orders=(), compliance=None)
     output = CalibratedOutput(made)

@@ -36,8 +36,8 @@ def file(tmp_path):
     return write
 
 
-numbers = st.floats(-1e30, 1e30)
-positive = st.floats(1e-12, 1e30)
+numbers = st.floats(-0.2, 0.2)
+positive = st.floats(1e-12, 0.2)
 texts = st.text(st.characters(categories=['L', 'N', 'P', 'S']) | st.just(' '), max_size=10)
 
 
@@ -126,6 +126,14 @@ def test_numbers_can_be_written_without_a_point(file):
         (
             {'orders': [{'name': 'a', 'cycles': '1/99999989', 'cos': 0.0, 'sin': 0.0}]},
             'the orders repeat only after 99999989 rotor turns',
+        ),
+        (
+            {'orders': [{'name': 'a', 'cycles': '1', 'cos': 3.0, 'sin': -1.0}]},
+            'an error of the output of 3.16',
+        ),
+        (
+            {'hysteresis': [{'radius': 1e-20, 'coefficient': 1e20}]},
+            "an error of the output with a slope of 1e+20 is no gear's",
         ),
         ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),
         (

@@ -45,7 +45,7 @@ def columns(motion, segment=0) -> list[np.ndarray]:
 
 
 @st.composite
-def motions(draw) -> list[RotorSample]:
+def motions(draw, shortest=0) -> list[RotorSample]:
     """Draw a motion with reversals, standstills, jumps of many turns, gaps and missing fields."""
     turns, angle, stamp = draw(st.integers(-(10**9), 10**9)), 0.0, START
     efforts = st.none() | st.floats(-3.0, 3.0)
@@ -54,7 +54,7 @@ def motions(draw) -> list[RotorSample]:
     for _ in range(draw(st.integers(1, 40))):
         angle += draw(st.sampled_from((0.0, 1e-3, -1e-3)) | st.floats(-0.05, 0.05))
         turns += draw(st.sampled_from((0, 0, 0, 0, 0, 0, 1, -1, 700, -3000)))
-        stamp += draw(st.sampled_from((0, MS, MS, MS, 150 * MS, MAX_GAP, MAX_GAP + 1)))
+        stamp += draw(st.sampled_from((shortest, MS, MS, MS, 150 * MS, MAX_GAP, MAX_GAP + 1)))
         position = RotorPosition(turns, angle)
         motion.append(RotorSample(stamp, position, draw(velocities), draw(efforts)))
     return motion
@@ -148,10 +148,35 @@ def test_plays_are_unknown_again_after_motion_was_missed(cause):
     assert again.half_width == pytest.approx(1e-4 + 0.6 * 4e-4 + 0.2 * 2e-3)
 
 
-def test_motion_is_followed_across_a_gap_that_is_not_too_long():
-    corrector = Corrector(calibration(compliance=None))
-    motion = at_angles(0.0, 0.5, 0.6, period=MAX_GAP)
-    assert correct_all(corrector, motion)[-1].half_width == 1e-4
+@given(
+    st.lists(st.sampled_from((-1, 0, 1)), min_size=10, max_size=960),
+    st.sampled_from((0.0, 2.0, 15.0)),
+)
+def test_interval_covers_what_a_gap_can_hide(pushes, speed):
+    most = 500.0  # rad/s² of the rotor
+    pushed = most * np.repeat([0, *pushes, 0], [20, *(len(pushes) * [1]), 300])
+    velocity = speed + np.cumsum(pushed) / 1000
+    angle = np.cumsum(velocity - pushed / 2000) / 1000
+    motion = [
+        RotorSample(START + k * MS, RotorPosition(0, x), v, 0.0)
+        for k, (x, v) in enumerate(zip(angle.tolist(), velocity.tolist(), strict=True))
+    ]
+    whole = correct_all(Corrector(calibration(), most), motion)
+    with_gap = correct_all(Corrector(calibration(), most), motion[:20] + motion[-300:])
+    for known, unknown in zip(whole[-300:], with_gap[-300:], strict=True):
+        wider = unknown.half_width - known.half_width
+        assert abs(known.deviation - unknown.deviation) <= wider + 1e-12
+
+
+@pytest.mark.parametrize(('most', 'width'), [(500.0, 1e-4), (math.inf, 7.4e-4)])
+def test_interval_stays_where_a_gap_hides_no_reversal(most, width):
+    motion = at_angles(*(0.02 * np.arange(100)), velocity=20.0)
+    corrector = Corrector(calibration(compliance=None), most)
+    assert correct_all(corrector, motion[:50] + motion[60:61])[-1].half_width == pytest.approx(
+        width
+    )
+    if width > 1e-4:  # histories meet again
+        assert correct_all(corrector, motion[61:])[-1].half_width == 1e-4
 
 
 def half_width(sample: RotorSample, *, angle_span=(-4.0, 4.0), **options) -> float:
@@ -245,7 +270,7 @@ def test_calibration_without_terms_adds_its_constant():
     np.testing.assert_array_equal(np.transpose(batch), 2 * [(1e-5, 0.0, 1e-4, 0.0)])
 
 
-@given(motions(), st.integers(1, 39))
+@given(motions(shortest=MS), st.integers(1, 39))
 def test_history_before_the_first_sample_changes_no_more_than_is_said(motion, start):
     made = calibration()
     whole = correct_all(Corrector(made), motion)[start:]

@@ -99,6 +99,15 @@ def test_last_bits_survive_any_number_of_turns():
     assert (sample.turns, sample.ideal) == (10**12, pytest.approx(3.05))
 
 
+@pytest.mark.parametrize('turns', [0, -3, 1000])
+def test_single_and_multi_turn_encoders_give_the_same(turns):
+    comparison = make()
+    comparison.add_ideal(START, 5, 1.0)
+    comparison.add_ideal(START + MS, 5, 1.0)
+    (sample,) = comparison.add_measured(START + MS, 1.25 + turns * 2 * math.pi)
+    assert sample.error == pytest.approx(0.25, abs=1e-12)
+
+
 def test_errors_are_continuous_at_an_offset_of_half_a_turn():
     comparison = make()
     comparison.add_ideal(START, 0, 0.0)

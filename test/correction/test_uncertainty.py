@@ -48,6 +48,10 @@ def test_example_of_the_guide():
     assert estimate.uncertainty == pytest.approx(2.09 * 1.03, abs=0.02)
 
 
+def test_nothing_bounds_a_value_below_one_degree_of_freedom():
+    assert Estimate(1.0, 0.1, 0.9, 2).uncertainty == math.inf
+
+
 def test_mean_of_repeats():
     estimate = Estimate.of_mean([1.0, 2.0, 3.0, 6.0])
     assert estimate.value == 3.0

@@ -9,6 +9,7 @@ import pytest
 from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, write_recording
 
 from gear_kinematics.bag import BagError
+from gear_kinematics.measurement import csv_files
 from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.encoder_step import Source, Step
 from gear_kinematics.measurement.lost_motion import Request, measure
@@ -44,6 +45,9 @@ def measured(config, actuator):
         ('a', 'b', 1.0 / TURN, ['angle', 'torque'],
          {'angle': 'a', 'torque': 'b', 'unit': 'rev'}),
         ('angle_deg', 'torque', 1.0, [], {'unit': 'rad'}),
+        ('angle_urad', 'torque', 1e3, [], {'angle': 'angle_urad', 'unit': 'mrad'}),
+        ('deg', 'torque', 180.0 / math.pi, [], {'angle': 'deg'}),
+        ('angle [deg] raw', 'torque', 180.0 / math.pi, [], {'angle': 'angle [deg] raw'}),
         ('angle', 'output_torque', -19.0, [], {'on_rotor': True}),
     ],
 )  # fmt: skip
@@ -100,7 +104,10 @@ def test_real_recordings_need_no_renaming(shared_path, config):
     assert recording.columns[1].startswith('torque at the output from output_torque_Nm')
 
 
-@pytest.mark.parametrize('name', ['angle [µrad]', 'angle_urad', 'winkel_grad', 'angle_mdeg'])
+@pytest.mark.parametrize(
+    'name',
+    ['angle [µrad]', 'angle_urad', 'winkel_grad', 'angle_mdeg', 'angleDeg', 'angle_arcmin'],
+)
 def test_units_that_are_not_known_are_refused_with_the_list(tmp_path, config, name):
     path = write_csv(tmp_path / 'r.csv', **{name: [1.0, 2.0], 'torque': [1.0, 2.0]})
     with pytest.raises(RecordingError, match=r'known: .*deg, .*mrad, .*rad, rev'):
@@ -215,6 +222,9 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
         ('angle,angle,torque\n1,2,3\n', "more than one column 'angle'"),
         (b'\xff\xfe\x00\x01', 'not text in UTF-8'),
         (None, 'No such file or directory'),
+        (2**17 * 'angle,', 'the first row is longer than 65536 characters'),
+        (2**12 * 'angle_um,', 'more than one column'),
+        (','.join(f'column_{k}' for k in range(4000)), ' ... '),
     ],
 )
 def test_unusable_files_get_one_clear_line(tmp_path, config, content, complaint):
@@ -226,6 +236,31 @@ def test_unusable_files_get_one_clear_line(tmp_path, config, content, complaint)
     assert str(caught.value).startswith(str(path))
     assert complaint in str(caught.value)
     assert '\n' not in str(caught.value)
+    assert len(str(caught.value)) < 1000
+
+
+def test_a_file_that_never_ends_is_refused(tmp_path, config):
+    (tmp_path / 'zero.csv').symlink_to('/dev/zero')
+    with pytest.raises(RecordingError, match=r'zero\.csv: not a regular file'):
+        read(tmp_path / 'zero.csv', config)
+
+
+@pytest.mark.parametrize('name', ['angle', 'torque'])
+def test_tiny_numbers_are_zero(tmp_path, config, measured, angle, name):
+    columns = {'angle': angle, 'torque': TORQUE}
+    columns[name] = 1e-300 * columns[name]
+    recording = read(write_csv(tmp_path / 'r.csv', **columns), config)
+    with pytest.raises(ValueError, match=r'the angle does not grow|no torque ramp'):
+        measured(recording)
+
+
+def test_long_files_are_read_in_part(tmp_path, config, monkeypatch):
+    monkeypatch.setattr(csv_files, '_MOST_ROWS', 300)
+    rows = np.arange(1000.0)
+    recording = read(write_csv(tmp_path / 'r.csv', angle=rows, torque=rows, time=rows), config)
+    np.testing.assert_array_equal(recording.locked.angle, rows[::4])
+    np.testing.assert_array_equal(recording.locked.time, rows[::4])
+    assert recording.remarks == ('one row of 4 is used: no more are kept in memory',)
 
 
 # Steps of an encoder

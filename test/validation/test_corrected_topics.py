@@ -38,7 +38,7 @@ WITHIN_TURN = replace(
 def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
     """Add what the node publishes, one message after the other."""
     states = state_messages(config)
-    rotor, corrector = RotorInput(config), Corrector(made)
+    rotor, corrector = RotorInput(config), Corrector(made, config.max_rotor_acceleration)
     added = []
     for topic, received, data in messages:
         added.append((topic, received, data))

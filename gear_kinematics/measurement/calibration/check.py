@@ -1,6 +1,7 @@
 """Checks a calibration by recordings that it was not made from."""
 
 from dataclasses import replace
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -9,12 +10,16 @@ from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.uncertainty import Estimate
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.calibration.selection import jackknife
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
+from gear_kinematics.wire.cdr import SECOND
 
 _BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left
+_MULTIPLES = (1, 2, 3, 4)  # of the turns of output and rotor that are told
+_MOST = 0.5  # share of the variance that makes an order what is left of the error
 _VARIES = 0.05  # scatter of the speed over the greatest one that tells a delay from a zero
 
 
@@ -22,6 +27,7 @@ class Judgement(NamedTuple):
     """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
     recording: Recording
+    ratio: Fraction
     encoders: Encoders
     """Less the delay, if that is clear."""
     output: Array
@@ -72,8 +78,9 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     unknown = np.full(len(rotor.turns), np.nan)
     effort = unknown if rotor.effort is None else rotor.effort
     segment = np.zeros(len(unknown), np.int64) if rotor.segment is None else rotor.segment
+    stamp = rotor.stamp if encoders.timed else rotor.stamp // SECOND  # no row is a gap
     correction = Corrector(calibration).correct_batch(
-        rotor.stamp, rotor.turns, rotor.angle, unknown, effort, segment
+        stamp, rotor.turns, rotor.angle, unknown, effort, segment
     )
 
     def errors(of: Encoders) -> tuple[Array, Array]:
@@ -93,6 +100,7 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     half_width = shifted.at_measured(correction.half_width)
     return Judgement(
         recording=recording,
+        ratio=ratio,
         encoders=shifted,
         output=shifted.at_measured(shifted.ideal(ratio)),
         before=before,
@@ -103,6 +111,24 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
         delay=delay,
         fit=CalibrationFit.of(before, after, half_width, once=True),
     )
+
+
+def left_order(judgement: Judgement) -> tuple[float, str] | None:
+    """What is left of the error if it is mostly one order: its amplitude, rad, and how often."""
+    output, left = judgement.output, judgement.after
+    found = []
+    for body, rate in (('output', 1.0), ('rotor', abs(float(judgement.ratio)))):
+        for multiple in _MULTIPLES:
+            phase = multiple * rate * output
+            if np.ptp(phase) < TURN:
+                continue
+            design = np.stack([np.ones(len(phase)), np.cos(phase), np.sin(phase)], axis=1)
+            fit = np.linalg.lstsq(design, left, rcond=None)[0]
+            often = {1: 'once', 2: 'twice'}.get(multiple, f'{multiple} times')
+            amplitude = float(np.hypot(*fit[1:]))
+            found.append((float(np.var(design @ fit)), amplitude, f'{often} per {body} turn'))
+    variance, amplitude, words = max(found, default=(0.0, 0.0, ''))
+    return (amplitude, words) if variance > _MOST * np.var(left) else None
 
 
 def _delay(speed: Array, residual: Array, shift: float) -> Estimate | None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from gear_kinematics.correction.uncertainty import COVERAGE
-from gear_kinematics.measurement.calibration.check import Judgement
+from gear_kinematics.measurement.calibration.check import Judgement, left_order
 from gear_kinematics.measurement.calibration.result import Fit
 from gear_kinematics.measurement.calibration.terms import output_cycles
 from gear_kinematics.measurement.curves import envelope, spectrum_panel
@@ -262,12 +262,20 @@ def _section(j: Judgement) -> Section:
     before, after = _arc_minutes(j.rms_before), _arc_minutes(j.rms_after)
     inside, spread = 100.0 * (1.0 - j.fit.outside), 100.0 * j.fit.outside_uncertainty
     shown = f'{inside:.1f} ± {spread:.1f} %'
-    finding = (
-        f'The correction changes the error from {before} to {after} arcmin rms; {shown} of the '
-        f'measured angles are within the {PERCENT} interval.'
-    )
     if not j.fit.fits:
-        finding += ' That is too few by more than chance: the interval does not hold.'
+        left = f'{after}′ rms'
+        if found := left_order(j):
+            left = f'{_arc_minutes(found[0])}′ {found[1]}'
+        finding = (
+            f'The calibration no longer holds: {inside:.1f} % instead of {PERCENT} lie within the '
+            f'interval; what is left: {left}.'
+        )
+    else:
+        finding = (
+            f'The calibration {"holds" if j.holds else "does not help"}: {shown} of the measured '
+            f'angles are within the {PERCENT} interval; it changes the error from {before} to '
+            f'{after} arcmin rms.'
+        )
     width = float(np.median(j.half_width))
     late = ' and '.join(map(_arc_minutes, j.with_delay)) if j.delay else ''
     uncalibrated = number(100.0 * j.uncalibrated)

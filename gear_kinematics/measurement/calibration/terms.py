@@ -160,7 +160,7 @@ class OrderTerm:
     cycles: Fraction
     """Per turn of the rotor."""
     cause: str
-    """The likely one, in words."""
+    """The likely one, in words; empty where none is."""
     is_trend: bool = False
     """Whether it is known over the recorded output angles only."""
     columns, unit, radius = 2, 1.0, None
@@ -221,7 +221,9 @@ def output_cycles(ratio: Fraction) -> Fraction:
 
 
 def _order(body: str, multiple: int, unit: Fraction) -> OrderTerm:
-    return OrderTerm(f'{body} × {multiple}', multiple * unit, _BODIES[body][1][multiple > 1])
+    most, causes = _BODIES[body]
+    cause = causes[multiple > 1] if multiple <= most else ''
+    return OrderTerm(f'{body} × {multiple}', multiple * unit, cause)
 
 
 def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> OrderTerm:

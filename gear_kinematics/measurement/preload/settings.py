@@ -47,7 +47,10 @@ def settings_of(
     Raises:
         ValueError: if names contain no settings, or if the teeth are not known.
     """
-    patterns = [check_pattern(pattern)] if pattern else [re.compile(p) for p in DEFAULT_PATTERNS]
+    needed = 'one group in parentheses, or three for pins'
+    patterns = [re.compile(own) for own in DEFAULT_PATTERNS]
+    if pattern:
+        patterns = [expression('--preloads', pattern, needed, (1, _PINS))]
     matches = [[own.search(name) for name in names] for own in patterns]
     complete = next((found for found in matches if all(found)), None)
     if complete is None:
@@ -67,13 +70,3 @@ def settings_of(
     start = vernier.pin_setting(gear.ring_teeth, 0, 0, 0)
     pins = [vernier.pin_setting(gear.ring_teeth, *map(int, holes)) for holes in found]
     return [abs(vernier.angle_between(start.turn, pin.turn)) for pin in pins], scale
-
-
-def check_pattern(pattern: str) -> re.Pattern[str]:
-    """Compile the pattern of `settings_of`.
-
-    Raises:
-        ValueError: if it is no regular expression, or has neither one group nor three.
-    """
-    needed = 'one group in parentheses, or three for pins'
-    return expression('--preloads', pattern, needed, (1, _PINS))
