@@ -8,16 +8,16 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 from gear_kinematics.parameters import NODE
-from gear_kinematics.ros.launch_arguments import node_arguments
+from gear_kinematics.ros.launch_arguments import node_arguments, refuse_unknown
 
 
 def start_node(context: LaunchContext) -> list[Node]:
-    """Describe the node; without a prefix as argument, that of the parameter file applies."""
-    parameters = [node_arguments(context.launch_configurations).config]
-    frame_prefix = LaunchConfiguration('frame_prefix')
-    if frame_prefix.perform(context):
-        # The type is stated, or a prefix like 1 would arrive as a number.
-        parameters.append({'frame_prefix': ParameterValue(frame_prefix, value_type=str)})
+    """Describe the node; what is not given as an argument is as in the parameter file."""
+    refuse_unknown(__file__, context.argv)
+    config, _, given = node_arguments(context.launch_configurations)
+    # The type is stated, or a prefix like 1 would arrive as a number.
+    texts = {name: ParameterValue(value, value_type=str) for name, value in given.items()}
+    parameters = [config, texts] if texts else [config]
     return [
         Node(
             package='gear_kinematics',
@@ -50,6 +50,12 @@ def generate_launch_description() -> LaunchDescription:
                 'frame_prefix',
                 default_value='',
                 description='put before every frame id and joint name; '
+                'if empty, that of the parameter file applies',
+            ),
+            DeclareLaunchArgument(
+                'rotor_joint',
+                default_value='',
+                description='joint of the rotor in rotor_state; '
                 'if empty, that of the parameter file applies',
             ),
             DeclareLaunchArgument(

@@ -6,16 +6,24 @@ from launch.conditions import IfCondition
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-from launch_ros.substitutions import FindPackageShare
+from launch_ros.substitutions import FindPackagePrefix, FindPackageShare
 
 from gear_kinematics.parameters.meshes import folder_uri
-from gear_kinematics.ros.launch_arguments import node_arguments
+from gear_kinematics.ros.launch_arguments import node_arguments, refuse_unknown
 from gear_kinematics.shape.urdf import urdf
+
+
+def check(context: LaunchContext) -> None:
+    """Check arguments and packages before anything starts: what has started would go on alone."""
+    refuse_unknown(__file__, context.argv, 'rviz', 'rviz_config', 'publish_frequency')
+    FindPackagePrefix('robot_state_publisher').perform(context)
+    if IfCondition(LaunchConfiguration('rviz')).evaluate(context):
+        FindPackagePrefix('rviz2').perform(context)
 
 
 def start_viewers(context: LaunchContext) -> list[Node]:
     """Describe the nodes, with the parameters of gear_state_publisher."""
-    _, parameters = node_arguments(context.launch_configurations)
+    parameters = node_arguments(context.launch_configurations).parameters
     # robot_state_publisher needs the URDF as a parameter, and publishes it again. That topic is
     # renamed below, so that it does not collide with the node's.
     mechanism, module = parameters.mechanism, parameters.module
@@ -74,7 +82,8 @@ def generate_launch_description() -> LaunchDescription:
                 default_value='60.0',  # frame rate in RViz's configuration
                 description='highest rate of /tf, Hz',
             ),
-            # It declares the arguments namespace, config, frame_prefix and rotor_state.
+            OpaqueFunction(function=check),
+            # It declares the arguments of the node.
             IncludeLaunchDescription(
                 PathJoinSubstitution([share, 'launch', 'gear_state_publisher.launch.py'])
             ),

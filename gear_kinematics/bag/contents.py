@@ -5,27 +5,16 @@ from itertools import islice
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
-import yaml
-
-try:
-    from yaml import CSafeLoader as SafeLoader
-except ImportError:  # PyYAML was built without libyaml
-    from yaml import SafeLoader  # type: ignore[assignment]
-
 from gear_kinematics.bag.errors import bag_errors
 from gear_kinematics.bag.storage import DECOMPRESSORS
 from gear_kinematics.bag.topics import Topic
+from gear_kinematics.parameters.yaml_file import Loader, load_yaml
 from gear_kinematics.wire.nearest import among
 
 BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
 
-_TEXT = 'tag:yaml.org,2002:str'
 _MAX_YAML = 2**22  # bytes: metadata of ten thousand topics or files
-_MAX_PLAIN = 10_000  # bytes of a value without quotes, which may be a number
-_MAX_NUMBERS = 100
-_MAX_EVENTS = 400_000
-_MAX_DEPTH = 20
 _MAX_FILES = 50_000
 _MAX_NEIGHBOURS = 10_000
 
@@ -86,16 +75,11 @@ def _may_hold_bags(path: Path) -> bool:
     return bool(BAG_NAME.search(path.name)) or (path.is_dir() and not path.name.startswith('.'))
 
 
-class _Loader(SafeLoader):
-    """Refuses merge keys (`<<`), by which a few lines can expand without end."""
+class _Loader(Loader):
+    """Reads what recorders write."""
 
-    def flatten_mapping(self, node: yaml.MappingNode) -> None:
-        """Leave merge keys to be refused as unknown; refuse many keys that are not texts.
-
-        The hashes of numbers can be made to collide, unlike those of texts.
-        """
-        if sum(key.tag != _TEXT for key, _ in node.value) > _MAX_NUMBERS:
-            raise ValueError(f'YAML has a mapping of more than {_MAX_NUMBERS} numbers')
+    max_events = 400_000
+    aliases = True
 
 
 def parse_yaml(text: str) -> Any:
@@ -105,22 +89,12 @@ def parse_yaml(text: str) -> Any:
         ValueError: if it is larger than any recorder writes.
     """
     _check_length(len(text))
-    depth = 0
-    for number, event in enumerate(yaml.parse(text, _Loader), start=1):
-        depth += isinstance(event, yaml.CollectionStartEvent)
-        depth -= isinstance(event, yaml.CollectionEndEvent)
-        if isinstance(event, yaml.ScalarEvent) and not event.implicit[1]:
-            _check_length(len(event.value), _MAX_PLAIN)  # parsing a number in base 60 takes long
-        if number > _MAX_EVENTS:
-            raise ValueError(f'more than {_MAX_EVENTS} values in YAML')
-        if depth > _MAX_DEPTH:  # libyaml has no limit of recursion
-            raise ValueError(f'YAML is nested deeper than {_MAX_DEPTH} levels')
-    return yaml.load(text, _Loader)  # noqa: S506, it is a SafeLoader
+    return load_yaml(text, _Loader)
 
 
-def _check_length(length: int, limit: int = _MAX_YAML) -> None:
-    if length > limit:
-        raise ValueError(f'YAML has {length} bytes, more than {limit}')
+def _check_length(length: int) -> None:
+    if length > _MAX_YAML:
+        raise ValueError(f'YAML has {length} bytes, more than {_MAX_YAML}')
 
 
 def _listed_contents(path: Path, metadata: Any) -> Contents:

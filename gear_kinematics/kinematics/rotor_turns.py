@@ -211,10 +211,19 @@ class RotorTurns:
         Raises:
             RuntimeError: before the first update.
         """
-        self._known_position()
+        zero = self.zero_for(rotor_angle, direction)
         # Drop the turns counted so far for a single-turn encoder.
         self.position = split_turns(self._reading)
         self.referenced = True
+        return zero
+
+    def zero_for(self, rotor_angle: float, direction: int) -> float:
+        """Return the zero that `home` would give, and change nothing.
+
+        Raises:
+            RuntimeError: before the first update.
+        """
+        self._known_position()
         return self._reading - direction * rotor_angle
 
     def _known_position(self) -> RotorPosition:

@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +20,7 @@ class _OtherNodesError(ConfigError):
     """A parameter file that has parameters, but none of the node."""
 
 
-def require_any(paths: Collection[Path], node: str) -> None:
+def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
     """Check that parameter files have parameters, and at least one has some for the node.
 
     ROS silently ignores other files, and the node would run with its default values.
@@ -30,33 +29,24 @@ def require_any(paths: Collection[Path], node: str) -> None:
         paths: parameter files of ROS, as many as the node is started with.
         node: the node's fully qualified name.
 
+    Returns:
+        The paths of calibrations by the values of the parameter in the files, to which relative
+        ones are relative.
+
     Raises:
         ConfigError: if a file cannot be read or has no parameters, or none has any for the node.
     """
     useless = []
+    calibrations: dict[str, Path] = {}
     for path in paths:
         try:
-            given_parameters(path, node)
+            if value := given_parameters(path, node).get('calibration'):
+                calibrations.setdefault(str(value), path.parent / str(value))
         except _OtherNodesError as error:
             useless.append(str(error))
     if paths and len(useless) == len(paths):
         raise ConfigError('; '.join(useless))
-
-
-def calibration_path(value: str, paths: Collection[Path], node: str) -> Path:
-    """Find the calibration that the node's parameter names.
-
-    Args:
-        value: of the parameter. A relative path is relative to the parameter file that gives this
-            value, or else to the working directory.
-        paths: parameter files of ROS with which the node was started.
-        node: the node's fully qualified name.
-    """
-    for path in paths:
-        with suppress(ConfigError):
-            if given_parameters(path, node).get('calibration') == value:
-                return path.parent / value
-    return Path(value)
+    return calibrations
 
 
 def given_parameters(path: Path, node: str) -> dict[str, Any]:
@@ -122,7 +112,9 @@ class _Pairs(tuple[tuple[Any, Any], ...]):
 
 
 class _RosLoader(Loader):
-    """Keeps repeated keys, which ROS merges."""
+    """Keeps repeated keys, which ROS merges. The file may be of many nodes."""
+
+    max_events = 2**17
 
 
 _RosLoader.add_constructor(

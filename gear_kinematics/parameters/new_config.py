@@ -3,12 +3,15 @@
 import math
 import re
 import shlex
+import shutil
+import sys
 from pathlib import Path
 
 import yaml
 
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.node_parameters import NODE, default_config
+from gear_kinematics.share import PACKAGE
 from gear_kinematics.wire.topics import ROTOR_STATE
 
 
@@ -35,9 +38,17 @@ def new_config(topic: str, joint: str, name: str) -> str:
 
 
 def start_command(topic: str, name: str) -> str:
-    """The command that starts the node for a driver's topic with a parameter file."""
-    remapping = shlex.quote(f'{ROTOR_STATE}:={topic}')
-    return f'{NODE} --ros-args --params-file {shlex.quote(name)} -r {remapping}'
+    """The command that starts the node for a driver's topic with a parameter file.
+
+    A workspace of ROS has the node not on the PATH, a virtual environment only while it is active.
+    """
+    program = ['ros2', 'run', PACKAGE, NODE]
+    if shutil.which(NODE):
+        program = [NODE]
+    elif (beside := Path(sys.executable).with_name(NODE)).exists():
+        program = [str(beside)]
+    arguments = '--ros-args', '--params-file', name, '-r', f'{ROTOR_STATE}:={topic}'
+    return shlex.join([*program, *arguments])
 
 
 def write_new(path: Path, text: str) -> None:

@@ -1,6 +1,5 @@
 """The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
-import math
 import time
 from collections.abc import Callable
 
@@ -10,16 +9,13 @@ from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.ros.workarounds.lost_messages import LostMessages
+from gear_kinematics.ros.workarounds.message_numbers import number_messages
+from gear_kinematics.ros.workarounds.new_publishers import NewPublishers
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 
 DEPTH = 2000
 """Queued messages on either side of a topic: those of a driver at several kHz while the node is
 blocked."""
-_SETTLING = 0.9
-"""s after a driver's first message. Fast DDS reports as lost what a reliable driver published
-while the two were connecting, up to 0.2 s after that message on a busy machine. It is less than
-the time between two reports, so that only the first report after that message counts none."""
 
 
 class DriverInput:
@@ -48,13 +44,19 @@ class DriverInput:
         self._topic = topic
         self._on_message = on_message
         self._monitor = monitor
+        self._silent = False
+        self._numbered = True
+        self._missing = 0
+        """Messages missing between those that came since the last update."""
+        self.publishers = 0
+        """At the last update."""
         self._subscribe()
 
     def _subscribe(self) -> None:
-        self.silent = True
-        """Whether no message has been received yet."""
-        self._publishers = 0
-        self._settled_at = math.inf
+        self._next = 0
+        """The number of the next message; 0 before the first, as numbers begin with 1."""
+        self._heard = False
+        """Whether a message had come before the last update."""
         self.subscription = self._node.create_subscription(
             JointState,
             self._topic,
@@ -64,7 +66,8 @@ class DriverInput:
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible),
         )
-        self.losses = LostMessages(self.subscription)
+        number_messages(self.subscription, self._take)
+        self.new_publishers = NewPublishers(self.subscription)
 
     def _on_incompatible(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
         name = self.subscription.topic_name
@@ -73,24 +76,52 @@ class DriverInput:
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
             self._node.get_logger().info(f'{name}: subscribing with best effort, as a driver does')
-            self.count_losses()
-            self.losses.destroy()
+            self.new_publishers.destroy()
             self._node.destroy_subscription(self.subscription)
             self._subscribe()
 
-    def begin_to_count_losses(self) -> None:
-        """Ignore losses from before and during the connection, which has just been made."""
-        self.silent = False
-        self._settled_at = time.monotonic() + _SETTLING
+    def _take(self, data: bytes, number: int | None) -> None:
+        if number == self._next:
+            self._next = number + 1
+        else:
+            self._jump(number)
+        self._on_message(data)
 
-    def count_losses(self) -> None:
-        """Count the messages lost since the last call, and look for new drivers."""
-        lost = self.losses.take()
-        now, publishers = time.monotonic(), self.subscription.get_publisher_count()
-        if publishers > self._publishers:
-            self._settled_at = now + _SETTLING
-        self._publishers = publishers
-        if not self.silent and now >= self._settled_at:
-            self._monitor.lost += lost
-        if not publishers:
-            self.silent = True
+    def _jump(self, number: int | None) -> None:
+        """Note an unexpected number: the first, one after a loss, or one of another driver."""
+        if number is None:
+            self._numbered = False
+            return
+        if 0 < self._next < number:
+            self._missing += number - self._next
+        self._next = number + 1
+
+    def update(self, timeout: float) -> None:
+        """Count the messages lost since the last call, and log whether the driver is silent.
+
+        Losses are unknown while there are two drivers, whose numbers are not told apart, and where
+        the middleware does not number messages.
+
+        Args:
+            timeout: s without a message after which a driver is silent.
+        """
+        before, self.publishers = self.publishers, self.subscription.get_publisher_count()
+        several = max(before, self.publishers) > 1
+        # The first number of another driver in place of one before it says nothing.
+        replaced = self.new_publishers.take() and self._heard
+        if several:
+            self._next = 0
+        elif not replaced:
+            self._monitor.lost += self._missing
+        self._missing, self._heard = 0, self._next > 0
+        self._monitor.losses_known = self._numbered and not several and not replaced
+
+        last = self._monitor.last_input
+        age = 0.0 if last is None else time.monotonic() - last
+        if (age > timeout) == self._silent:
+            return
+        self._silent = not self._silent
+        if self._silent:
+            self._node.get_logger().warning(f'no {self._topic} for {age:.1f} s')
+        else:
+            self._node.get_logger().info(f'{self._topic} is back')

@@ -1,12 +1,24 @@
 """Arguments of the node, from those of the launch files."""
 
 import posixpath
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from gear_kinematics.parameters import NODE, NodeParameters
+from gear_kinematics.wire.nearest import among
+from gear_kinematics.wire.topics import ROTOR_STATE
+
+NODE_ARGUMENTS = 'config', 'namespace', 'frame_prefix', 'rotor_joint', ROTOR_STATE
+"""Names of the launch arguments of gear_state_publisher.launch.py."""
+OVERRIDES = 'frame_prefix', 'rotor_joint'
+"""Launch arguments that replace parameters of the file, unless they are empty."""
+
+_OF_LAUNCH = (
+    'launch-prefix', 'launch-prefix-filter', 'emulate_tty', 'sigterm_timeout', 'sigkill_timeout'
+)  # fmt: skip
 
 
 class NodeArguments(NamedTuple):
@@ -16,6 +28,8 @@ class NodeArguments(NamedTuple):
     """The parameter file."""
     parameters: NodeParameters
     """The parameters of the node, with the values that it will have."""
+    given: dict[str, Any]
+    """Those that replace values of the file."""
 
 
 def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
@@ -25,8 +39,8 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
     default values: in both cases, the wrong actuator would be started.
 
     Args:
-        configurations: of the launch: `config`, `namespace` and `frame_prefix`, and
-            `ros_namespace` if the launch file is included below a namespace.
+        configurations: of the launch: `config`, `namespace`, `frame_prefix` and `rotor_joint`,
+            and `ros_namespace` if the launch file is included below a namespace.
 
     Raises:
         ConfigError: as `NodeParameters.load` does.
@@ -37,6 +51,26 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
         '/', configurations.get('ros_namespace', ''), configurations['namespace'], NODE
     )
     loaded = NodeParameters.load(config, name)
-    if prefix := configurations['frame_prefix']:
-        loaded = replace(loaded, frame_prefix=prefix)
-    return NodeArguments(config, loaded)
+    given: dict[str, Any] = {
+        name: configurations[name] for name in OVERRIDES if configurations[name]
+    }
+    return NodeArguments(config, replace(loaded, **given), given)
+
+
+def refuse_unknown(file: str, context_arguments: Iterable[str], *known: str) -> None:
+    """Check the arguments of a launch file, of which launch ignores those that nobody declares.
+
+    Args:
+        file: path of the launch file; one that another includes has not the command line's.
+        context_arguments: those on the command line, `name:=value`.
+        known: names of the file's own arguments, besides `NODE_ARGUMENTS`.
+
+    Raises:
+        ValueError: if one is unknown; the text names the nearest, and those that there are.
+    """
+    if Path(file).name not in {Path(word).name for word in sys.argv}:
+        return
+    there = *NODE_ARGUMENTS, *known
+    for name in (argument.partition(':=')[0] for argument in context_arguments):
+        if name not in {*there, *_OF_LAUNCH}:
+            raise ValueError(f'unknown launch argument `{name}`{among(name, there)}')

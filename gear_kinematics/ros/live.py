@@ -335,6 +335,6 @@ def _stamped(data: bytes, received: int) -> bytes:
     """Return the message, with its time of reception as stamp if it has none."""
     if any(data[STAMP_BYTES]) or len(data) < STAMP_BYTES.stop:
         return data
-    layout = '<iI' if data[1] else '>iI'
+    layout = '<iI' if data[1] & 1 else '>iI'
     stamp = struct.pack(layout, *divmod(received, SECOND))
     return data[: STAMP_BYTES.start] + stamp + data[STAMP_BYTES.stop :]

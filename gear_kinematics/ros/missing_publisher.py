@@ -14,8 +14,6 @@ from gear_kinematics.wire.joint_reader import joints_of
 from gear_kinematics.wire.nearest import listed
 from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE
 
-_PATIENCE = 5
-"""Seconds without a publisher after which the other topics are subscribed to."""
 _MAX_TOPICS = 20
 
 
@@ -26,7 +24,6 @@ class MissingPublisher:
         """Start with the node that subscribes to the rotor's topic."""
         self._node = node
         self._topic = node.resolve_topic_name(ROTOR_STATE)
-        self._missing_for = 0  # s
         self._suggested = False
         self._subscriptions: dict[str, Subscription] = {}
         self._joints: dict[str, list[str]] = {}
@@ -35,11 +32,10 @@ class MissingPublisher:
     def update(self, publishers: int) -> None:
         """Take the number of publishers on the rotor's topic; to be called once a second."""
         if publishers:
-            self._missing_for, self._suggested = 0, False
+            self._suggested = False
             self._unsubscribe()
             return
-        self._missing_for += 1
-        if self._suggested or self._missing_for < _PATIENCE:
+        if self._suggested:
             return
         if not self._subscriptions:
             self._subscribe()
@@ -88,13 +84,15 @@ class MissingPublisher:
         if not candidates:
             return text
         [topic] = candidates
-        arguments = f'-r {ROTOR_STATE}:={topic}'
+        renamed, parameter = f'{ROTOR_STATE}:={topic}', ''
         joints = self._joints[topic]
         if joint not in joints and (joint or len(joints) > 1):
             # However far the nearest name is.
             [nearest] = get_close_matches(joint, joints, n=1, cutoff=0.0)
-            arguments += f' -p rotor_joint:={nearest}'
-        return f'{text}; did you mean `--ros-args {arguments}`?'
+            parameter = f'rotor_joint:={nearest}'
+        command = f'--ros-args -r {renamed}' + f' -p {parameter}' * bool(parameter)
+        launched = f'{renamed} {parameter}'.rstrip()
+        return f'{text}; did you mean `{command}`, or with ros2 launch `{launched}`?'
 
     def _described(self, topic: str) -> str:
         joints = self._joints.get(topic)

@@ -1,7 +1,8 @@
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
 import time
-from collections.abc import Collection, Sequence
+import traceback
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +24,7 @@ from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
-from gear_kinematics.parameters.files import calibration_path, require_any
+from gear_kinematics.parameters.files import require_any
 from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
@@ -59,7 +60,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 for this node, or the calibration cannot be used.
         """
         super().__init__(NODE, **options)
-        require_any(parameter_files, self.get_fully_qualified_name())
+        self._calibrations = require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
         declare(self, PARAMETERS)
         branches = self.get_parameter('branches').value
@@ -68,17 +69,19 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         given = getattr(self, '_parameter_overrides', ())
         if faults := unknown_parameters(given, branches):
             raise ValueError('; '.join(faults))
-        self._settings = parameters = self._read_settings()
+        values = {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
+        self._settings = parameters = NodeParameters.of(values)
         self._gear = parameters.gear
         self._input = RotorInput(parameters)
         self._encoder = OutputEncoder(parameters)
-        self._parameter_files = parameter_files
-        self._calibrated = self._calibrated_output(parameters.calibration)
+        self._calibrated: CalibratedOutput | None = None
+        self._display: Display | None = None
+        self._prepare([('calibration', parameters.calibration)])
+        self._configure()
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
         self._next_warning = 0.0
 
-        self._messages = state_messages(parameters)
         self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
         for topic in (
             *self._messages.topics,
@@ -89,9 +92,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
         self._note_subscribers()
         self._outputs.create(topics.DIAGNOSTICS, DiagnosticArray, QoSProfile(depth=10))
-        known = isinstance(self._gear, Mechanism)
-        self._display = Display(self, parameters, self._outputs) if known else None
-        self._configure()
+        if isinstance(self._gear, Mechanism):
+            self._display = Display(self, parameters, self._outputs)
+            self._display.update(parameters)
         self.add_post_set_parameters_callback(self._configure)
         self.create_service(Trigger, '~/home', self._home)
         # A missing input must be reported even while a simulated clock is paused.
@@ -137,56 +140,61 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def destroy_node(self) -> None:
         """Destroy the event handles too, which rclpy does not know."""
         for driver in self._drivers:
-            driver.losses.destroy()
+            driver.new_publishers.destroy()
         super().destroy_node()
-
-    def _read_settings(self) -> NodeParameters:
-        values = {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
-        return NodeParameters.of(values)
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
-        for parameter in changed:
-            if reason := fault_of(parameter):
-                return SetParametersResult(successful=False, reason=reason)
-            if not hasattr(self, '_gear'):  # at declaration; the constructor checks it
-                continue
-            try:
-                if parameter.name in {'output_joint', 'frame_prefix'}:
-                    state_messages(replace(self._settings, **{parameter.name: parameter.value}))
-                elif parameter.name == 'calibration':
-                    self._next_calibrated = self._calibrated_output(parameter.value)
-            except ValueError as error:
-                return SetParametersResult(successful=False, reason=str(error))
-        return SetParametersResult(successful=True)
+        try:
+            reason = next(filter(None, map(fault_of, changed)), '')
+            if not reason and hasattr(self, '_gear'):  # else the constructor checks them
+                self._prepare((parameter.name, parameter.value) for parameter in changed)
+        except ValueError as error:
+            reason = str(error)
+        except Exception as error:  # noqa: BLE001, nothing that is set may end the node
+            reason = f'unexpected {type(error).__name__}: {error}'
+            self.get_logger().error(traceback.format_exc())
+        return SetParametersResult(successful=not reason, reason=reason)
+
+    def _prepare(self, changed: Iterable[tuple[str, Any]]) -> None:
+        """Make what the changed parameters affect and can be refused for, also one set twice.
+
+        Raises:
+            ValueError: if they are refused.
+        """
+        settings, calibrated = self._settings, self._calibrated
+        messages = state_messages(settings)
+        for name, value in changed:
+            if name in PARAMETERS:
+                settings = replace(settings, **{name: value})
+                messages = state_messages(settings)
+            if name == 'calibration':
+                calibrated = self._calibrated_output(value)
+        self._prepared = settings, messages, calibrated
 
     def _calibrated_output(self, value: str) -> CalibratedOutput | None:
         """Load the calibration that a value of the parameter names, if any."""
         if not value:
             return None
-        name = self.get_fully_qualified_name()
-        path = calibration_path(value, self._parameter_files, name)
+        path = self._calibrations.get(value, Path(value))
         return CalibratedOutput(Calibration.load(path, self._gear))
 
-    def _configure(self, changed: Collection[Parameter] = ()) -> None:
-        """Apply the parameters, at the start and after every change."""
-        if any(parameter.name == 'calibration' for parameter in changed):
-            self._calibrated = self._next_calibrated
-        self._settings = self._input.parameters = parameters = self._read_settings()
-        if not self._encoder.fits(parameters):
-            self._encoder = OutputEncoder(parameters)  # discards earlier errors
+    def _configure(self, _changed: Collection[Parameter] = ()) -> None:
+        """Apply what was prepared, at the start and after every change."""
+        self._settings, self._messages, self._calibrated = self._prepared
+        self._input.parameters = self._settings
+        if not self._encoder.fits(self._settings):
+            self._encoder = OutputEncoder(self._settings)  # discards earlier errors
             if self._calibrated:
                 self._calibrated.reset()
         if self._calibrated:
-            self._calibrated.corrector.max_acceleration = parameters.max_rotor_acceleration
-        self._messages = state_messages(parameters)
+            limit = self._settings.max_rotor_acceleration
+            self._calibrated.corrector.max_acceleration = limit
         if self._display:
-            self._display.update(parameters)
+            self._display.update(self._settings)
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
-        if self._rotor_driver.silent:
-            self._rotor_driver.begin_to_count_losses()
         try:
             sample = self._input.accept(data, self._now)
         except RejectedInputError as rejection:
@@ -205,8 +213,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
-        if self._encoder_driver.silent:
-            self._encoder_driver.begin_to_count_losses()
         try:
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
@@ -242,13 +248,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         home_angle = self._settings.home_angle
+        rotor_angle = self._gear.gear_ratio.rotor_angle(home_angle)
         try:
-            zero = self._input.home(self._gear.gear_ratio.rotor_angle(home_angle))
+            zero = self._input.zero_for(rotor_angle)
         except RuntimeError:
             response.message = f'there was no valid {topics.ROTOR_STATE} yet'
             return response
         result = self.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
         response.success = result.successful
+        if result.successful:
+            self._input.home(rotor_angle)
         response.message = (
             result.reason or f'output shaft at {home_angle} rad: rotor_zero is {zero} rad'
         )
@@ -256,8 +265,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _report(self) -> None:
         for driver in self._drivers:
-            driver.count_losses()
-        self._monitor.drivers = self._rotor_driver.subscription.get_publisher_count()
+            driver.update(self._settings.input_timeout)
+        self._monitor.drivers = self._rotor_driver.publishers
         self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
         now, window = time.monotonic(), self._settings.transmission_error_window

@@ -48,13 +48,21 @@ class Report:
 
     @classmethod
     def of(
-        cls, errors: Sequence[Fault], warnings: Sequence[Fault], values: dict[str, str]
+        cls,
+        errors: Sequence[Fault],
+        warnings: Sequence[Fault],
+        values: dict[str, str],
+        *,
+        losses_known: bool = True,
     ) -> Self:
         """Report on faults, or that there are none."""
         level = ERROR if errors else WARN if warnings else OK
         if faults := (*errors, *warnings):
             values['advice'] = ' '.join(dict.fromkeys(fault.advice for fault in faults))
-        return cls(level, '; '.join(faults) or 'ok', values)
+        notes = () if losses_known else ('losses unknown',)
+        if notes:
+            values['lost messages'] = 'unknown'
+        return cls(level, '; '.join((*faults, *notes)) or 'ok', values)
 
 
 class GraphFaults(NamedTuple):
@@ -73,7 +81,9 @@ class InputMonitor:
     drivers: int = 0
     """Publishers on rotor_state."""
     lost: int = 0
-    """Inputs that the middleware reported as lost."""
+    """Inputs that are missing between those that came."""
+    losses_known: bool = True
+    """Whether they could be counted since the last report."""
     unsent: int = 0
     """Messages that the middleware failed to send."""
     last_input: float | None = None
@@ -129,7 +139,7 @@ class InputMonitor:
             'referenced': str(rotor_input.referenced).lower(),
             'loop-closure residual (m)': _residual(rotor_input),
         }
-        return Report.of(errors, warnings, values)
+        return Report.of(errors, warnings, values, losses_known=self.losses_known)
 
 
 @dataclass(slots=True)
@@ -137,7 +147,9 @@ class EncoderMonitor:
     """Monitors the encoder at the output, and the transmission error; times as above."""
 
     lost: int = 0
-    """Inputs that the middleware reported as lost."""
+    """Inputs that are missing between those that came."""
+    losses_known: bool = True
+    """Whether they could be counted since the last report."""
     last_input: float | None = None
     """Time of the last message, valid or not."""
     _compared: int = 0
@@ -200,7 +212,7 @@ class EncoderMonitor:
                 warnings.append(Fault('calibration no longer fits', 'Calibrate the gear again.'))
             values['explained by the calibration (%)'] = _percent(fit.explained)
             values['outside the interval (%)'] = _percent(fit.outside)
-        return Report.of([], warnings, values)
+        return Report.of([], warnings, values, losses_known=self.losses_known)
 
 
 def _rejections(counts: Counter[str]) -> Fault:

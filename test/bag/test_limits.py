@@ -328,15 +328,15 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: metadata(p, (f'/{number}' for number in range(100_000))),
     ),
     'metadata of small values': (
-        'metadata.yaml: more than 400000 values in YAML',
+        'metadata.yaml: more than 400000 values',
         lambda p: folder(p, {'metadata.yaml': f'a: [{500_000 * "a,"}]'}),
     ),
     'metadata with a number of base 60': (
-        'metadata.yaml: YAML has 4000001 bytes, more than 10000',
+        "metadata.yaml: 'rosbag2_bagfile_information' is missing",
         lambda p: folder(p, {'metadata.yaml': f'a: 1{2_000_000 * ":1"}'}),
     ),
     'metadata with numbers of one hash': (
-        'metadata.yaml: YAML has a mapping of more than 100 numbers',
+        'metadata.yaml: a mapping of more than 100 numbers',
         lambda p: folder(
             p, {'metadata.yaml': ''.join(f'{k * (2**61 - 1)}: a\n' for k in range(1, 150_000))}
         ),
@@ -346,7 +346,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: metadata(p, ['/a'], (f'{number}.mcap' for number in range(200_000))),
     ),
     'parameters of small values': (
-        'actuator.yaml: longer than 262144 characters',
+        'actuator.yaml: longer than 1048576 bytes',
         lambda p: folder(p, {'b_0.mcap': b'', 'actuator.yaml': f'a: [{MB * "a,"}]'}),
     ),
     'messages of 1 GiB': (

@@ -1,5 +1,6 @@
 """The file of a calibration: what is read is what was written, and nothing else is accepted."""
 
+import os
 from fractions import Fraction
 
 import pytest
@@ -163,7 +164,12 @@ def test_fault_of_a_file_is_named_with_the_file(file, changes, fault):
         (b'schema: [', 'not YAML'),
         (b'a: &a [1]\nb: *a\n', 'aliases are not supported'),
         (b'\xff\xfe\x00', 'codec'),
-        (b'# ' + 2**18 * b'x', 'longer than 262144 characters'),
+        (2**20 * b'#' + b'\n', 'longer than 1048576 bytes'),
+        (b'a: [' + 10_000 * b'0, ' + b']', 'more than 8192 values'),
+        (b'a: !!bool maybe', 'does not fit its tag'),
+        (b'a: !!int ""', 'does not fit its tag'),
+        (b'a: !!float "_"', 'does not fit its tag'),
+        (b'a: !!timestamp foo', 'does not fit its tag'),
     ],
 )
 def test_anything_else_is_no_calibration(tmp_path, content, fault):
@@ -179,6 +185,9 @@ def test_missing_file_is_named(tmp_path):
         Calibration.load(tmp_path / 'none.yaml')
     with pytest.raises(CalibrationError, match='Is a directory'):
         Calibration.load(tmp_path)
+    os.mkfifo(tmp_path / 'pipe')
+    with pytest.raises(CalibrationError, match=r'pipe: not a regular file'):
+        Calibration.load(tmp_path / 'pipe')
     with pytest.raises(CalibrationError, match='null'):
         Calibration.load(tmp_path / 'a\0b')
 

@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import sys
 from dataclasses import replace
 
 import pytest
@@ -24,13 +25,27 @@ def test_file_is_the_default_one_with_the_joint_of_the_driver(tmp_path):
     assert 'only place that defines default values' not in text
 
 
-def test_head_says_how_to_start_the_node():
+@pytest.mark.parametrize(
+    ('places', 'program'),
+    [
+        (['bin', 'python'], 'gear_state_publisher'),
+        (['python'], '{}/python/gear_state_publisher'),
+        ([], 'ros2 run gear_kinematics gear_state_publisher'),
+    ],
+    ids=['on the PATH', 'beside the interpreter', 'of a workspace'],
+)
+def test_head_says_how_to_start_the_node(tmp_path, monkeypatch, places, program):
+    for place in places:
+        (tmp_path / place).mkdir()
+        (tmp_path / place / 'gear_state_publisher').touch(0o755)
+    monkeypatch.setenv('PATH', str(tmp_path / 'bin'))
+    monkeypatch.setattr(sys, 'executable', str(tmp_path / 'python' / 'python3'))
     text = new_config('/motor/joint_states', 'm1', 'my actuator.yaml')
     head = [line for line in text.splitlines() if line.startswith('#')]
     assert head[0] == '# For the joint m1 on /motor/joint_states. Start the node with'
     command = shlex.split(head[1].removeprefix('#'))
     assert command == [
-        'gear_state_publisher', '--ros-args', '--params-file', 'my actuator.yaml',
+        *program.format(tmp_path).split(), '--ros-args', '--params-file', 'my actuator.yaml',
         '-r', 'rotor_state:=/motor/joint_states',
     ]  # fmt: skip
     assert start_command('/motor/joint_states', 'my actuator.yaml') == shlex.join(command)

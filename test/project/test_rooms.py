@@ -344,7 +344,7 @@ def test_imports_within_bag_point_one_way(imports):
     )
     files = {f'bag/{name}.py' for layer in layers for name in layer}
     assert files == {path for path in imports if path.startswith('bag/')}
-    below = ['gear_kinematics.wire']
+    below = ['gear_kinematics.wire', 'gear_kinematics.parameters.yaml_file']
     for layer in layers:
         if 'compute' in layer:
             below += [f'gear_kinematics.{room}' for room in ROOMS['bag']]

@@ -1,11 +1,12 @@
 """The arguments with which the launch files start the node, and those they refuse."""
 
 import re
+import sys
 
 import pytest
 
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.ros.launch_arguments import node_arguments
+from gear_kinematics.ros.launch_arguments import NODE_ARGUMENTS, node_arguments, refuse_unknown
 
 NODES = {
     '/gear_state_publisher': 81,
@@ -29,12 +30,14 @@ def config(tmp_path) -> str:
 def arguments(config, namespace='', frame_prefix='', **above):
     """The configurations of a launch with these arguments, which are all text."""
     return node_arguments(
-        {'config': str(config), 'namespace': namespace, 'frame_prefix': frame_prefix, **above}
+        dict.fromkeys(NODE_ARGUMENTS, '')
+        | {'config': str(config), 'namespace': namespace, 'frame_prefix': frame_prefix, **above}
     )
 
 
 def test_defaults_start_the_default_actuator():
-    config, parameters = arguments(default_config())
+    config, parameters, given = arguments(default_config())
+    assert not given
     assert config == default_config()
     assert parameters == NodeParameters.load()
 
@@ -63,9 +66,11 @@ def test_parameters_are_those_of_the_node_in_its_namespace(config, above, namesp
     assert parameters.ring_teeth == NODES[node]
 
 
-def test_given_prefix_replaces_that_of_the_file(config):
+def test_given_values_replace_that_of_the_file(config):
     assert arguments(config, 'left').parameters.frame_prefix == 'own_'
-    assert arguments(config, 'left', 'my_').parameters.frame_prefix == 'my_'
+    found = arguments(config, 'left', 'my_', rotor_joint='0')
+    assert (found.parameters.frame_prefix, found.parameters.rotor_joint) == ('my_', '0')
+    assert found.given == {'frame_prefix': 'my_', 'rotor_joint': '0'}
 
 
 def test_home_directory_may_be_written_as_in_a_shell(config, tmp_path, monkeypatch):
@@ -92,3 +97,12 @@ def test_file_that_is_not_there_is_refused(tmp_path, monkeypatch, config, text):
 def test_file_without_parameters_of_the_node_is_refused(config):
     with pytest.raises(ConfigError, match='no parameters of /right/gear_state_publisher in it'):
         arguments(config, 'right')
+
+
+def test_unknown_argument_of_the_launched_file_is_refused_with_the_nearest_name(monkeypatch):
+    monkeypatch.setattr(sys, 'argv', ['ros2', 'launch', 'gear_kinematics', 'view.launch.py'])
+    for name in ('rotor_state', 'rviz', 'launch-prefix'):
+        refuse_unknown('/share/view.launch.py', [f'{name}:=x'], 'rviz')
+    with pytest.raises(ValueError, match=r'`rotor_joit`; did you mean `rotor_joint`\? there are'):
+        refuse_unknown('/share/view.launch.py', ['rviz:=x', 'rotor_joit:=m1'], 'rviz')
+    refuse_unknown('/share/included.launch.py', ['rviz:=x'])

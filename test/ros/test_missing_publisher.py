@@ -60,14 +60,17 @@ class Graph:
 
 def test_topics_are_suggested_once_with_their_joints():
     graph = Graph(motor=['m1', 'rotor_1'], silent=None)
-    graph.pass_seconds(5)
+    graph.pass_seconds(1)
     assert graph.warnings == []
+    graph.pass_seconds(1)
+    assert len(graph.warnings) == 1
     graph.pass_seconds(55)
     [warning] = graph.warnings
     assert warning == (
         '/rotor_state has no publisher; there are: /motor (joints m1, rotor_1), '
         '/silent (no message yet); did you mean `--ros-args -r rotor_state:=/motor '
-        '-p rotor_joint:=rotor_1`?'
+        '-p rotor_joint:=rotor_1`, or with ros2 launch '
+        '`rotor_state:=/motor rotor_joint:=rotor_1`?'
     )
     assert graph.subscribed == {}
     graph.pass_seconds(1, publishers=1)
@@ -89,8 +92,9 @@ def test_arguments_are_suggested_if_it_is_clear_which(joints, joint, arguments):
     graph = Graph(joint, **joints)
     graph.pass_seconds(9)
     [warning] = graph.warnings
-    end = f'; did you mean `--ros-args {arguments}`?' if arguments else ', /b (joint m)'
-    assert warning.endswith(end)
+    suggestion = f'; did you mean `--ros-args {arguments}`, or with ' if arguments else ''
+    assert suggestion in warning
+    assert suggestion or warning.endswith(', /b (joint m)')
 
 
 def test_topic_that_appears_later_is_suggested_with_its_joints():
@@ -99,9 +103,8 @@ def test_topic_that_appears_later_is_suggested_with_its_joints():
     assert graph.warnings == []
     graph.joints['/motor'] = ['rotor']
     graph.pass_seconds(3)
-    assert [text.partition(';')[2] for text in graph.warnings] == [
-        ' there are: /motor (joint rotor); did you mean `--ros-args -r rotor_state:=/motor`?'
-    ]
+    [warning] = graph.warnings
+    assert ' there are: /motor (joint rotor); did you mean' in warning
 
 
 @pytest.mark.parametrize(('forbidden', 'publishers'), [(['/motor'], 0), ((), 1)])
@@ -113,7 +116,7 @@ def test_nothing_is_suggested_of_a_forbidden_topic_or_with_a_publisher(forbidden
 
 def test_bytes_that_are_no_message_are_passed_over():
     graph = Graph(motor=None)
-    graph.pass_seconds(5)
+    graph.missing_publisher.update(0)
     graph.subscribed['/motor'](b'none')
-    graph.pass_seconds(4)
+    graph.pass_seconds(1)
     assert '/motor (no joints)' in graph.warnings[0]

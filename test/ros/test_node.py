@@ -1,6 +1,5 @@
 """The node within the process of the test: parameters, and callbacks without DDS."""
 
-import itertools
 import math
 import re
 import sys
@@ -13,16 +12,20 @@ import pytest
 import yaml
 from calibrations import AMPLITUDE, single_order
 from diagnostic_msgs.msg import DiagnosticArray
-from live import rotor_bytes
+from live import DEADLINE, rotor_bytes
 from rclpy.exceptions import ParameterException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
+from std_srvs.srv import Trigger
 
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
+from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node import GearStatePublisher
 from gear_kinematics.ros.workarounds.executor import make_executor
 from gear_kinematics.state.output_encoder import OutputEncoder
@@ -294,66 +297,93 @@ def test_rejected_input_is_warned_about_at_most_once_a_second(make, monkeypatch,
     assert warnings[0] == warnings[10] == warnings[20] == 1
 
 
-class Losses:
-    """Stands in for the middleware's count of lost messages."""
+@pytest.mark.parametrize('kind', ['events', 'single_threaded'])
+def test_inputs_that_overflow_the_queue_of_a_blocked_node_are_lost(make, context, kind):
+    node = make(f'blocked_{kind}')
+    driver = node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=10))
+    executor = make_executor(kind, context)
+    executor.add_node(node)
 
-    new = 0
+    def send(count):
+        for _ in range(count):
+            driver.publish(rotor_bytes(1, position=[1.0]))
 
-    def take(self) -> int:
-        taken, self.new = self.new, 0
-        return taken
+    def receive(number):
+        deadline = time.monotonic() + DEADLINE
+        while node._input.received < number and time.monotonic() < deadline:
+            executor.spin_once(timeout_sec=0.1)
+        node._rotor_driver.update(1.0)
+        return node._input.received, node._monitor.lost
 
-    def destroy(self) -> None:
-        pass
+    while not driver.get_subscription_count():
+        executor.spin_once(timeout_sec=0.1)
+    send(3)
+    assert receive(3) == (3, 0)
+    send(DEPTH + 500)  # while nothing is received
+    send(1)  # numbers stay contiguous
+    assert receive(3 + DEPTH) == (3 + DEPTH, 501)
+    executor.shutdown()
 
 
-def test_losses_are_counted_once_a_driver_is_connected(make, monkeypatch):
-    node, losses = make('lossy'), Losses()
-    node._rotor_driver.losses = losses
-    now, drivers = 1000.0, 1
-    monkeypatch.setattr(time, 'monotonic', lambda: now)
+def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
+    node, drivers, new = make('lossy'), 1, 1
     monkeypatch.setattr(Subscription, 'get_publisher_count', lambda _: drivers)
-    monkeypatch.setattr(node._outputs, 'send', lambda _: None)
-    stamps = itertools.count(1)
+    monkeypatch.setattr(node._rotor_driver.new_publishers, 'take', lambda: new)
 
-    def lost(new, happens):
-        losses.new += new
-        happens()
-        return node._monitor.lost
+    def lost(*numbers):
+        for number in numbers:
+            node._rotor_driver._take(rotor_bytes(1, position=[1.0]), number)
+        node._rotor_driver.update(1.0)
+        return node._monitor.lost, node._monitor.losses_known
 
-    def message():
-        node._on_rotor_state(rotor_bytes(next(stamps), position=[1.0]))
-
-    # The driver has been there for long, but was silent.
-    assert lost(3, node._report) == 0
-    now += 60.0
-    assert lost(3, node._report) == 0
-    # What was lost during the connection may be reported soon after the first message.
-    assert lost(4, message) == 0
-    assert lost(5, node._report) == 0
-    now += 0.8
-    assert lost(2, node._report) == 0
-    now += 0.2
-    assert lost(6, message) == 0
-    assert lost(0, node._report) == 6
-    assert lost(5, node._report) == 11
-    # The driver has ended, and another begins.
-    drivers = 0
-    assert lost(7, node._report) == 18
-    drivers = 1
-    assert lost(8, node._report) == 18
-    now += 1.1
-    assert lost(9, message) == 18
-    assert lost(1, node._report) == 18
-    now += 1.1
-    assert lost(10, node._report) == 28
-    # Another one joins it, such as a new one while the killed one is still in the graph.
+    assert lost() == (0, True)
+    assert lost(7, 8, 10) == (1, True)  # 1 to 6 were sent before the two were connected
+    new = 0
+    assert lost(11, 15) == (4, True)
+    new = 1
+    assert lost(300, 301) == (4, False)  # of another driver
+    new = 0
+    assert lost(1, 3) == (5, True)
     drivers = 2
-    assert lost(2, node._report) == 28
-    now += 1.1
-    assert lost(20, node._report) == 48
+    assert lost(302, 4, 303, 5) == (5, False)
     drivers = 1
-    assert lost(30, node._report) == 78
+    assert lost(304, 6) == (5, False)  # the other may have ended just now
+    assert lost(8, 9) == (5, True)
+    assert lost(11, None) == (6, False)  # other middlewares do not number the messages
+
+
+def test_a_driver_that_falls_silent_and_comes_back_is_logged_once(make, monkeypatch, capfd):
+    node, now = make('silent'), 1000.0
+    monkeypatch.setattr(time, 'monotonic', lambda: now)
+    logged = []
+    for moment in range(12):
+        if moment in {3, 9, 10}:
+            node._on_rotor_state(rotor_bytes(moment, position=[1.0]))
+        node._rotor_driver.update(1.0)
+        logged += re.findall(r'\[(\w+)\].*: (.*rotor_state.*)', capfd.readouterr().err)
+        now += 1.0
+    assert logged == [
+        ('INFO', logged[0][1]),
+        ('WARN', 'no rotor_state for 2.0 s'),
+        ('INFO', 'rotor_state is back'),
+    ]
+
+
+def test_unexpected_error_in_a_change_refuses_it_and_is_logged(node, monkeypatch, capfd):
+    monkeypatch.setattr(Calibration, 'load', lambda *_: 1 / 0)
+    result = node.set_parameters_atomically([Parameter('calibration', value='a.yaml')])
+    assert result.reason == 'calibration: unexpected ZeroDivisionError: division by zero'
+    assert 'Traceback' in capfd.readouterr().err
+    assert node.get_parameter('calibration').value == ''
+
+
+def test_home_that_is_refused_changes_nothing(make):
+    node = make('refused_home', rotor_encoder='single_turn', home_angle=1e9, gear_ratio='2000000')
+    node._on_rotor_state(rotor_bytes(1, position=[1.0]))
+    response = node._home(None, Trigger.Response())
+    assert not response.success
+    assert 'rotor_zero' in response.message
+    assert not node._input.referenced
 
 
 def test_markers_cost_nothing_without_viewers_and_can_be_switched_off(node, make):

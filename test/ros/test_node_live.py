@@ -207,14 +207,14 @@ def test_other_topics_are_suggested_while_there_is_no_publisher(start):
 
     [warning] = peer.wait_until(warned, 'a warning')
     [*_, begun] = live.lines('INFO')
-    assert 4.9 < warning.time - begun.time < 20.0
+    assert 1.9 < warning.time - begun.time < 20.0
     topic = f'{peer.namespace}/motor/joint_states'
     # There are those of other tests, too.
     assert warning.text.startswith(f'{peer.namespace}/rotor_state has no publisher; there are: ')
     assert f'{topic} (joints motor_1, wheel)' in warning.text
     assert f'{peer.namespace}/output_state' not in warning.text
     arguments = f'-r rotor_state:={topic} -p rotor_joint:=motor_1'
-    assert warning.text.endswith(f'did you mean `--ros-args {arguments}`?')
+    assert f'did you mean `--ros-args {arguments}`, or with ros2 launch `' in warning.text
     peer.wait_until(lambda: not peer.matches()[0], 'the end of the subscription')
 
 
@@ -448,7 +448,7 @@ def test_best_effort_driver_is_heard_and_so_is_a_reliable_one_beside_it(start):
     assert all_right(peer.wait_until(outputs, 'outputs'), 1.5)
     peer.connect()
     level, message, _ = peer.status(lambda s: 'incompatible' not in s.message)
-    assert (level, message) == (WARN, '2 drivers')
+    assert (level, message) == (WARN, '2 drivers; losses unknown')
 
 
 # The end, and starts that fail.

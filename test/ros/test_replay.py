@@ -348,6 +348,12 @@ def test_live_messages_with_another_topic_joint_and_prefix_add_missing_stamps():
     assert [decode(d, TYPES[POSES]).header.frame_id for d in found[POSES]] == ['left_stator'] * 20
 
 
+def test_missing_stamp_is_added_in_the_byte_order_of_xcdr_2_too():
+    big = b'\0\6\0\0' + rotor_bytes(0, little_endian=False)[4:]
+    expected = rotor_bytes(5 * SECOND + 7, little_endian=False)
+    assert live._stamped(big, 5 * SECOND + 7)[4:] == expected[4:]
+
+
 def test_a_slow_consumer_loses_nothing():
     messages = rotor_states(SECOND + k for k in range(6000))
     found = Counter()

@@ -80,6 +80,11 @@ def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
     bench.feed(START + 2.5, BAD)
     report = bench.report(START + 3.0)
     assert (report.level, report.message) == (WARN, 'rejected: position not finite 1')
+    bench.monitor.losses_known = False
+    bench.feed(START + 3.5, good(3))
+    report = bench.report(START + 4.0)
+    assert (report.level, report.message) == (OK, 'losses unknown')
+    assert report.values['lost messages'] == 'unknown'
 
 
 @pytest.mark.parametrize(('drivers', 'message'), [(0, 'ok'), (1, 'ok'), (2, '2 drivers')])

@@ -301,7 +301,7 @@ def test_init_writes_what_is_named(listening, capsys):
     assert main(['init', '--topic', '/motor/joint_states', '--joint', 'm1', '-o', 'a b.yaml']) == 0
     assert NodeParameters.load(listening / 'a b.yaml').rotor_joint == 'm1'
     command = "gear_state_publisher --ros-args --params-file 'a b.yaml' -r rotor_state:="
-    assert f'\n    {command}/motor/joint_states\n' in capsys.readouterr().out
+    assert f'{command}/motor/joint_states\n' in capsys.readouterr().out
 
 
 def test_init_writes_to_stdout_and_lists_elsewhere(listening, capsys):

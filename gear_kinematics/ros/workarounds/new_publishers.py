@@ -1,7 +1,7 @@
-"""Messages that the middleware has lost, polled instead of reported by a callback.
+"""Publishers that a subscription has met, polled instead of reported by a callback.
 
-A callback for each loss, as for other events, could deadlock the thread that takes the event and
-the one that receives: ros2/rmw_fastrtps#890, seen in rmw_fastrtps 8.4.3.
+A callback could deadlock the thread that takes the event and the one that receives:
+ros2/rmw_fastrtps#890, seen in rmw_fastrtps 8.4.3.
 """
 
 from rclpy.event_handler import QoSSubscriptionEventType
@@ -9,17 +9,17 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.subscription import Subscription
 
 
-class LostMessages:
-    """The middleware's count of messages that a subscription has not received."""
+class NewPublishers:
+    """The middleware's count of publishers that a subscription has met."""
 
     def __init__(self, subscription: Subscription) -> None:
         with subscription.handle:
             self._event = rclpy_implementation.EventHandle(
-                subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST
+                subscription.handle, QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED
             )
 
     def take(self) -> int:
-        """Return the number lost since the last call."""
+        """Return the number met since the last call."""
         with self._event:
             return int(self._event.take_event().total_count_change)
 
