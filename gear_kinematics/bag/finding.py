@@ -25,11 +25,11 @@ class Found(NamedTuple):
     folder."""
 
 
-def find_bags(patterns: Iterable[str]) -> Found:
+def find_bags(patterns: Iterable[str], *, least: int = 1) -> Found:
     """Find the bags that files, directories and globs name; a directory can hold many.
 
     Raises:
-        BagError: naming each pattern without a match, if there are no bags at all.
+        BagError: naming each pattern without a match, if there are fewer bags than `least`.
     """
     bags: dict[Path, None] = {}
     faults: dict[Path, str] = {}
@@ -44,7 +44,7 @@ def find_bags(patterns: Iterable[str]) -> Found:
             hint = '' if path.exists() or glob.has_magic(pattern) else bags_beside(path)
             faults[path] = f'{pattern}: no bag there{hint}'
         bags |= dict.fromkeys(found)
-    if not bags:
+    if len(bags) < least:
         raise BagError('; '.join(faults.values()))
     return Found(list(bags), faults)
 

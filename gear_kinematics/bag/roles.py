@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple, Self
@@ -26,6 +27,7 @@ _PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
 """Topics by their parts in a validation; the rotor is found last, among the remaining topics."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
 _PEEKED = 20  # topics of which the joints are looked up
+_JUDGED = 100  # messages that show whether there is only one joint
 
 
 class Topics(NamedTuple):
@@ -103,6 +105,22 @@ def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str
         BagError: if it is missing or ambiguous.
     """
     return find_topics(bag, {'rotor': given}, outputs=False, joint=joint).rotor
+
+
+def only_joint(bag: Bag, topic: str, joint: str) -> str:
+    """Return the joint to read on a topic: the only one there, if the given one is not.
+
+    Args:
+        bag: an open bag.
+        topic: of joint states.
+        joint: the one to look for.
+    """
+    found = set[str]()
+    with suppress(BagError):
+        for _, _, data in islice(bag.messages([topic]), _JUDGED):
+            with suppress(MalformedMessageError):
+                found.update(joints_of(data))
+    return found.pop() if len(found) == 1 else joint
 
 
 def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:

@@ -99,9 +99,10 @@ class Reporter:
                 shown = document.of_failed() if self._options.quiet else document
                 render(shown, Console(), brief=self._brief)
         if plot:
-            if not document.figure:
+            figure = document.sections[-1].figure  # of several, the last compares the others
+            if not figure:
                 raise ValueError(f'{plot}: there is nothing to plot')
-            write_file(plot, to_image(document.figure, self._image))
+            write_file(plot, to_image(figure, self._image))
         for form, target in self._forms.items():
             write_text(target, _FORMS[form](document))
 

@@ -12,13 +12,19 @@ from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.task import Task, Tolerances
+from gear_kinematics.validation.task import QUANTITIES, Task, Tolerances
 from gear_kinematics.validation.validate_bag import WORK, unusable, validate_bag
 
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
     Verdict.FAIL: ExitCode.FAILED,
     Verdict.UNUSABLE: ExitCode.UNUSABLE,
+}
+_OF = {
+    'angle': 'angles and orientations',
+    'position': 'the positions of bodies',
+    'velocity': 'the velocity of the output',
+    'effort': 'the effort of the output',
 }
 
 
@@ -29,22 +35,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     bags.add_outputs(parser)
     bags.add_calibration(parser)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
-    angle, position = Tolerances()
-    parser.add_argument('--tolerance-angle', type=float, default=angle, metavar='RAD')
-    parser.add_argument('--tolerance-position', type=float, default=position, metavar='M')
+    for unit, quantity in QUANTITIES.items():
+        parser.add_argument(
+            f'--tolerance-{quantity}',
+            type=float,
+            default=Tolerances().of(unit),
+            metavar=unit.upper(),
+            help=f'greatest accepted error of {_OF[quantity]} (default: %(default)g)',
+        )
     parser.add_argument(
-        '--allow-offset', action='store_true', help='accept a constant offset, as after homing'
+        '--allow-offset',
+        action='store_true',
+        help='accept a constant offset of the output angle that no rotor_zero explains',
     )
     parser.add_argument(
         '--strict',
         action='store_true',
-        help='judge all messages, even where the recorder may have lost some',
+        help='judge all messages, even where the recorder may have lost some, and fail a node '
+        'that was homed',
     )
     parser.add_argument(
         '-v',
         '--verbose',
         action='store_true',
-        help='in a pipe, print all about bags that passed, too',
+        help='print all counts and errors, not only what was found',
     )
     way = parser.add_mutually_exclusive_group()
     way.add_argument(
@@ -56,10 +70,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Validate every bag; the worst verdict gives the exit code."""
-    tolerances = Tolerances(options.tolerance_angle, options.tolerance_position)
-    if not (tolerances.angle >= 0.0 and tolerances.position >= 0.0):
-        raise ValueError('a tolerance must not be negative')
-    found = find_bags(options.bags)
+    given = {name: getattr(options, f'tolerance_{name}') for name in Tolerances._fields}
+    for name, tolerance in given.items():
+        if not tolerance >= 0.0:
+            raise ValueError(f'--tolerance-{name} must be at least 0, not {tolerance:g}')
+    tolerances = Tolerances(**given)
+    found = find_bags(options.bags, least=0)
     faults = dict(found.faults)
     reporter = Reporter(options, len(found.bags) + len(faults), brief=not options.verbose)
     tasks: list[Task] = []
@@ -69,13 +85,13 @@ def run(options: argparse.Namespace) -> ExitCode:
         except (ValueError, OSError) as error:  # of the files beside it, or of options
             faults[bag] = str(error)
     if not tasks:
-        raise ValueError('; '.join(dict.fromkeys(faults.values())))
-    if options.live:
+        complain('; '.join(dict.fromkeys(faults.values())))
+    if options.live and tasks:
         warn_of_shared_memory(participants=2)
     judged = {path: unusable(path, fault) for path, fault in faults.items()}
     judged |= _validated(options, tasks)
     reports = [judged[path] for path in (*found.bags, *found.faults)]
-    for report in reports:
+    for report in reports if tasks else ():
         if report.error:
             complain(
                 report.error if report.bag in report.error else f'{report.bag}: {report.error}'
@@ -93,6 +109,7 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
         tolerances=tolerances,
         allow_offset=options.allow_offset,
         strict=options.strict,
+        only_joint=options.joint is None,
         rotor_topic=options.rotor_topic,
         output_topic=options.output_topic,
         poses_topic=options.poses_topic,

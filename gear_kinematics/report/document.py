@@ -31,6 +31,7 @@ class Tone(StrEnum):
     """Emphasis of a value."""
 
     PLAIN = ''
+    NONE = 'none'  # of a count of zero, which says nothing among others
     CHOSEN = 'chosen'
     NOTABLE = 'notable'
     BAD = 'bad'
@@ -49,6 +50,11 @@ class Cell:
     unit: str = ''
     """Unit of the value; in the first cell of a row, of all its values."""
 
+    @property
+    def says(self) -> bool:
+        """Whether there is anything to read in it."""
+        return bool(self.text) and self.tone != Tone.NONE
+
     def with_unit(self) -> str:
         """Return the value with its unit."""
         space = '' if self.unit in _CLOSE else ' '
@@ -62,12 +68,9 @@ def _cell(value: str | Cell) -> Cell:
 class Layout(StrEnum):
     """Layout of a table, where there is room."""
 
-    ROWS = 'rows'
-    """Rows below headings."""
-    INLINE = 'inline'
-    """A single row, as labelled values side by side."""
-    LINES = 'lines'
-    """A single row, as labelled values one per line."""
+    ROWS = 'rows'  # below headings
+    INLINE = 'inline'  # a single row, as labelled values side by side
+    LINES = 'lines'  # the same, one per line
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,13 +98,7 @@ class Table:
     def of_values(
         cls, layout: Layout, *values: tuple[str, str | Cell], about: tuple[str, str] = ('', '')
     ) -> Self:
-        """Return a table of one row.
-
-        Args:
-            layout: `INLINE` or `LINES`.
-            values: labels and values.
-            about: heading and text of the first cell.
-        """
+        """Return a table of one row, of labels and values after heading and text of a subject."""
         heading, subject = about
         cells = (_cell(value) for _, value in values)
         labels = (label for label, _ in values)
@@ -120,13 +117,12 @@ class Table:
                     yield about, column, cell
 
     def below_headings(self) -> Self:
-        """Return the table with units in the texts, and without columns that have no value."""
-        kept = [k for k in range(len(self.columns)) if any(row[k].text for row in self.rows)]
+        """Return the table with units in the texts, and without columns that say nothing."""
+        kept = [k for k in range(len(self.columns)) if any(row[k].says for row in self.rows)]
         rows = (_with_units(row) for row in self.rows)
         columns = tuple(self.columns[k] for k in kept)
-        return replace(
-            self, columns=columns, rows=tuple(tuple(row[k] for k in kept) for row in rows)
-        )
+        shown = tuple(tuple(row[k] for k in kept) for row in rows)
+        return replace(self, columns=columns, rows=shown)
 
 
 def _with_units(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
@@ -289,6 +285,9 @@ class Section:
     leads: bool = False
     """Whether a page begins with it, as with the comparison of the others."""
     cases: tuple[Case, ...] = ()
+    answer: str = ''
+    """The result in one line."""
+    elapsed: float = 0.0  # s, of the check
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,15 +318,17 @@ class Document:
     """Summary of the sections in one line."""
     origin: Origin | None = None
 
-    @property
-    def figure(self) -> Figure | None:
-        """The figure of the only section, or of the last of several, which compares them."""
-        return self.sections[-1].figure
-
     def of_failed(self) -> Self:
         """Return the document without what passed, or makes no judgement."""
         sections = tuple(s for s in self.sections if s.verdict not in {None, Verdict.PASS})
-        return replace(self, sections=sections, summary=None, totals='')
+        return replace(self, sections=sections, summary=None, totals=self.totals * bool(sections))
+
+    @property
+    def order(self) -> list[int]:
+        """The sections as they are read: a comparison first, and failed ones before others."""
+        ranks = [Verdict.FAIL, Verdict.UNUSABLE, Verdict.PASS, None]
+        keys = [(not section.leads, ranks.index(section.verdict)) for section in self.sections]
+        return sorted(range(len(keys)), key=keys.__getitem__)
 
 
 def printable(text: str) -> str:

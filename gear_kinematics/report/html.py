@@ -24,8 +24,6 @@ _ROW_HEIGHT = 30.0  # rem, of each row of panels
 _HEIGHT = 34.0  # rem
 _FEW_FINDINGS = 3
 """Most findings above a figure, beside the first."""
-_FIRST = (Verdict.FAIL, Verdict.UNUSABLE, Verdict.PASS, None)
-"""Verdicts in the order of a page."""
 
 
 def to_html(document: Document) -> str:
@@ -48,7 +46,7 @@ def to_html(document: Document) -> str:
 
 
 def _body(document: Document) -> Iterator[str]:
-    order = sorted(range(len(document.sections)), key=lambda k: _rank(document.sections[k]))
+    order = document.order
     several = len(order) > 1
     yield from _header(document)
     yield '<main>\n'
@@ -70,13 +68,10 @@ def _body(document: Document) -> Iterator[str]:
     yield f'</main>\n{_footer(document.origin)}{drawings.shapes()}'
 
 
-def _rank(section: Section) -> tuple[bool, int]:
-    """Return what sorts sections: a comparison is first, and failed before passed."""
-    return not section.leads, _FIRST.index(section.verdict)
-
-
 def _header(document: Document) -> Iterator[str]:
     name, verdict, about = document.title, document.verdict, document.totals
+    if any(section.verdict == Verdict.FAIL for section in document.sections):
+        verdict = Verdict.FAIL  # which an unusable recording must not hide
     if len(document.sections) == 1 and (only := document.sections[0]).name:
         name, verdict, about = only.name, only.verdict, document.title
     yield f'<header><h1>{_badge(verdict)}{escape(name)}</h1>'
@@ -99,6 +94,7 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
         return
     if findings:
         yield f'<p class="first {kind}">{findings.pop(0)}</p>\n'
+    yield f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
     others = _list(findings, kind)
     many = len(findings) > _FEW_FINDINGS  # the figure is to be on the first screen
     yield _folded(f'{len(findings)} more findings', others) if many else others
@@ -176,6 +172,7 @@ def _values(table: Table) -> str:
         f'<div><dt>{escape(column)}</dt>'
         f'<dd class="{cell.tone}">{escape(cell.with_unit())}</dd></div>'
         for _, column, cell in table.facts()
+        if cell.says
     )
     return f'{heading}<dl class="{table.layout}">{items}</dl>\n'
 

@@ -1,10 +1,11 @@
 """Prints a report as tables on a terminal, or as plain lines in a pipe."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from rich import box
 from rich.columns import Columns
-from rich.console import Console, RenderableType
+from rich.console import Console, Group, RenderableType
 from rich.table import Table as RichTable
 from rich.text import Text
 
@@ -19,25 +20,33 @@ from gear_kinematics.report.document import (
     Verdict,
 )
 
-_NARROWEST = 80
+_NARROWEST = 30
 """Least width of a terminal for tables, columns."""
+_PADDING = 2
+"""Columns between two columns of a table."""
 _VERDICT_STYLES = {
     None: '',
     Verdict.PASS: 'bold green',
     Verdict.FAIL: 'bold red',
     Verdict.UNUSABLE: 'bold magenta',
 }
-_TONE_STYLES = {Tone.PLAIN: '', Tone.CHOSEN: 'bold', Tone.NOTABLE: 'yellow', Tone.BAD: 'bold red'}
+_TONE_STYLES = {
+    Tone.PLAIN: '',
+    Tone.NONE: 'dim',
+    Tone.CHOSEN: 'bold',
+    Tone.NOTABLE: 'yellow',
+    Tone.BAD: 'bold red',
+}
 
 
 def render(document: Document, console: Console, *, brief: bool = False) -> None:
-    """Print a report: tables on a terminal that is wide enough, one fact per line elsewhere.
+    """Print a report: tables on a terminal, one fact per line elsewhere.
 
     Args:
         document: the report.
         console: to print it on.
-        brief: whether elsewhere a section that passed is a single line, and one without a verdict
-            its findings.
+        brief: whether a section is its verdict, its findings and its answer: elsewhere a single
+            line, if it passed. On a terminal, this holds for those with an answer, or unusable.
     """
     if not (console.is_terminal and console.width >= _NARROWEST):
         for line in lines(document, brief=brief):
@@ -45,61 +54,72 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
             written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
             console.print(Text(written), soft_wrap=True)
         return
-    for section in document.sections:
-        _render_section(section, console)
-    if len(document.sections) > 1:
-        if document.totals:
-            console.print(Text(document.totals, 'bold'))
-            console.print()
-        if document.summary:
-            console.print(_rows(document.summary))
+    several = len(document.sections) > 1
+    for section in (document.sections[k] for k in document.order):
+        shortened = brief and bool(section.answer or section.verdict == Verdict.UNUSABLE)
+        if not (several and shortened and section.verdict == Verdict.PASS):  # in the summary
+            _render_section(section, console, brief=shortened)
+    if several and document.totals:
+        console.print(Text(document.totals, 'bold'))
+        console.print()
+    if several and document.summary:
+        listed = [k for k in document.order if k < len(document.summary.rows)]
+        rows = tuple(document.summary.rows[k] for k in listed)
+        console.print(_rows(replace(document.summary, rows=rows), console))
 
 
 def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
     """Yield one fact per line, each with the section it belongs to; see `render`."""
-    summary = [f'summary: {document.totals}'] if document.totals and document.sections[1:] else []
+    summary = [f'summary: {document.totals}'] if document.totals else []
     compared = any(section.leads for section in document.sections)
     yield from summary if compared else ()
-    for section in document.sections:
+    for section in (document.sections[k] for k in document.order):
+        name = f'{section.name}: ' if section.name else ''
+        findings = [finding.text for finding in section.findings]
         if brief and section.verdict is None:
-            yield from (f'{section.name}: {finding.text}' for finding in section.findings)
+            yield from (f'{name}{text}' for text in findings)
         elif brief and section.verdict == Verdict.PASS:
-            findings = ''.join(f'; {finding.text}' for finding in section.findings)
-            yield f'{section.name}: verdict: {OUTCOME[section.verdict]}{findings}'
+            said = filter(None, [OUTCOME[section.verdict], section.answer, *findings])
+            yield f'{name}verdict: {"; ".join(said)}'
         else:
-            yield from section_lines(section)
+            yield from section_lines(section, brief=brief)
     yield from () if compared else summary
 
 
-def section_lines(section: Section) -> Iterator[str]:
-    """Yield the facts of one section, a line each."""
+def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
+    """Yield the facts of one section, a line each; of a brief one, no values."""
     name = f'{section.name}: ' if section.name else ''
     if section.verdict:
         yield f'{name}verdict: {OUTCOME[section.verdict]}'
     for finding in section.findings:
         yield f'{name}{finding.kind}: {finding.text}'
-    for table in section.tables:
+    if section.answer:
+        yield f'{name}result: {section.answer}'
+    for table in () if brief else section.tables:
         for subject, column, cell in table.facts():
             about = ': '.join(filter(None, [subject, column]))
             yield f'{name}{about}: {cell.with_unit()}'
-    for remark in section.remarks:
+    for remark in () if brief else section.remarks:
         yield f'{name}remark: {remark}'
 
 
-def _render_section(section: Section, console: Console) -> None:
+def _render_section(section: Section, console: Console, *, brief: bool) -> None:
     style = _VERDICT_STYLES[section.verdict]
     if section.name:
         verdict = (f'{OUTCOME[section.verdict].upper()} ', style) if section.verdict else ''
         console.print(Text.assemble(verdict, (section.name, 'bold'), overflow='fold'))
     for finding in section.findings:
         console.print(_bullet(finding.text, '' if section.verdict == Verdict.PASS else style))
-    for table in filter(lambda table: table.rows, section.tables):
+    if section.answer:
+        console.print(_bullet(section.answer))
+    for table in () if brief else filter(lambda table: table.rows, section.tables):
         if table.layout == Layout.ROWS:
             console.print()
-        console.print(_LAYOUTS[table.layout](table))
-    if section.remarks:
+        console.print(_LAYOUTS[table.layout](table, console))
+    remarks = () if brief else section.remarks
+    if remarks:
         console.print()
-    for remark in section.remarks:
+    for remark in remarks:
         console.print(_bullet(remark))
     console.print()
 
@@ -111,37 +131,64 @@ def _bullet(sentence: str, style: str = '') -> RichTable:
     return item
 
 
-def _inline(table: Table) -> RenderableType:
+def _inline(table: Table, _console: Console) -> RenderableType:
     values = []
     if subject := table.rows[0][0].text:
         values.append(Text.assemble((f'{table.columns[0]} ', 'dim'), (subject, 'bold')))
     for _, column, cell in table.facts():
-        values.append(Text.assemble((f'{column} ', 'dim'), _styled(cell, cell.with_unit())))
+        if cell.says:
+            values.append(Text.assemble((f'{column} ', 'dim'), _styled(cell, cell.with_unit())))
     return Columns(values, padding=(0, 3))
 
 
-def _lines(table: Table) -> RenderableType:
+def _lines(table: Table, _console: Console) -> RenderableType:
     grid = RichTable.grid(padding=(0, 2))
     for _, column, cell in table.facts():
         grid.add_row(Text(column, 'dim'), _styled(cell, cell.with_unit()))
     return grid
 
 
-def _rows(table: Table) -> RenderableType:
-    """Return rows below headings; words and headings may wrap, numbers do not."""
+def _rows(table: Table, console: Console) -> RenderableType:
+    """Return rows below headings, or where there is no room, each row as values with labels.
+
+    Words may wrap, but only between them, and numbers may not.
+    """
     table = table.below_headings()
+    columns = []
+    for k, column in enumerate(table.columns):
+        heading = column if table.is_words(k) else '\n'.join(column.rsplit(' ', 1))
+        texts = Text('\n'.join([heading, *(row[k].text for row in table.rows)]))
+        longest_word, widest = texts.__rich_measure__(console, console.options)
+        columns.append((heading, longest_word if table.is_words(k) else widest, widest))
+    room = console.width - sum(least + _PADDING for _, least, _ in columns)
+    if room < 0:
+        return _transposed(table)
     rich_table = RichTable(
         box=box.SIMPLE_HEAD, show_edge=False, padding=(0, 1, 0, 0), header_style='dim'
     )
-    for k, column in enumerate(table.columns):
-        if table.is_words(k):
-            rich_table.add_column(Text(column), overflow='fold')
-        else:
-            heading = Text('\n'.join(column.rsplit(' ', 1)))
-            rich_table.add_column(heading, justify='right', no_wrap=True, vertical='top')
+    for k, (heading, least, widest) in enumerate(columns):
+        width = min(widest, least + room)
+        room -= width - least
+        words = table.is_words(k)
+        rich_table.add_column(
+            Text(heading), width=width, justify='left' if words else 'right', no_wrap=not words
+        )
     for row in table.rows:
         rich_table.add_row(*(_styled(cell, cell.text) for cell in row))
     return rich_table
+
+
+def _transposed(table: Table) -> RenderableType:
+    """Return each row as its subject, with the values and their labels below it."""
+    blocks: list[RenderableType] = []
+    for subject, *cells in table.rows:
+        blocks.append(Text(subject.text, _TONE_STYLES[subject.tone], overflow='fold'))
+        grid = RichTable.grid(padding=(0, 2))
+        for column, cell in zip(table.columns[1:], cells, strict=True):
+            if cell.says:
+                grid.add_row(Text(f'  {column}', 'dim'), _styled(cell, cell.text))
+        blocks.append(grid)
+    return Group(*blocks)
 
 
 def _styled(cell: Cell, text: str) -> Text:

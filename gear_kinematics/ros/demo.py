@@ -59,7 +59,7 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     task = Task(
         Path(BAG),
         config,
-        tolerances=Tolerances(TOLERANCE, TOLERANCE * config.eccentricity),
+        tolerances=Tolerances(TOLERANCE, TOLERANCE * config.eccentricity, TOLERANCE, TOLERANCE),
         strict=True,
         calibration=calibration,
         calibration_file=config.calibration,

@@ -136,8 +136,8 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
     offset = fit.offset(tolerance)
     if offset is not None:
         return (
-            f'the recorded output angle is off by a constant {offset:.12g} rad, as after homing; '
-            'allow_offset accepts it'
+            f'the recorded output angle is off by a constant {offset:.12g} rad; '
+            '--allow-offset accepts it'
         )
     slope = fit.slope()
     if slope is None:
@@ -270,8 +270,8 @@ class PoseOrder:
             if count == messages:
                 yield Finding(text, cause=True)
             else:
-                text = f'in {count} of {messages} messages {text}; one is at stamp {first}'
-                yield Finding(text, cause=True, stamp=first)
+                text = f'in {count} of {messages} messages {text}'
+                yield Finding(text, cause=True, stamp=first, when='one at')
 
     def _fits(self, recorded: Array, expected: Array) -> NDArray[np.bool_]:
         return np.asarray(np.abs(recorded - expected).max(axis=(-2, -1)) <= self._tolerance)

@@ -14,7 +14,7 @@ from gear_kinematics.report.document import (
     printable,
 )
 from gear_kinematics.validation.figure import figure, moving
-from gear_kinematics.validation.findings import faults, field_name, findings
+from gear_kinematics.validation.findings import answer, faults, field_name, findings, told
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.tables import bag_name, summary, tables
 
@@ -39,7 +39,7 @@ def document(reports: Sequence[BagReport]) -> Document:
         },
         verdict,
         summary(reports),
-        f'{counted(len(reports), "bag")}: {counts}',
+        f'{counted(len(reports), "bag")}: {counts}' if len(reports) != 1 else '',
     )
 
 
@@ -54,18 +54,20 @@ def _section(report: BagReport) -> Section:
         mechanism=moving(report) if drawn else None,
         cases=tuple(_cases(report)),
         picture_first=True,
+        answer=answer(report),
+        elapsed=report.elapsed,
     )
 
 
 def _bag(report: BagReport) -> dict[str, Any]:
     """Return the JSON content about a bag; docs/report.schema.json describes it."""
     content = asdict(replace(report, series=(), lanes=(), mechanism=None))
-    for drawn in ('series', 'lanes', 'mechanism', 'module'):
-        del content[drawn]
-    for found in ('findings', 'causes'):
-        content[found] = [finding.text for finding in getattr(report, found)]
+    for left_out in ('series', 'lanes', 'mechanism', 'module', 'elapsed'):
+        del content[left_out]
+    content['findings'] = [one.text for one in findings(report) if one.kind == 'finding']
+    content['causes'] = [told(finding, report) for finding in report.causes]
     for topic, written in zip(report.topics, content['topics'], strict=True):
-        written['faults'] = [fault.text for fault in topic.faults]
+        written['faults'] = [told(fault, report) for fault in topic.faults]
         written['passed'] = topic.passed
         for field, values in zip(topic.fields, written['fields'], strict=True):
             values |= {'passed': field.passed, 'budget_used': field.budget_used}
@@ -74,19 +76,16 @@ def _bag(report: BagReport) -> dict[str, Any]:
 
 def _cases(report: BagReport) -> Iterator[Case]:
     """Yield the test cases of JUnit: the bag, its input, and each topic and field."""
-    found = tuple(faults(report))
+    texts = tuple(one.text for one in findings(report))
     if report.verdict == Verdict.UNUSABLE:
         # Even without an error, the suite must not look as if it passed.
-        yield Case('bag', (printable(report.error or 'the bag is unusable'),), 'error')
-    elif report.verdict == Verdict.FAIL and not found:
-        yield Case('bag', tuple(one.text for one in findings(report)) or ('the bag fails',))
+        yield Case('bag', texts or ('the bag is unusable',), 'error')
     else:
-        yield Case('bag')
+        yield Case('bag', () if report.passed else texts or ('the bag fails',))
     if report.rotor:
         # Never fails by itself: its faults appear as wrong or missing outputs.
         yield Case(printable(f'input {report.rotor.topic}'))
     for topic in report.topics:
         for name in (topic.topic, *(field_name(topic, field) for field in topic.fields)):
-            yield Case(
-                printable(name), tuple(printable(one.text) for one in found if one.topic == name)
-            )
+            at_fault = (told(one, report) for one in faults(report) if one.topic == name)
+            yield Case(printable(name), tuple(at_fault))

@@ -16,7 +16,7 @@ from gear_kinematics.report.document import (
     printable,
 )
 from gear_kinematics.report.mechanism import MovingMechanism
-from gear_kinematics.validation.findings import field_name
+from gear_kinematics.validation.findings import field_name, is_beyond
 from gear_kinematics.validation.report import BagReport, Curve, FieldReport, Lane, Series
 
 _TIME = 'time [s]'
@@ -131,9 +131,10 @@ def _worst_moment(report: BagReport) -> float | None:
     """When the first field that failed was worst, or else something first happened, s."""
     for topic in report.topics:
         for field in topic.fields:
-            stamps = (field.first_non_finite, field.first_absent, field.worst_stamp)
+            worst = field.worst_stamp if is_beyond(field) else None
+            stamps = (worst, field.first_non_finite, field.first_absent)
             if not field.passed and (known := [s for s in stamps if s is not None]):
-                return report.seconds(known[-1])
+                return report.seconds(known[0])
     return next((lane.spans[0][0] for lane in report.lanes if lane.fails), None)
 
 

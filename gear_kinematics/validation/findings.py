@@ -1,68 +1,111 @@
 """All that is wrong with a recording, in sentences."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import replace
 
 from gear_kinematics.report import document
 from gear_kinematics.report.document import Cell, counted, number, printable
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
+from gear_kinematics.validation.task import QUANTITIES
+
+_FIRST = 'the first at'
 
 
 def findings(report: BagReport) -> list[document.Finding]:
-    """Return all that is wrong with a bag: its damage, its faults, and their meaning."""
+    """Return all that is wrong with a bag: its damage, its faults by gravity, and the rest.
+
+    Wrong numbers come before missing messages, a cause before its effects.
+    """
     damage = [] if report.error is None else [document.Finding('error', printable(report.error))]
-    # The cause says more than its effects.
     notes = [finding for finding in report.findings if not (finding.fails or finding.cause)]
+    wrong = sorted((*report.causes, *faults(report)), key=lambda found: found.missing)
     return damage + [
         document.Finding(
             'finding',
-            printable(f'{found.topic}: {found.text}' if found.topic else found.text),
+            printable(f'{found.topic}: ' if found.topic else '') + told(found, report),
             None if found.stamp is None else report.seconds(found.stamp),
         )
-        for found in (*report.causes, *faults(report), *notes, *_left_out(report))
+        for found in (*wrong, *notes, *_left_out(report))
     ]
+
+
+def told(found: Finding, report: BagReport) -> str:
+    """Write a finding with its moment, without its topic."""
+    if found.stamp is None or not found.when:
+        return printable(found.text)
+    time = report.seconds(found.stamp)
+    moment = f'stamp {found.stamp}' if time is None else f'{time:+.3f} s'
+    return printable(f'{found.text}, {found.when} {moment}')
+
+
+def answer(report: BagReport) -> str:
+    """Return in one line how much was compared, and the largest error beside its tolerance."""
+    if not report.rotor:
+        return ''
+    outputs = sum(topic.compared for topic in report.topics)
+    text = f'{counted(report.rotor.valid, "input")}, {counted(outputs, "output")} compared'
+    if not (worst := worst_field(report)):
+        return text
+    error, unit = worst.max_error, printable(f' {worst.unit}')
+    largest = f'largest error {number(error)}{unit if error else ""}'
+    return f'{text}, {largest} (tolerance {number(worst.tolerance)}{unit if error else ""})'
+
+
+def worst_field(report: BagReport) -> FieldReport | None:
+    """Return the field that used most of its tolerance, if any was compared; a NaN is the most."""
+    fields = [field for topic in report.topics for field in topic.fields if field.compared]
+    return max(
+        fields,
+        key=lambda field: math.inf if math.isnan(field.budget_used) else field.budget_used,
+        default=None,
+    )
 
 
 def faults(report: BagReport) -> Iterator[Finding]:
     """Yield why topics and their fields fail."""
     for topic in report.topics:
-        yield from _topic_faults(topic, report)
+        yield from _topic_faults(topic)
         for field in topic.fields:
-            yield from _field_faults(field_name(topic, field), field, report)
+            yield from _field_faults(field_name(topic, field), field)
 
 
-def _topic_faults(topic: TopicReport, report: BagReport) -> Iterator[Finding]:
+def _topic_faults(topic: TopicReport) -> Iterator[Finding]:
     """Yield why a topic fails, apart from its fields."""
     if not topic.compared:
-        yield Finding('no message could be compared', topic=topic.topic)
+        yield Finding('no message could be compared', topic=topic.topic, missing=True)
     for count, fault, stamp in (
         (topic.missing, 'missing', topic.first_missing),
         (topic.extra, 'too many', topic.first_extra),
         (topic.out_of_order, 'out of order', topic.first_out_of_order),
     ):
         if count:
-            text = f'{counted(count, "message")} {fault}{_first(stamp, report)}'
-            yield Finding(text, topic=topic.topic, stamp=stamp)
+            text = f'{counted(count, "message")} {fault}'
+            yield Finding(text, topic=topic.topic, stamp=stamp, when=_FIRST, missing=True)
     for found in topic.faults:
         yield replace(found, topic=topic.topic)
 
 
-def _field_faults(name: str, field: FieldReport, report: BagReport) -> Iterator[Finding]:
+def _field_faults(name: str, field: FieldReport) -> Iterator[Finding]:
     """Yield why a field fails."""
     if is_beyond(field):
+        quantity = QUANTITIES.get(field.unit)
+        option = f' (--tolerance-{quantity})' if quantity else ''
+        rotor_angle = angle(field.worst_rotor_angle)
+        where = f' at rotor angle {rotor_angle} rad' if rotor_angle else ''
         text = (
-            f'error {number(field.max_error)} {field.unit} exceeds the tolerance '
-            f'{number(field.tolerance)} {field.unit}{_worst(field, report)}'
+            f'error {number(field.max_error)} {field.unit}{where} exceeds the tolerance '
+            f'{number(field.tolerance)} {field.unit}{option}'
         )
-        yield Finding(text, topic=name, stamp=field.worst_stamp)
-    if field.non_finite:
-        text = f'{counted(field.non_finite, "value")} not finite'
-        stamp = field.first_non_finite
-        yield Finding(f'{text}{_first(stamp, report)}', topic=name, stamp=stamp)
-    if field.absent:
-        text = f'{counted(field.absent, "sample")} with the field in input or output only'
-        stamp = field.first_absent
-        yield Finding(f'{text}{_first(stamp, report)}', topic=name, stamp=stamp)
+        yield Finding(text, topic=name, stamp=field.worst_stamp, when='at')
+    absent = 'with the field in input or output only'
+    for count, noun, fault, stamp in (
+        (field.non_finite, 'value', 'not finite', field.first_non_finite),
+        (field.absent, 'sample', absent, field.first_absent),
+    ):
+        if count:
+            text = f'{counted(count, noun)} {fault}'
+            yield Finding(text, topic=name, stamp=stamp, when=_FIRST)
 
 
 def _left_out(report: BagReport) -> Iterator[Finding]:
@@ -74,25 +117,6 @@ def _left_out(report: BagReport) -> Iterator[Finding]:
     ]
     if left_out:
         yield Finding(f'not judged, as caused by the recorder: {", ".join(left_out)}')
-
-
-def _worst(field: FieldReport, report: BagReport) -> str:
-    if field.worst_stamp is None:
-        return ''
-    rotor_angle = angle(field.worst_rotor_angle)
-    rotor = f', rotor angle {rotor_angle} rad' if rotor_angle else ''
-    return f' at {_stamp(field.worst_stamp, report)}{rotor}'
-
-
-def _first(stamp: int | None, report: BagReport) -> str:
-    return '' if stamp is None else f', the first at {_stamp(stamp, report)}'
-
-
-def _stamp(stamp: int, report: BagReport) -> str:
-    written, offset = moment(stamp, report)
-    return (
-        f'stamp {written.text} ({offset.with_unit()})' if offset.text else f'stamp {written.text}'
-    )
 
 
 def moment(stamp: int | None, report: BagReport) -> tuple[Cell, Cell]:

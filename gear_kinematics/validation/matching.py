@@ -81,23 +81,24 @@ class Matcher:
         self.out_of_order.add(stamps[(steps < 0) & (steps >= -CLOCK_RESET)])
         self._last_stamp = int(stamps[-1])
 
-    def match(self, stamps: Array, window: Array) -> Array:
+    def match(self, stamps: Array, received: Array, window: Array) -> Array:
         """Find the sample of each message, as its index in the window or -1, and mark it.
 
         Args:
             stamps: of messages, (n,), ns.
-            window: stamps of the samples, ns.
+            received: when they were received, (n,), ns.
+            window: the samples, with the columns of `SAMPLES`.
         """
         index = np.full(len(stamps), -1, np.intp)
         k = 0
         while k < len(stamps):
-            length = self._run(stamps[k:], window)
+            length = self._run(stamps[k:], received[k:], window)
             index[k : k + length] = np.arange(self._next, self._next + length)
             self.matched[self._next : self._next + length] = True
             self._next += length
             k += length
             if k < len(stamps):
-                index[k] = self._look_up(stamps[k], window)
+                index[k] = self._look_up(stamps[k], received[k], window)
                 k += 1
         self.compared += int(np.count_nonzero(index >= 0))
         return index
@@ -107,15 +108,15 @@ class Matcher:
         self.matched = self.matched[count:]
         self._next = max(self._next - count, 0)
 
-    def _run(self, stamps: Array, window: Array) -> int:
+    def _run(self, stamps: Array, received: Array, window: Array) -> int:
         """Number of messages that match the next samples in order."""
         longest = min(len(stamps), len(window) - self._next)
         part = slice(self._next, self._next + longest)
-        alike = (stamps[:longest] == window[part]) & ~self.matched[part]
+        alike = _alike(stamps[:longest], received[:longest], window[part]) & ~self.matched[part]
         return longest if alike.all() else int(np.argmin(alike))
 
-    def _look_up(self, stamp: int, window: Array) -> int:
-        found = np.flatnonzero((window == stamp) & ~self.matched)
+    def _look_up(self, stamp: int, received: int, window: Array) -> int:
+        found = np.flatnonzero(_alike(stamp, received, window) & ~self.matched)
         if not len(found):
             return -1
         # If a stamp occurs again after a restart, take the next sample that has it.
@@ -124,6 +125,11 @@ class Matcher:
         self.matched[index] = True
         self._next = max(self._next, index + 1)
         return index
+
+
+def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
+    """Whether messages can be those of samples: not of the same stamps after a later restart."""
+    return np.asarray((stamp == window['stamp']) & (window['received'] - CLOCK_RESET <= received))
 
 
 class Faults:
@@ -142,9 +148,9 @@ class Faults:
         """Describe each fault."""
         for fault, (count, first) in self._found.items():
             stamp = None if fault == MALFORMED else first
-            moment = f'received at {first}' if stamp is None else f'at stamp {first}'
-            text = f'{fault}: {counted(count, "message")}, the first {moment}'
-            yield Finding(text, stamp=stamp)
+            received = f', the first received at {first}' if stamp is None else ''
+            text = f'{fault}: {counted(count, "message")}{received}'
+            yield Finding(text, stamp=stamp, when='the first at')
 
 
 class OutputTopic:
@@ -190,7 +196,7 @@ class OutputTopic:
         times = np.array(received, np.int64)
         self._faults.add(MALFORMED, times[malformed])
         usable = np.flatnonzero(~malformed)
-        index = self.matcher.match(stamps[usable], window['stamp'])
+        index = self.matcher.match(stamps[usable], times[usable], window)
         found = index >= 0
         # A message can be recorded before its input: it waits for one batch.
         unmatched = usable[~found]

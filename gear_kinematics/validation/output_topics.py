@@ -36,8 +36,10 @@ class JointStateTopic(OutputTopic):
     """Units of the fields by their names."""
 
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
-        tolerance = expectation.tolerances.angle
-        errors = (FieldErrors(field, unit, tolerance) for field, unit in self.units.items())
+        errors = (
+            FieldErrors(field, unit, expectation.tolerances.of(unit))
+            for field, unit in self.units.items()
+        )
         super().__init__(name, expectation, *errors)
         self.joint = joint
         self.offset = 0.0

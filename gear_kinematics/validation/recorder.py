@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from gear_kinematics.report.document import counted
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import Finding
+from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -30,7 +31,8 @@ _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5
 """Median periods between inputs; beyond, an input between them was not recorded."""
 _SILENCE = 2.5  # median periods between inputs; beyond, the recorder lost all topics
-_MAX_STAMPS = 32_768  # of inputs
+_MAX_STAMPS = 32_768  # of inputs, since a reset
+_MAX_PASSES = 64  # between resets
 _MAX_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
 _ALWAYS = -(2**62)  # ns
 
@@ -169,6 +171,7 @@ class Completeness:
                     f'{name} ends {topic.ended_early:.3f} s before {self._rotor}: '
                     'the node may have ended',
                     cause=True,
+                    missing=True,
                 )
         missing = {name: topic.inputs.count for name, topic in self.topics.items()}
         lost = [
@@ -183,12 +186,14 @@ class Completeness:
                 f'{counted(unanswered, "message")} of {self._rotor} without any output: '
                 'the node did not receive them, or was blocked',
                 cause=True,
+                missing=True,
             )
         elif complete and not unanswered:
             yield Finding(
                 f'{", ".join(lost)} missing, but none of {", ".join(complete)}: the node had the '
                 'inputs, and the messages were lost on their way to the recording',
                 cause=True,
+                missing=True,
             )
 
     def _take(self, inputs: Inputs, cause: str = '') -> None:
@@ -229,7 +234,11 @@ def _settled(inputs: Inputs) -> int:
 
 
 class RecordedInputs:
-    """The latest stamps of recorded inputs, to find inputs that were not recorded."""
+    """The latest stamps of recorded inputs, to find inputs that were not recorded.
+
+    A driver whose stamps are reset, as a bag that is played again and again, begins anew: what was
+    recorded before tells nothing of what was recorded of the same stamps after.
+    """
 
     def __init__(self, *, strict: bool) -> None:
         """Start with none.
@@ -238,26 +247,61 @@ class RecordedInputs:
             strict: whether to assume that every input was recorded.
         """
         self._strict = strict
-        self._stamps = np.zeros(0, np.int64)
-        self._complete = True
-        self._first_age: int | None = None  # received minus stamp, ns
-        self._last_age = 0
+        self._passes = [_Pass()]
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
         """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
+        before = self._passes[-1].last[1] if len(self._passes[-1].last) else stamp[:1]
+        resets = np.flatnonzero(np.diff(stamp, prepend=before) < -CLOCK_RESET)
+        for number, rows in enumerate(np.split(np.arange(len(stamp)), resets)):
+            if number:
+                self._passes.append(_Pass())
+            self._passes[-1].add(received[rows], stamp[rows], rejected)
+        del self._passes[:-_MAX_PASSES]
+
+    def lack(self, received: Array, stamp: Array) -> Flags:
+        """Whether the inputs of outputs (n,), ns, were not recorded."""
+        lacking = np.zeros(len(stamp), bool)
+        if self._strict or not len(stamp):
+            return lacking
+        nearest = np.argmin([one.distance(received, stamp) for one in self._passes], axis=0)
+        for number in np.unique(nearest):
+            rows = nearest == number
+            lacking[rows] = self._passes[number].lack(received[rows], stamp[rows])
+        return lacking
+
+
+class _Pass:
+    """The latest inputs since a reset of their stamps."""
+
+    def __init__(self) -> None:
+        self._stamps = np.zeros(0, np.int64)
+        self._complete = True
+        self._first = self.last = np.zeros(0, np.int64)
+        """Time of reception and stamp, ns; empty without a valid input."""
+
+    def add(self, received: Array, stamp: Array, rejected: Array) -> None:
+        """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
         if len(stamp):
-            self._last_age = int(received[-1] - stamp[-1])
-            if self._first_age is None:
-                self._first_age = int(received[0] - stamp[0])
+            self.last = np.array([received[-1], stamp[-1]])
+            if not len(self._first):
+                self._first = np.array([received[0], stamp[0]])
         stamps = np.concatenate([self._stamps, stamp, rejected])
         self._complete = self._complete and len(stamps) <= _MAX_STAMPS
         self._stamps = stamps[-_MAX_STAMPS:]
 
+    def distance(self, received: Array, stamp: Array) -> Array:
+        """How far outputs (n,), ns, are from this pass in their delay and time of reception."""
+        if not len(self._first):
+            return np.zeros(len(stamp), np.int64)
+        least, greatest = sorted((self._age(self._first), self._age(self.last)))
+        age = received - stamp
+        times = np.clip(received, self._first[0], self.last[0])
+        return np.asarray(np.abs(age - np.clip(age, least, greatest)) + np.abs(received - times))
+
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Whether the inputs of outputs (n,), ns, were not recorded."""
-        if self._strict or not len(stamp):
-            return np.zeros(len(stamp), bool)
-        if self._first_age is None:
+        if not len(self._first):
             return np.ones(len(stamp), bool)
         known = np.unique(self._stamps)
         after = np.searchsorted(known, stamp)
@@ -270,6 +314,10 @@ class RecordedInputs:
         too_late = after == len(known)
         return np.asarray(
             in_hole
-            | (too_early & (np.abs(age - self._first_age) < _MAX_DELAY))
-            | (too_late & (np.abs(age - self._last_age) < _MAX_DELAY))
+            | (too_early & (np.abs(age - self._age(self._first)) < _MAX_DELAY))
+            | (too_late & (np.abs(age - self._age(self.last)) < _MAX_DELAY))
         )
+
+    @staticmethod
+    def _age(moment: Array) -> int:
+        return int(moment[0] - moment[1])

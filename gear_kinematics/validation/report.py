@@ -23,6 +23,10 @@ class Finding:
     """The topic, or topic and field, that it is about; empty if it names them itself."""
     stamp: int | None = None
     """The moment that it is about."""
+    when: str = ''
+    """What is written before that moment, such as `the first at`; empty: it is not written."""
+    missing: bool = False
+    """Whether it is about missing or additional messages, which is less grave than wrong ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,6 +213,8 @@ class BagReport:
     """The mechanism for which the outputs were recomputed."""
     module: float = 0.0
     """Module of its teeth, m, for the drawing."""
+    elapsed: float = field(default=0.0, compare=False, repr=False)
+    """How long the validation took, s."""
 
     @property
     def causes(self) -> list[Finding]:

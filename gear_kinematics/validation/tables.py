@@ -1,11 +1,17 @@
 """The tables of a validation, each defined by its headings and the contents of the columns."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from gear_kinematics.report.document import OUTCOME, Cell, Layout, Table, Tone, number, printable
-from gear_kinematics.validation.findings import angle, field_name, findings, is_beyond, moment
+from gear_kinematics.validation.findings import (
+    angle,
+    field_name,
+    findings,
+    is_beyond,
+    moment,
+    worst_field,
+)
 from gear_kinematics.validation.report import BagReport, FieldReport, Gap, InputReport, TopicReport
 
 
@@ -92,19 +98,19 @@ def _input_table(rotor: InputReport) -> Table:
     )
 
 
-def _budget(fields: Sequence[FieldReport]) -> str:
-    """Return the greatest share of its tolerance that any field used, in percent."""
-    used = [100 * field.budget_used for field in fields if field.compared]
-    # A NaN is the worst of all, but max() may return another.
-    return number(math.nan if any(map(math.isnan, used)) else max(used)) if used else ''
+def _of_worst(report: BagReport, attribute: str) -> Cell:
+    field = worst_field(report)
+    if not field:
+        return Cell('')
+    return Cell(number(getattr(field, attribute)), unit=printable(field.unit))
 
 
 def _bad(count: int) -> Cell:
-    return Cell(str(count), _tone(bad=count > 0))
+    return Cell(str(count), Tone.BAD if count else Tone.NONE)
 
 
 def _notable(count: int) -> Cell:
-    return Cell(str(count), Tone.NOTABLE if count else Tone.PLAIN)
+    return Cell(str(count), Tone.NOTABLE if count else Tone.NONE)
 
 
 def _tone(*, bad: bool) -> Tone:
@@ -134,9 +140,8 @@ _FIELD: Mapping[str, Callable[[_Field], str | Cell]] = {
     'absent': lambda row: _bad(row.field.absent),
     'not finite': lambda row: _bad(row.field.non_finite),
     'max error': lambda row: row.measured(row.field.max_error, row.tone),
-    'rms error': lambda row: row.measured(row.field.rms_error),
     'tolerance': lambda row: row.measured(row.field.tolerance),
-    'budget used': lambda row: Cell(_budget([row.field]), row.tone, '%'),
+    'rms error': lambda row: row.measured(row.field.rms_error),
 }
 _WORST: Mapping[str, Callable[[_Field], str | Cell]] = {
     'field': lambda row: row.name,
@@ -148,8 +153,7 @@ _SUMMARY: Mapping[str, Callable[[BagReport], str | Cell]] = {
     'bag': bag_name,
     'verdict': lambda report: Cell(OUTCOME[report.verdict], _tone(bad=not report.passed)),
     'compared': lambda report: str(sum(topic.compared for topic in report.topics)),
-    'budget used': lambda report: Cell(
-        _budget([field for topic in report.topics for field in topic.fields]), unit='%'
-    ),
+    'largest error': lambda report: _of_worst(report, 'max_error'),
+    'tolerance': lambda report: _of_worst(report, 'tolerance'),
     'first finding': lambda report: next((found.text for found in findings(report)), ''),
 }

@@ -9,14 +9,24 @@ from gear_kinematics.parameters import NodeParameters
 
 
 class Tolerances(NamedTuple):
-    """Greatest accepted errors."""
+    """Greatest accepted errors, one for each quantity."""
 
     angle: float = 1e-9
-    """rad for angles, rad/s for the velocity, N·m for the effort."""
+    """rad, of angles and orientations."""
     position: float = 1e-9
     """m."""
+    velocity: float = 1e-9
+    """rad/s."""
+    effort: float = 1e-9
+    """N·m."""
+
+    def of(self, unit: str) -> float:
+        """Return the tolerance of errors in a unit."""
+        return float(getattr(self, QUANTITIES[unit]))
 
 
+QUANTITIES = {'rad': 'angle', 'm': 'position', 'rad/s': 'velocity', 'N·m': 'effort'}
+"""The fields of `Tolerances` by the units of errors."""
 _TOLERANCES = Tolerances()
 
 
@@ -31,10 +41,12 @@ class Task:
     """Their file."""
     tolerances: Tolerances = _TOLERANCES
     allow_offset: bool = False
-    """Whether to accept a constant offset of the output angle, as after homing."""
+    """Whether to accept a constant offset of the output angle alone, which no zero explains."""
     strict: bool = False
-    """Whether to judge all missing and extra messages, even if the recorder may have caused them;
-    see `recorder`."""
+    """Whether to judge all missing and extra messages, even if the recorder may have caused them
+    (see `recorder`), and to fail a recording with another rotor_zero, as after homing."""
+    only_joint: bool = True
+    """Whether the only joint on the rotor's topic is the rotor, if the configured one is not."""
     rotor_topic: str | None = None
     """None, as for the other topics: found by type and name."""
     output_topic: str | None = None

@@ -43,6 +43,7 @@ Array = NDArray[Any]
 
 _FRAME = 'stator'
 _TOPICS = Topics()
+_FEW = 64  # outputs that show whether an offset is worth a closer look
 _NOT_CORRECTED: Mapping[str, str] = MappingProxyType({})
 _Batch = Mapping[str, TopicMessages]
 """Messages by the names of their topics."""
@@ -74,7 +75,7 @@ class Validator:
         self._prefix_open = not parameters.frame_prefix
         self._topics = topics
         self._corrected = corrected
-        self._offset_open = task.allow_offset
+        self._offset_open = task.allow_offset or not task.strict
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
         self._health = InputHealth(parameters.max_rotor_speed)
@@ -137,6 +138,7 @@ class Validator:
         )
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
+            error += '; name it with --joint' * bool(self._input.missing_joint)
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
         checked = [finding for check in self._checks for finding in check.judge(rotor)]
@@ -259,31 +261,40 @@ class Validator:
         """Determine the offset to accept, if any, from the first batch with outputs.
 
         Homing moves the rotor's zero and therefore the poses; if there are some, and they agree
-        better without that, only the output angle has an offset.
+        better without that, only the output angle has an offset, which is accepted on request.
         """
-        trial = self._trial(batch, self._parameters)
-        if not trial.output.fit.count:
-            return
-        self._offset_open = False
-        offset = trial.output.fit.offset(self._task.tolerances.angle)
+        outputs = batch[self._topics.output]
+        few = {**self._sorted(()), self._topics.rotor: batch[self._topics.rotor]}
+        few[self._topics.output] = TopicMessages(outputs.data[:_FEW], outputs.received[:_FEW])
+        for part in (few, batch):
+            trial = self._trial(part, self._parameters)
+            offset = trial.output.fit.offset(self._task.tolerances.angle)
+            self._offset_open = not trial.output.fit.count
+            if trial.output.fit.count and offset is None:
+                return
         if offset is None:
             return
-        direction, zero = self._parameters.rotor_direction, self._parameters.rotor_zero
-        zero -= direction * self._gear.gear_ratio.rotor_angle(offset)
+        turned = self._parameters.rotor_direction * self._gear.gear_ratio.rotor_angle(offset)
+        zero = self._parameters.rotor_zero - turned
         if abs(zero) > LARGEST_ANGLE:  # garbage, not homing
             return
+        text = f'the recorded output angle is off by a constant {offset:.12g} rad'
         moved = replace(self._parameters, rotor_zero=zero)
         if _position_error(self._trial(batch, moved)) <= _position_error(trial):
             self._input.parameters = moved
-        else:
+            before = f'{self._parameters.rotor_zero:.12g}'
+            text += f': compared with rotor_zero {zero:.12g} instead of {before}, as after homing'
+        elif self._task.allow_offset:
             for output in self._of_joint():
                 output.offset = offset
-        text = f'accepted: the recorded output angle is off by a constant {offset:.12g} rad'
+            text = f'accepted: {text}'
+        else:
+            return
         self._findings.append(Finding(text))
 
     def _trial(self, batch: _Batch, parameters: NodeParameters) -> 'Validator':
         """Return what validates a batch with other parameters."""
-        task = replace(self._task, parameters=parameters, allow_offset=False)
+        task = replace(self._task, parameters=parameters, allow_offset=False, strict=True)
         trial = Validator(task, self._topics, solver=self._expectation.solver)
         trial._take({name: batch[name] for name in self._topics})
         return trial

@@ -12,6 +12,7 @@ import report_samples as samples
 
 from gear_kinematics.report import json as strict_json
 from gear_kinematics.validation.document import document
+from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.report import BagReport
 
 DOCS = Path(__file__).resolve().parents[2] / 'docs'
@@ -81,7 +82,7 @@ def test_schema_refuses_what_is_no_report(strict, path, value):
 
 def test_everything_but_what_is_drawn_is_there():
     bag = loads(to_json([samples.FAILING]))['bags'][0]
-    drawn = {'series', 'lanes', 'mechanism', 'module'}
+    drawn = {'series', 'lanes', 'mechanism', 'module', 'elapsed'}
     assert bag.keys() == {*(field.name for field in fields(BagReport)), 'causes'} - drawn
     assert bag['bag'] == 'logs/2026-11-20 Prüfstand 7/läuft.mcap'
     assert bag['rotor']['rejected'] == {'joint missing': 3, 'position not finite': 2}
@@ -96,7 +97,9 @@ def test_everything_but_what_is_drawn_is_there():
     assert position['worst_stamp'] == samples.START + 2_500_000_000
     assert not position['passed']
     assert [topic['passed'] for topic in bag['topics']] == [False, False]
-    assert bag['findings'] == [finding.text for finding in samples.FAILING.findings]
+    # All that the text has, in its order, of which the causes are a part.
+    assert bag['findings'] == [finding.text for finding in findings(samples.FAILING)]
+    assert bag['causes'] == bag['findings'][:1]
 
 
 def test_numbers_that_are_none_are_null():

@@ -61,17 +61,17 @@ def test_passing_bag_has_a_case_for_each_topic_and_field():
 
 
 def test_failing_parts_fail_with_a_message():
-    (suite,) = parse(samples.FAILING)
+    (suite,) = parse(replace(samples.FAILING, elapsed=1.25))
     first = 'the first at stamp 1700000001123456789'
     assert outcomes(suite) == [
-        ('bag',),
+        ('bag', f'failure: {samples.FAILING.causes[0].text}'),
         ('input /rotor_state',),
         ('/output_state', f'failure: 11 messages missing, {first}'),
         (
             '/output_state position',
             (
-                'failure: error 0.002 rad exceeds the tolerance 1e-9 rad at stamp '
-                '1700000002623456789, rotor angle 785.398163 rad'
+                'failure: error 0.002 rad at rotor angle 785.398163 rad exceeds the tolerance '
+                '1e-9 rad (--tolerance-angle), at stamp 1700000002623456789'
             ),
         ),
         ('/output_state velocity', 'failure: 5 values not finite'),
@@ -81,8 +81,14 @@ def test_failing_parts_fail_with_a_message():
         ),
         ('/body_poses', 'failure: no message could be compared'),
     ]
-    assert suite.get('failures') == '5'
-    assert suite.find('testcase/failure').text.count('\n') == 3
+    assert suite.get('failures') == '6'
+    assert suite.findall('testcase/failure')[1].text.count('\n') == 3
+    # All cases are judged at once, in the time of the first.
+    assert [suite.get('time'), *(case.get('time') for case in suite.iter('testcase'))][:3] == [
+        '1.250',
+        '1.250',
+        '0.000',
+    ]
     assert f'{samples.FAILING.bag}: verdict: failed\n' in suite.findtext('system-out')
 
 

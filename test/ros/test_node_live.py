@@ -2,6 +2,7 @@
 
 import math
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -12,7 +13,9 @@ from contextlib import ExitStack, contextmanager
 
 import oracle
 import pytest
+import rosbag2_recorder
 import yaml
+from blocked_bags import gearkin_here
 from expected_outputs import Settings, all_right
 from live import (
     LATCHED,
@@ -26,10 +29,13 @@ from live import (
     stamp_of,
 )
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from visualization_msgs.msg import MarkerArray
 
+from gear_kinematics.bag import BagWriter
 from gear_kinematics.ros.live import running_node
+from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY
 
 pytestmark = pytest.mark.live
 
@@ -335,6 +341,41 @@ def test_home_makes_the_position_the_home_angle(start):
 def names_in(description, kind) -> set[str]:
     robot = ET.fromstring(description)  # noqa: S314, the project's own
     return {element.get('name') for element in robot.iterfind(kind)}
+
+
+def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
+    """Beside a driver with other names, homed at run time, and validated without any option."""
+    names = {'rotor_state': 'motor/joint_states'}
+    renamed = ['-r', 'rotor_state:=motor/joint_states', '-p', 'rotor_joint:=m1', *PATIENT]
+    peer = start(*renamed, connect=False, **names).peer
+    peer.connect(joint='m1')
+    peer.answer(rotor_state(peer.stamp(), ['m1'], [12.3]))
+    assert peer.home().success
+    traffic = []
+    for first in range(0, 2000, 200):
+        sent = [
+            rotor_state(peer.stamp(), ['m1'], [12.3 + 0.05 * (first + k)], [50.0])
+            for k in range(200)
+        ]
+        peer.send(*sent)
+        for rotor, (output, poses, _) in zip(sent, peer.outputs(200), strict=True):
+            states = {'/motor/joint_states': rotor, '/output_state': output, '/body_poses': poses}
+            traffic += [
+                rosbag2_recorder.Message(topic, stamp_of(rotor), serialize_message(message))
+                for topic, message in states.items()
+            ]
+    begin, end = traffic[0].received, traffic[-1].received
+    with BagWriter(tmp_path / 'monday') as writer:
+        for topic, kind in zip(states, (JOINT_STATE, JOINT_STATE, POSE_ARRAY), strict=True):
+            writer.add_topic(topic, kind)
+        rng = random.Random(1)  # noqa: S311, of faults, not of secrets
+        for message in rosbag2_recorder.record(traffic, rng, begin=begin, end=end, late=0.03):
+            writer.write(*message)
+    done = gearkin_here('validate', 'monday', cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, '')
+    assert 'm1, the only joint on /motor/joint_states, is taken' in done.stdout
+    assert 'compared with rotor_zero 12.3 instead of 0, as after homing' in done.stdout
+    assert gearkin_here('validate', 'monday', '--strict', cwd=tmp_path).returncode == 1
 
 
 def test_description_and_markers_are_latched_and_follow_the_prefix(start):

@@ -218,6 +218,23 @@ def test_outputs_of_another_time_are_extra(traffic, config):
     assert [t.extra for t in report.topics] == [2, 0]
 
 
+def test_losses_in_every_pass_of_a_bag_that_loops_fail_nothing(traffic, config):
+    """What was lost in one pass was recorded with the same stamp in another."""
+    once = traffic[500]
+    length = once[-1].received - once[0].received + SECOND // 100
+    messages = [m._replace(received=m.received + k * length) for k in range(4) for m in once]
+    inputs = [k for k, m in enumerate(messages) if m.topic == ROTOR]
+    each = len(inputs) // 4
+    lost = {k for n in (1, 2) for k in inputs[n * each : n * each + 35]}
+    lost |= {k for n in (0.3, 1.4, 3.6) for k in inputs[round(n * each) : round(n * each) + 5]}
+    kept = [m for k, m in enumerate(messages) if k not in lost]
+    report = validate(kept, config)
+    assert report.verdict == Verdict.PASS
+    assert [t.left_out for t in report.topics] == [{NO_INPUT: 85}] * 2
+    kept.insert(len(kept) * 2 // 3, next(m for m in kept if m.topic == OUTPUT))
+    assert [t.extra for t in validate(kept, config).topics] == [1, 0]
+
+
 def test_a_driver_slower_than_a_hertz_may_be_recorded_too(traffic, config):
     own = {topic: [m for m in traffic[500] if m.topic == topic][:40] for topic in TOPICS}
     slow = [shifted(own[topic][k], 2 * k * SECOND) for k in range(40) for topic in TOPICS]

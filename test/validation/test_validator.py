@@ -1,6 +1,7 @@
 """Recordings with one thing changed: each change is found, named and located."""
 
 import math
+import re
 import struct
 from collections import Counter
 from collections.abc import Callable
@@ -19,6 +20,7 @@ from gear_kinematics.bag.roles import Topics
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.validation.figure import moving
 from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.report import Lane
@@ -78,7 +80,7 @@ def set_stamp(message, stamp: int) -> None:
 def test_shipped_recordings_pass(name, single_turn, messages, compared, tolerance, config):
     if single_turn:
         config = NodeParameters.load(CONFIGS / 'single_turn.yaml')
-    tolerances = Tolerances(tolerance, tolerance * 0.0011)
+    tolerances = Tolerances(tolerance, tolerance * 0.0011, tolerance, tolerance)
     for solver in ({}, {'solver': matrix_method.solve}):
         report = validate(read_bag(BAGS / name), config, tolerances=tolerances, **solver)
         assert report.verdict == Verdict.PASS
@@ -158,7 +160,12 @@ def test_a_value_that_is_off_by_2e_9_is_found_and_located(
     failed = [f.name for t in report.topics for f in t.fields if not f.passed]
     assert failed == [field]
     assert not report.causes
-    assert validate(changed, config, tolerances=Tolerances(3e-9, 3e-9)).passed
+    [said] = [f.text for f in findings(report)]
+    [quantity] = re.findall(r'exceeds the tolerance 1e-9 \S+ \(--tolerance-(\w+)\)', said)
+    # One tolerance for each quantity, which loosens no other.
+    loose = Tolerances(*[1.0] * 4)
+    assert validate(changed, config, tolerances=Tolerances()._replace(**{quantity: 3e-9})).passed
+    assert not validate(changed, config, tolerances=loose._replace(**{quantity: 1e-9})).passed
 
 
 def fill(field: str, value: float):
@@ -194,6 +201,8 @@ def test_a_value_that_is_not_finite_or_absent_is_found(
     ] == expected
     moment = pytest.approx((stamp - report.rotor.first_stamp) / SECOND)
     assert Lane(topic, f'{field} {event}', 1, [(moment, moment)]) in report.lanes
+    shown = moving(report)
+    assert shown.time[shown.start] == moment
 
 
 def test_a_field_of_the_output_that_the_input_lacks_is_found(recorded, config):
@@ -305,20 +314,20 @@ def negate(message) -> None:
             Verdict.FAIL,
             (
                 'in 1 of 300 messages the poses are in another order: satellite_b, satellite_a, '
-                'oldham_a, oldham_b; one is at stamp {stamp}'
+                'oldham_a, oldham_b, one at {time:+.3f} s'
             ),
         ),
         (
             POSES,
             lambda message: setattr(message.header, 'frame_id', 'base'),
             Verdict.FAIL,
-            "frame 'base', not 'stator': 1 message, the first at stamp {stamp}",
+            "frame 'base', not 'stator': 1 message, the first at {time:+.3f} s",
         ),
         (
             OUTPUT,
             lambda message: setattr(message, 'name', ['shaft']),
             Verdict.FAIL,
-            "no joint 'output_shaft': 1 message, the first at stamp {stamp}",
+            "no joint 'output_shaft': 1 message, the first at {time:+.3f} s",
         ),
         (
             POSES,
@@ -332,7 +341,7 @@ def negate(message) -> None:
             Verdict.PASS,
             (
                 'orientations with w < 0, the same rotations as those with w > 0 of this node: '
-                '1 message, the first at stamp {stamp}'
+                '1 message, the first at {time:+.3f} s'
             ),
         ),
         (
@@ -351,13 +360,10 @@ def test_what_is_wrong_with_one_message_is_named(recorded, config, topic, edit, 
     report = validate(changed, config)
     assert report.verdict == verdict
     received = recorded[index_of(recorded, topic)][1]
-    text = text.format(stamp=stamp, received=received)
-    (found,) = (
-        finding
-        for finding in (*report.findings, *(f for t in report.topics for f in t.faults))
-        if finding.text == text
-    )
-    assert found.stamp == (stamp if f'stamp {stamp}' in text else None)
+    time = (stamp - report.rotor.first_stamp) / SECOND
+    text = text.format(time=time, received=received)
+    (found,) = (f for f in findings(report) if f.text.removeprefix(f'{topic}: ') == text)
+    assert found.time == (pytest.approx(time) if f'{time:+.3f} s' in text else None)
 
 
 @pytest.mark.parametrize(
@@ -434,9 +440,7 @@ def test_unnormalised_stamps_match_their_outputs_and_are_named(recorded, config)
     assert any('300 stamps of /rotor_state' in text for text in texts(report))
 
 
-@pytest.mark.parametrize('changes', [{}, {'gear_ratio': '-19'}])
-def test_a_constant_offset_is_named_and_accepted_on_request(recorded, config, changes):
-    config = replace(config, **changes)
+def test_an_offset_of_the_output_angle_alone_is_named_and_accepted_on_request(recorded, config):
     changed = change_all(recorded, OUTPUT, add('position', 0.125))
     report = validate(changed, config)
     assert report.verdict == Verdict.FAIL
@@ -457,14 +461,21 @@ def test_no_offset_is_invented(recorded, config):
     assert validate(changed, config, allow_offset=True).verdict == Verdict.FAIL
 
 
-def test_the_offset_that_homing_leaves_is_accepted_with_its_poses(recorded, config):
+@pytest.mark.parametrize('changes', [{}, {'gear_ratio': '-19'}])
+def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, changes):
     """A node that was homed before the recording has another zero than the configuration."""
-    homed = replace(config, rotor_zero=0.75)
+    homed = replace(config, rotor_zero=0.75, rotor_direction=1, **changes)
     report = validate(recorded, homed)
-    assert any('constant' in f for f in texts(report))
-    assert not topic_of(report, POSES).passed
-    accepted = validate(recorded, homed, allow_offset=True)
-    assert accepted.verdict == Verdict.PASS
+    assert report.verdict == Verdict.PASS
+    [said] = texts(report)
+    assert said.startswith(f'the recorded output angle is off by a constant {-0.75 / 19:.9g}')
+    assert re.search(r'compared with rotor_zero -?[\de.-]+ instead of 0.75, as after homing', said)
+    failed = validate(recorded, homed, strict=True)
+    assert failed.verdict == Verdict.FAIL
+    assert not any(topic.passed for topic in failed.topics)
+    # A step at half time, as by homing during the recording, is no constant offset.
+    step = change_all(recorded[450:], OUTPUT, add('position', 0.125))
+    assert validate(recorded[:450] + step, homed).verdict == Verdict.FAIL
 
 
 def test_a_prefix_of_the_configuration_is_expected(recorded, config):
@@ -737,7 +748,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_validated(name):
     """The node recorded these outputs of a mechanism with this ratio."""
     file = 'single_turn' if name == 'single_turn_encoder' else 'actuator'
     config = replace(NodeParameters.load(CONFIGS / f'{file}.yaml'), gear_ratio='-19')
-    report = validate(read_bag(BAGS / name), config, tolerances=Tolerances(1e-12))
+    report = validate(read_bag(BAGS / name), config, tolerances=Tolerances(*[1e-12] * 4))
     assert report.verdict == Verdict.PASS
     assert [topic.topic for topic in report.topics] == [OUTPUT]
     assert report.topics[0].compared > 1000
