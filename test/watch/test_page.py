@@ -60,9 +60,8 @@ def page(browser, folder):
         page.goto(address)
         yield page
         assert page.seen == [address]
-        listed = program.text()
+        listed = program.wait_for(rf'{MOTOR}: rate: \d+ Hz').string
     assert f'{MOTOR}: joints: brake, m1' in listed
-    assert re.search(rf'{MOTOR}: rate: \d+ Hz', listed)
     assert program.process.returncode == 130
     assert 'Traceback' not in program.text()
 
