@@ -85,16 +85,19 @@ class Reporter:
         if 'html' in self._forms:
             import_module('plotly')
 
-    def write(self, document: Document, configs: Iterable[Path] = ()) -> None:
+    def write(
+        self, document: Document, configs: Iterable[Path] = (), *, printed: bool = True
+    ) -> None:
         """Print the document, unless a form of it goes to stdout, and write the files.
 
         Args:
             document: the report.
             configs: the parameter files that were used.
+            printed: False where one line on stderr has said it all.
         """
         plot: str | None = self._options.plot
         document = replace(document, origin=self._origin(configs))
-        if not self._silent:
+        if printed and not self._silent:
             with closed_pipe_ignored():
                 shown = document.of_failed() if self._options.quiet else document
                 render(shown, Console(), brief=self._brief)

@@ -96,7 +96,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             complain(
                 report.error if report.bag in report.error else f'{report.bag}: {report.error}'
             )
-    reporter.write(document(reports), (Path(task.config) for task in tasks))
+    configs = (Path(task.config) for task in tasks)
+    reporter.write(document(reports), configs, printed=bool(tasks))
     return max(_EXIT_CODES[report.verdict] for report in reports)
 
 

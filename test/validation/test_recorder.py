@@ -156,7 +156,7 @@ def node_killed(messages: list[Message], place: float) -> list[Message]:
 FAULTS = {
     'angle off by 1e-6': (
         lambda messages, place: one_changed(messages, OUTPUT, place, turn_a_little),
-        'error 1e-6 rad exceeds',
+        'position: error 1e-6 rad at ',
     ),
     'satellites swapped': (
         lambda messages, place: one_changed(messages, POSES, place, swap_satellites),
