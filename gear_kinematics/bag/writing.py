@@ -1,7 +1,8 @@
 """Writes recordings."""
 
+import secrets
 import shutil
-import tempfile
+import weakref
 from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -77,11 +78,13 @@ class BagWriter:
         """
         with bag_errors(self.path), ExitStack() as stack:
             self._check_new()
-            folder = tempfile.mkdtemp(prefix=f'.{self.path.name}.', dir=self.path.parent)
-            stack.callback(shutil.rmtree, folder)
+            folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
+            # Before there is a folder, so that no interruption leaves it behind.
+            stack.callback(weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True))
+            folder.mkdir(mode=0o700)
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
             # reindexes a bag.
-            self._partial = Path(folder, f'{self.path.name}_0')
+            self._partial = folder / f'{self.path.name}_0'
             self._open(self._partial)
             self._folder = stack.pop_all()
         return self
