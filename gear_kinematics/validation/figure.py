@@ -16,7 +16,7 @@ from gear_kinematics.report.document import (
     printable,
 )
 from gear_kinematics.report.mechanism import MovingMechanism
-from gear_kinematics.validation.findings import field_name, is_beyond
+from gear_kinematics.validation.findings import field_name
 from gear_kinematics.validation.report import BagReport, Curve, FieldReport, Lane, Series
 
 _TIME = 'time [s]'
@@ -131,7 +131,7 @@ def _worst_moment(report: BagReport) -> float | None:
     """When the first field that failed was worst, or else something first happened, s."""
     for topic in report.topics:
         for field in topic.fields:
-            worst = field.worst_stamp if is_beyond(field) else None
+            worst = field.worst_stamp if field.is_beyond else None
             stamps = (worst, field.first_non_finite, field.first_absent)
             if not field.passed and (known := [s for s in stamps if s is not None]):
                 return report.seconds(known[0])

@@ -88,7 +88,7 @@ def _topic_faults(topic: TopicReport) -> Iterator[Finding]:
 
 def _field_faults(name: str, field: FieldReport) -> Iterator[Finding]:
     """Yield why a field fails."""
-    if is_beyond(field):
+    if field.is_beyond:
         quantity = QUANTITIES.get(field.unit)
         option = f' (--tolerance-{quantity})' if quantity else ''
         rotor_angle = angle(field.worst_rotor_angle)
@@ -129,11 +129,6 @@ def moment(stamp: int | None, report: BagReport) -> tuple[Cell, Cell]:
 def angle(value: float | None) -> str:
     """Write a rotor angle; an unknown one is empty."""
     return '' if value is None else number(value, 9)
-
-
-def is_beyond(field: FieldReport) -> bool:
-    """Return whether the error is too great; a NaN is."""
-    return not field.max_error <= field.tolerance
 
 
 def field_name(topic: TopicReport, field: FieldReport) -> str:

@@ -62,9 +62,14 @@ class FieldReport:
         return self.max_error / self.tolerance if self.tolerance else math.inf
 
     @property
+    def is_beyond(self) -> bool:
+        """Whether the greatest error exceeds the tolerance; a NaN does."""
+        return not self.max_error <= self.tolerance
+
+    @property
     def passed(self) -> bool:
         """Whether every sample is within the tolerance."""
-        return self.max_error <= self.tolerance and not self.non_finite and not self.absent
+        return not (self.is_beyond or self.non_finite or self.absent)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,6 @@ from gear_kinematics.validation.findings import (
     angle,
     field_name,
     findings,
-    is_beyond,
     moment,
     worst_field,
 )
@@ -67,7 +66,7 @@ class _Field(NamedTuple):
 
     @property
     def tone(self) -> Tone:
-        return _tone(bad=is_beyond(self.field))
+        return _tone(bad=self.field.is_beyond)
 
     def measured(self, value: float, tone: Tone = Tone.PLAIN) -> Cell:
         text = number(value) if self.field.compared else ''
