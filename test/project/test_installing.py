@@ -110,3 +110,14 @@ def test_a_lock_meets_every_requirement_of_its_packages_and_extras(name):
                 if needed.marker is None or needed.marker.evaluate({'extra': extra}):
                     waiting.append(needed)
     assert {package for package, _ in seen} == set(versions)
+
+
+@pytest.mark.parametrize('extra', ['ros', 'html', 'plot', 'measure'])
+def test_the_environment_of_the_demo_runs_the_commands_of_the_readme(extra):
+    needed = map(Requirement, importlib.metadata.requires('gear_kinematics'))
+    packages = {
+        canonicalize_name(requirement.name)
+        for requirement in needed
+        if requirement.marker and requirement.marker.evaluate({'extra': extra})
+    }
+    assert packages <= pins('demo.txt').keys()

@@ -50,7 +50,7 @@ def program(name: str) -> str:
     return found
 
 
-def run(*command, cwd: Path, env=None) -> str:
+def run(*command, cwd: Path, env=None, stderr: str | None = None) -> str:
     done = subprocess.run(
         [str(part) for part in command],
         cwd=cwd,
@@ -60,6 +60,7 @@ def run(*command, cwd: Path, env=None) -> str:
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr
+    assert stderr is None or done.stderr == stderr
     return done.stdout
 
 
@@ -140,7 +141,10 @@ def prefix(wheel, tmp_path_factory) -> Path:
 def workspace(tree, tmp_path_factory) -> Path:
     colcon = program('colcon')
     path = tmp_path_factory.mktemp('workspace')
-    run(colcon, 'build', '--base-paths', tree, '--event-handlers', 'console_direct+', cwd=path)
+    command = [colcon, 'build', '--base-paths', tree, '--event-handlers', 'console_direct+']
+    # Where it is set, setuptools warns of it.
+    environment = {k: v for k, v in os.environ.items() if k != 'PYTHONDONTWRITEBYTECODE'}
+    run(*command, cwd=path, env=environment, stderr='')
     return path
 
 
