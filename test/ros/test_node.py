@@ -273,16 +273,19 @@ def test_message_that_the_middleware_refuses_is_counted_and_the_others_go_on(
     assert 'not sent 1' in status.message
 
 
-def test_status_is_named_after_the_node(node, monkeypatch):
+def test_status_is_named_after_the_node_and_found_by_the_aggregator(node, monkeypatch):
     published = []
     monkeypatch.setattr(node._outputs, 'send', published.extend)
     node._on_output_encoder(rotor_bytes(1, position=[1.0]))
     node._report()
     [(_, data)] = published
-    assert [status.name for status in deserialize_message(data, DiagnosticArray).status] == [
-        'in_process/gear_state_publisher: rotor input',
-        'in_process/gear_state_publisher: transmission error',
-    ]
+    names = [status.name for status in deserialize_message(data, DiagnosticArray).status]
+    own = 'in_process/gear_state_publisher'
+    assert names == [f'{own}: rotor input', f'{own}: transmission error']
+    file = yaml.safe_load(default_config().with_name('diagnostic_analyzers.yaml').read_text())
+    analyzer = file['analyzers']['ros__parameters']['gears']
+    assert analyzer['type'] == 'diagnostic_aggregator/GenericAnalyzer'
+    assert all(part in name for part in analyzer['contains'] for name in names)
 
 
 def test_rejected_input_is_warned_about_at_most_once_a_second(make, monkeypatch, capfd):

@@ -84,6 +84,29 @@ def test_foxglove_listens_to_topics_of_the_node(foxglove, topics):
     assert shown | plotted <= set(topics)
 
 
+@pytest.mark.live
+def test_plotjuggler_plots_joints_of_topics_of_the_node_and_what_it_computes_of_them(topics):
+    root = ET.parse(ROOT / 'config/plotjuggler.xml').getroot()  # noqa: S314, the project's own
+    computed = {snippet.get('name') for snippet in root.iter('snippet')}
+    sources = {
+        element.text
+        for path in ('linked_source', 'additional_sources/*')
+        for element in root.iterfind(f'customMathEquations/snippet/{path}')
+    }
+    shown = {curve.get('name') for curve in root.iter('curve')}
+    assert computed < shown
+    series = {tuple(name.split('/')[1:]) for name in (shown | sources) - computed}
+    names = {'rotor_state': 'rotor'}
+    assert all(
+        (joint, field) == (names.get(topic, 'output_shaft'), 'position')
+        for topic, joint, field in series
+    )
+    [selected] = root.iter('selected_topics')
+    heard = selected.get('value').split(';')
+    assert set(heard) == {f'/{topic}' for topic, *_ in series}
+    assert set(heard) - {'/rotor_state'} <= {t for t, k in topics.items() if k == 'JointState'}
+
+
 def test_every_panel_of_foxglove_has_its_place(foxglove):
     halves = [n[side] for n in nodes_of(foxglove['layout']) for side in ('first', 'second')]
     panels = [half for half in halves if isinstance(half, str)]
