@@ -101,26 +101,22 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
         )
-        self._drivers = self._rotor_driver, self._encoder_driver = (
+        self._drivers = self._rotor_driver, _ = (
             DriverInput(self, topics.ROTOR_STATE, self._on_rotor_state, self._monitor),
             DriverInput(
                 self, topics.OUTPUT_ENCODER, self._on_output_encoder, self._encoder_monitor
             ),
         )
         self._missing_publisher = MissingPublisher(self)
+        known = f'bodies unknown: no {", ".join(topics.BODY_TOPICS)}'
+        if isinstance(self._gear, Mechanism):
+            known = f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
         joint = parameters.rotor_joint
         listening_for = f'joint {joint!r}' if joint else 'the only joint'
         self.get_logger().info(
-            f'gear ratio {self._gear.gear_ratio} ({self._known()}), listening for {listening_for} '
+            f'gear ratio {self._gear.gear_ratio} ({known}), listening for {listening_for} '
             f'on {self._rotor_driver.subscription.topic_name}'
         )
-
-    def _known(self) -> str:
-        """What is known of the gear besides its ratio."""
-        if isinstance(self._gear, Mechanism):
-            return f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
-        unpublished = ', '.join(topics.BODY_TOPICS)
-        return f'bodies unknown: no {unpublished}'
 
     def set_parameters_atomically(self, parameter_list: list[Parameter]) -> SetParametersResult:
         """Set parameters; the reason of a refusal always names the parameter."""
@@ -265,8 +261,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _report(self) -> None:
         for driver in self._drivers:
-            driver.update(self._settings.input_timeout)
-        self._monitor.drivers = self._rotor_driver.publishers
+            driver.count_losses()
         self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
         now, window = time.monotonic(), self._settings.transmission_error_window
@@ -277,6 +272,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
                 self._encoder, self._settings, now, fit
             ),
         }
+        for driver in self._drivers:
+            driver.log_silence()
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 

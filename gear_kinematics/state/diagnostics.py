@@ -72,54 +72,70 @@ class GraphFaults(NamedTuple):
     warnings: Sequence[Fault] = ()
 
 
-@dataclass(slots=True)
-class InputMonitor:
-    """Monitors the rotor input; times are of a steady clock, s."""
+@dataclass(slots=True, kw_only=True)
+class DriverMonitor:
+    """Monitors a driver; times are of a steady clock, s."""
 
-    started: float
-    published: int = 0
     drivers: int = 0
-    """Publishers on rotor_state."""
+    """Publishers on its topic."""
     lost: int = 0
     """Inputs that are missing between those that came."""
     losses_known: bool = True
     """Whether they could be counted since the last report."""
-    unsent: int = 0
-    """Messages that the middleware failed to send."""
     last_input: float | None = None
     """Time of the last message, valid or not."""
+    silent: bool = False
+    """Whether there was none for too long before the last report, after the first."""
+    _lost: int = 0
+    _rejected: Counter[str] = field(default_factory=Counter)
+
+    def _new_faults(self, rejected: Counter[str]) -> list[Fault]:
+        """The messages that were rejected and lost since the last report."""
+        newly_rejected, newly_lost = rejected - self._rejected, self.lost - self._lost
+        self._rejected, self._lost = Counter(rejected), self.lost
+        faults = [_rejections(newly_rejected)] if newly_rejected else []
+        if newly_lost:
+            advice = 'The middleware has not delivered these messages.'
+            faults.append(Fault(f'lost {newly_lost}', advice))
+        return faults
+
+
+@dataclass(slots=True, kw_only=True)
+class InputMonitor(DriverMonitor):
+    """Monitors the rotor input."""
+
+    started: float
+    published: int = 0
+    unsent: int = 0
+    """Messages that the middleware failed to send."""
     graph: GraphFaults = field(default_factory=GraphFaults)
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
-    _counts: Counter[str] = field(default_factory=Counter)
-    _rejected: Counter[str] = field(default_factory=Counter)
+    _received: int = 0
+    _unsent: int = 0
 
     def report(self, rotor_input: RotorInput, now: float) -> Report:
         """Report on an input in the time since the last report, until now."""
         elapsed = now - max(self._reported, self.started)
-        counts = Counter(received=rotor_input.received, lost=self.lost, unsent=self.unsent)
-        new = counts - self._counts
-        newly_rejected = rotor_input.rejected - self._rejected
-        self._reported, self._counts = now, counts
-        self._rejected = Counter(rotor_input.rejected)
-        rate = new['received'] / elapsed if elapsed > 0.0 else 0.0
+        received = rotor_input.received - self._received
+        newly_unsent = self.unsent - self._unsent
+        self._reported, self._received = now, rotor_input.received
+        self._unsent = self.unsent
+        rate = received / elapsed if elapsed > 0.0 else 0.0
 
         age = now - (self.started if self.last_input is None else self.last_input)
+        overdue = age > rotor_input.parameters.input_timeout
+        self.silent = overdue and self.last_input is not None
         errors: list[Fault] = []
-        warnings: list[Fault] = []
-        if age > rotor_input.parameters.input_timeout:
+        if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
         if not rotor_input.referenced:
             errors.append(Fault('not referenced', _NOT_REFERENCED))
         errors += self.graph.errors
-        if newly_rejected:
-            warnings.append(_rejections(newly_rejected))
-        if new['lost']:
-            warnings.append(_losses(new['lost']))
-        if new['unsent']:
-            warnings.append(
-                Fault(f'not sent {new["unsent"]}', 'Look for a listener that is stuck.')
-            )
+        warnings = self._new_faults(rotor_input.rejected)
+        if newly_unsent:
+            advice = 'Look for a listener that is stuck.'
+            warnings.append(Fault(f'not sent {newly_unsent}', advice))
         if self.drivers > 1:
             warnings.append(Fault(f'{self.drivers} drivers', 'Stop all drivers but one.'))
         warnings += self.graph.warnings
@@ -142,19 +158,11 @@ class InputMonitor:
         return Report.of(errors, warnings, values, losses_known=self.losses_known)
 
 
-@dataclass(slots=True)
-class EncoderMonitor:
-    """Monitors the encoder at the output, and the transmission error; times as above."""
+@dataclass(slots=True, kw_only=True)
+class EncoderMonitor(DriverMonitor):
+    """Monitors the encoder at the output, and the transmission error."""
 
-    lost: int = 0
-    """Inputs that are missing between those that came."""
-    losses_known: bool = True
-    """Whether they could be counted since the last report."""
-    last_input: float | None = None
-    """Time of the last message, valid or not."""
     _compared: int = 0
-    _lost: int = 0
-    _rejected: Counter[str] = field(default_factory=Counter)
 
     def report(
         self,
@@ -172,22 +180,17 @@ class EncoderMonitor:
             return None
         age = now - self.last_input
         matched = encoder.comparison.matched
-        silent, compared = age > parameters.input_timeout, matched != self._compared
-        newly_rejected = encoder.rejected - self._rejected
-        newly_lost, self._lost = self.lost - self._lost, self.lost
-        self._compared, self._rejected = matched, Counter(encoder.rejected)
+        compared = matched != self._compared
+        self.silent, self._compared = age > parameters.input_timeout, matched
 
         warnings = []
-        if silent:
+        if self.silent:
             warnings.append(Fault(f'no output_encoder for {age:.1f} s', _NO_INPUT))
         elif not compared:
             warnings.append(Fault('no rotor angle of the same time', _NOT_COMPARED))
-        if newly_rejected:
-            warnings.append(_rejections(newly_rejected))
-        if newly_lost:
-            warnings.append(_losses(newly_lost))
+        warnings += self._new_faults(encoder.rejected)
         # Without new samples, the statistics are out of date.
-        error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
+        error = encoder.window.statistics() if compared and not self.silent else ErrorStatistics()
         if (
             error.peak_to_peak is not None
             and error.peak_to_peak > parameters.transmission_error_limit
@@ -221,10 +224,6 @@ def _rejections(counts: Counter[str]) -> Fault:
     if 'joint missing' in counts:
         advice = 'Set rotor_joint to one of the joints of the driver.'
     return Fault(f'rejected: {causes}', advice)
-
-
-def _losses(count: int) -> Fault:
-    return Fault(f'lost {count}', 'The middleware has not delivered these messages.')
 
 
 def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:

@@ -14,6 +14,7 @@ from rclpy.qos import ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import BagError, LiveBagWriter, Message
+from gear_kinematics.state.losses import Losses
 from gear_kinematics.watch.polled import PolledSubscription
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import header_stamp
@@ -55,35 +56,21 @@ class _Channel:
         self.source = PolledSubscription(node, topic, RECORDED_TYPES[kind], reliability)
         self.type = kind
         self.count = 0
-        self.lost = 0
+        self.losses = Losses()
         self.counted = True  # whether every loss is known
         self.stamp = -1  # of the latest message, ns
-        self._last: list[int] = []  # numbers of the latest messages, in each publisher's counting
 
     def take(self) -> list[Message]:
         """Take what has come."""
-        topic = self.source.topic
         taken = list(self.source.take())
+        for message in taken:
+            self.losses.note(message.number)
         if taken:
             self.count += len(taken)
             self.stamp = header_stamp(taken[-1].data)
             # Which of several has sent a message is not known.
-            self.counted &= self.source.publishers() <= 1
-        for message in taken:
-            self._count_losses(message.number)
-        return [(topic, message.received, message.data) for message in taken]
-
-    def _count_losses(self, number: int | None) -> None:
-        # A publisher can come and go unseen, or take another's place. Each counts from 1: a number
-        # below all others begins a new counting, and any other belongs to the nearest.
-        if number is None:
-            self.counted = False
-            return
-        before = max((last for last in self._last if last < number), default=None)
-        if before is not None:
-            self.lost += number - before - 1
-            self._last.remove(before)
-        self._last.append(number)
+            self.counted &= self.losses.numbered and self.source.publishers() <= 1
+        return [(self.source.topic, message.received, message.data) for message in taken]
 
 
 class Recording:
@@ -129,7 +116,7 @@ class Recording:
             self.path,
             self._seconds or time.monotonic() - self._began,
             {topic: channel.count for topic, channel in channels},
-            sum(channel.lost for _, channel in channels if channel.counted),
+            sum(channel.losses.missing for _, channel in channels if channel.counted),
             tuple(topic for topic, channel in channels if not channel.counted),
             self._error,
         )
