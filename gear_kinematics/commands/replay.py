@@ -32,9 +32,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--as', dest='published', metavar='NAME', help='publish the topic under this name'
     )
     parser.add_argument(
-        '--clock', type=float, nargs='?', const=40, default=0, metavar='HZ', help='publish /clock'
-    )
-    parser.add_argument(
         '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
     )
     arguments.add_quiet(parser)
@@ -64,7 +61,6 @@ def run(options: argparse.Namespace) -> ExitCode:
                 loop=options.loop,
                 start_offset=options.start_offset,
                 duration=options.duration,
-                clock=options.clock,
                 stopped=stopped,
                 wait=0.0 if options.no_wait else math.inf,
                 progress=lambda sent, _: progress(sent, total),

@@ -42,13 +42,9 @@ def find_faults(
     publishers: Iterable[Publisher],
     exclusive: Collection[str],
 ) -> GraphFaults:
-    """Find incompatible QoS, and other publishers of the node's topics.
+    """Find incompatible QoS, an error for a node's subscriptions and a warning for its publishers.
 
-    Args:
-        node: the node to check.
-        subscriptions: of the node; an incompatible publisher is an error.
-        publishers: of the node; an incompatible subscription is a warning.
-        exclusive: topics on which another publisher is a warning.
+    Another publisher on an exclusive topic is a warning, as is another node of the same name.
     """
     own_name = node.get_fully_qualified_name()
     errors = [

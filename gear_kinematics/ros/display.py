@@ -21,19 +21,7 @@ from gear_kinematics.wire import topics
 class Display:
     """Publishes the URDF after every change, and the markers while they have viewers."""
 
-    def __init__(
-        self,
-        node: Node,
-        parameters: NodeParameters,
-        outputs: Outputs,
-    ) -> None:
-        """Open the topics.
-
-        Args:
-            node: the node.
-            parameters: of the node, which knows the mechanism.
-            outputs: of the node.
-        """
+    def __init__(self, node: Node, parameters: NodeParameters, outputs: Outputs) -> None:
         self._mechanism, self._module = parameters.mechanism, parameters.module
         self._outputs = outputs
         self._meshes = folder_uri(parameters.meshes, self._mechanism, self._module)
@@ -47,11 +35,7 @@ class Display:
             outputs.create(topics.MARKERS, MarkerArray, _latched(), self._on_viewers)
 
     def update(self, parameters: NodeParameters) -> None:
-        """Use names of joints and links; publishes the URDF if it has changed.
-
-        Raises:
-            ValueError: if `output_joint` is empty or the name of another joint.
-        """
+        """Use names of joints and links; publishes the URDF if it has changed."""
         prefix = parameters.frame_prefix
         description = urdf(
             self._mechanism,

@@ -13,9 +13,7 @@ from gear_kinematics.wire.topics import ROTOR_STATE
 
 NODE_ARGUMENTS = 'config', 'namespace', 'frame_prefix', 'rotor_joint', ROTOR_STATE
 """Names of the launch arguments of gear_state_publisher.launch.py."""
-OVERRIDES = 'frame_prefix', 'rotor_joint'
-"""Launch arguments that replace parameters of the file, unless they are empty."""
-
+_OVERRIDES = 'frame_prefix', 'rotor_joint'  # replace those of the file, unless they are empty
 _OF_LAUNCH = (
     'launch-prefix', 'launch-prefix-filter', 'emulate_tty', 'sigterm_timeout', 'sigkill_timeout'
 )  # fmt: skip
@@ -33,17 +31,10 @@ class NodeArguments(NamedTuple):
 
 
 def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
-    """Determine the arguments of the node before it is started.
+    """Determine the arguments of the node from the configurations of a launch; raises ConfigError.
 
     launch only warns of a missing parameter file, and with a file for other nodes the node has its
     default values: in both cases, the wrong actuator would be started.
-
-    Args:
-        configurations: of the launch: `config`, `namespace`, `frame_prefix` and `rotor_joint`,
-            and `ros_namespace` if the launch file is included below a namespace.
-
-    Raises:
-        ConfigError: as `NodeParameters.load` does.
     """
     config = Path(configurations['config']).expanduser()
     # An absolute namespace replaces the one above it, as in launch_ros.
@@ -52,21 +43,16 @@ def node_arguments(configurations: Mapping[str, str]) -> NodeArguments:
     )
     loaded = NodeParameters.load(config, name)
     given: dict[str, Any] = {
-        name: configurations[name] for name in OVERRIDES if configurations[name]
+        name: configurations[name] for name in _OVERRIDES if configurations[name]
     }
     return NodeArguments(config, replace(loaded, **given), given)
 
 
 def refuse_unknown(file: str, context_arguments: Iterable[str], *known: str) -> None:
-    """Check the arguments of a launch file, of which launch ignores those that nobody declares.
+    """Refuse arguments that neither `NODE_ARGUMENTS` nor a launch file itself knows.
 
-    Args:
-        file: path of the launch file; one that another includes has not the command line's.
-        context_arguments: those on the command line, `name:=value`.
-        known: names of the file's own arguments, besides `NODE_ARGUMENTS`.
-
-    Raises:
-        ValueError: if one is unknown; the text names the nearest, and those that there are.
+    launch ignores those that nobody declares. Those on the command line, `name:=value`, are of the
+    file that is launched, not of one that it includes.
     """
     if Path(file).name not in {Path(word).name for word in sys.argv}:
         return

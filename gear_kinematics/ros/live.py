@@ -59,9 +59,7 @@ class ReplayError(RuntimeError):
 def running_node(arguments: Sequence[str] = (), **options: Any) -> Iterator[subprocess.Popen[str]]:
     """Run gear_state_publisher in its own process, and stop it at the end.
 
-    Args:
-        arguments: of its command line, such as `--ros-args -p rotor_joint:=m1`.
-        options: of `subprocess.Popen`.
+    The arguments are those of its command line, and the options those of `subprocess.Popen`.
     """
     # Without -P, `-m` would import modules from the current folder.
     command = [sys.executable, '-P', '-m', 'gear_kinematics.ros', *arguments]
@@ -93,12 +91,10 @@ def live_messages(
         parameters: of the node.
         rotor_topic: name of the rotor topic in the bag.
         rate: bag time / real time.
-        progress: called with the number of rotor messages sent, at most ten times a second and at
-            the end.
+        progress: called with the number of rotor messages sent.
 
     Yields:
-        Messages on /rotor_state, /output_state, unless only the gear ratio is known /body_poses,
-        and with a calibration those of the corrected output, in the order of their reception.
+        Messages on /rotor_state and `outputs_of` the parameters, in the order of their reception.
 
     Raises:
         BagError: if the topic is missing or empty; if the bag is damaged, after the outputs for
@@ -152,13 +148,7 @@ class Replay:
         alive: Callable[[], bool] = lambda: True,
         outputs: Collection[str] = _TOPICS[1:],
     ) -> None:
-        """Open the topics.
-
-        Args:
-            namespace: of the topics.
-            alive: returns whether the node can still answer.
-            outputs: topics on which it answers, in the root namespace.
-        """
+        """Open the topics in a namespace; `alive` returns whether the node can still answer."""
         self.received: list[Message] = []
         self.counts: Counter[str] = Counter()
         """Numbers of messages received so far, by topic."""
@@ -189,14 +179,7 @@ class Replay:
         """Wait until probes are answered, since discovery on this side does not suffice.
 
         The probes have a stamp in the far future and are not recorded; the node restarts at the
-        older stamps after them.
-
-        Args:
-            joint: name of the rotor's joint; '' for the only one.
-            timeout: s.
-
-        Raises:
-            ReplayError: if there is no answer in time.
+        older stamps after them. ReplayError is raised if there is no answer in time (s).
         """
         template = JointStateTemplate([joint or 'rotor'], velocity=False, effort=False)
         message = template.encode(_PROBE_SECOND * SECOND, [0.0])
@@ -208,11 +191,7 @@ class Replay:
             self.receive_until(time.monotonic() + _PROBE_PERIOD)
 
     def receive_until(self, moment: float) -> None:
-        """Receive until a moment of `time.monotonic()`.
-
-        Raises:
-            ReplayError: if the node has ended.
-        """
+        """Receive until a moment of `time.monotonic()`; raises ReplayError if the node ends."""
         while (left := moment - time.monotonic()) > 0.0:
             self._spin(min(left, POLL))
 
@@ -226,11 +205,7 @@ class Replay:
         return taken
 
     def receive(self, wanted: Counter[str], but: int = 0) -> bool:
-        """Receive until each topic has its number of messages, except for a few.
-
-        Args:
-            wanted: numbers of messages by topic, counted from the start.
-            but: number of messages that each topic may lack.
+        """Receive until no topic lacks more messages of the wanted numbers, from the start, than `but`.
 
         Returns:
             Whether they arrived; False after some seconds without any message.

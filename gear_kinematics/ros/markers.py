@@ -43,13 +43,10 @@ class Markers:
         self._due_at = -math.inf
 
     def due(self, now: float) -> bytes | None:
-        """Return the message if it is due, else None.
+        """Return the message if it is due at a time of a monotonic clock, s.
 
         It is repeated periodically, because RViz drops its markers when it is reset, when its
         fixed frame changes and when time jumps back.
-
-        Args:
-            now: time of a monotonic clock, s.
         """
         if now < self._due_at:
             return None

@@ -17,21 +17,17 @@ _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
 def declare(node: Node, parameters: Mapping[str, Declaration]) -> None:
     """Declare parameters of a node, by name, with their default values."""
     for name, parameter in parameters.items():
-        _declare(node, name, parameter)
-
-
-def _declare(node: Node, name: str, parameter: Declaration) -> None:
-    descriptor = ParameterDescriptor(
-        description=parameter.description,
-        additional_constraints=', '.join(parameter.choices),
-        read_only=parameter.read_only,
-    )
-    bounds = {'from_value': parameter.minimum, 'to_value': parameter.maximum}
-    if parameter.kind is int:
-        descriptor.integer_range = [IntegerRange(**bounds, step=parameter.step)]
-    elif parameter.kind is float:
-        descriptor.floating_point_range = [FloatingPointRange(**bounds)]
-    node.declare_parameter(name, default_value(name), descriptor)
+        descriptor = ParameterDescriptor(
+            description=parameter.description,
+            additional_constraints=', '.join(parameter.choices),
+            read_only=parameter.read_only,
+        )
+        bounds = {'from_value': parameter.minimum, 'to_value': parameter.maximum}
+        if parameter.kind is int:
+            descriptor.integer_range = [IntegerRange(**bounds, step=parameter.step)]
+        elif parameter.kind is float:
+            descriptor.floating_point_range = [FloatingPointRange(**bounds)]
+        node.declare_parameter(name, default_value(name), descriptor)
 
 
 def fault_of(parameter: Parameter) -> str | None:

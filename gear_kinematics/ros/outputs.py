@@ -25,10 +25,8 @@ class Outputs:
     ) -> None:
         """Start without publishers.
 
-        Args:
-            node: the publishing node.
-            on_subscribers: called when a subscriber has come or gone.
-            on_failure: called with the publisher of a message that was not sent, and the error.
+        `on_subscribers` is called when a subscriber has come or gone, `on_failure` with the
+        publisher of a message that was not sent, and the error.
         """
         self.publishers: dict[str, Publisher] = {}
         self._senders: dict[str, Callable[[bytes], None]] = {}

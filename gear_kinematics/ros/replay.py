@@ -21,7 +21,6 @@ from gear_kinematics.bag import Bag, ReportProgress
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.live import POLL, ReplayError, replay_node
-from gear_kinematics.wire.cdr import SECOND
 
 _GRACE = 5.0  # s; subscribers acknowledge messages every 3 s
 
@@ -58,7 +57,6 @@ def play(
     loop: bool = False,
     start_offset: float = 0.0,
     duration: float = math.inf,
-    clock: float = 0.0,
     wait: float = math.inf,
     stopped: Callable[[], bool] = lambda: False,
     progress: ReportProgress = lambda _done, _total: None,
@@ -73,14 +71,11 @@ def play(
         topics: published names by the names in the bag.
         rate: bag time / real time.
         loop: whether to restart at the end, a mean period after the last message, until stopped.
-            Header stamps and /clock then jump back.
         start_offset: s of bag time to skip, from the first message of the topics on.
         duration: s of bag time to play in each loop.
-        clock: rate of the bag's time on /clock, Hz; 0 for none.
         wait: s to wait until every topic has a subscriber; 0 does not wait.
         stopped: returns whether to stop; called at least every 0.1 s.
-        progress: called with the number of messages sent after the wait, then at most ten times a
-            second, and at the end.
+        progress: called with the number of messages sent.
 
     Raises:
         BagError: if the bag lacks a topic, has nothing to play or is damaged; the messages before
@@ -88,8 +83,7 @@ def play(
         ReplayError: if there is no subscriber in time, or a topic's type is not installed.
         ValueError: if a number is out of range.
     """
-    numbers = {'start offset': start_offset, 'duration': duration, 'clock': clock, 'wait': wait}
-    for name, value in numbers.items():
+    for name, value in {'start offset': start_offset, 'duration': duration, 'wait': wait}.items():
         if not value >= 0.0:
             raise ValueError(f'{name} must not be negative, but is {value:g}')
     types = {topic: source.type_of(topic) for topic in topics}
@@ -100,18 +94,15 @@ def play(
         publishers = {
             topic: _publisher(node, name, topic, types[topic]) for topic, name in topics.items()
         }
-        bag_clock = _Clock(node, clock)
         _wait_for_subscribers(publishers.values(), wait, stopped)
         progress(0, None)
         start = time.monotonic()
         try:
-            for due, (topic, received, data) in schedule:
+            for due, (topic, _, data) in schedule:
                 while (left := start + due - time.monotonic()) > 0.0 and not stopped():
-                    next_tick = bag_clock.update(received - round(left * rate * SECOND))
-                    time.sleep(min(left, next_tick, POLL))
+                    time.sleep(min(left, POLL))
                 if stopped():
                     break
-                bag_clock.update(received)
                 publishers[topic].publish(data)
                 played.messages += 1
                 played.worst_delay = max(played.worst_delay, time.monotonic() - start - due)
@@ -124,38 +115,10 @@ def play(
     return played
 
 
-class _Clock:
-    """Publishes the bag's time on /clock."""
-
-    def __init__(self, node: Node, hertz: float) -> None:
-        """Create the publisher; for 0 Hz, do nothing."""
-        self._period = 1.0 / hertz if hertz else math.inf
-        self._next = -math.inf if hertz else math.inf  # of time.monotonic()
-        if hertz:
-            self._class = _load_class('rosgraph_msgs/msg/Clock')
-            self._publisher = node.create_publisher(self._class, '/clock', QoSProfile(depth=10))
-
-    def update(self, bag_time: int) -> float:
-        """Publish the time, ns, if it is due; returns the time until the next one, s."""
-        now = time.monotonic()
-        if now >= self._next:
-            self._next += self._period
-            if self._next <= now:  # skip missed ticks
-                self._next = now + self._period
-            message = self._class()
-            message.clock.sec, message.clock.nanosec = divmod(bag_time, SECOND)
-            self._publisher.publish(message)
-        return self._next - now
-
-
 def _wait_for_subscribers(
     publishers: Collection[Publisher], timeout: float, stopped: Callable[[], bool]
 ) -> None:
-    """Wait until each publisher has a subscriber.
-
-    Raises:
-        ReplayError: if one has none after `timeout` s, unless that is 0.
-    """
+    """Wait until each publisher has a subscriber; not for a timeout of 0 s."""
     deadline = time.monotonic() + timeout
     while timeout and not stopped():
         alone = [p.topic_name for p in publishers if not p.get_subscription_count()]

@@ -145,7 +145,7 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('valdate a', "'valdate'; did you mean `validate`? there are: animate, calibrate, "),
         ('plot sheme a', "'sheme'; did you mean `scheme`? there are: output, roses, "),
         ('compute a b --storage mcp', "'mcp'; did you mean `mcap`? there are: mcap"),
-        ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --as, --clock, '),
+        ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --as, '),
         ('plot scheme a --brnch', '--brnch; did you mean `--branch`? there are: --an'),
         ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
         ('plot scheme a.png --branch A', "no branch 'A'; did you mean `a`? there a"),

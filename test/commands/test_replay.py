@@ -25,7 +25,6 @@ def test_a_replay_tells_what_it_did(bags):
         (['good', '--rate', '0'], 'rate must be positive'),
         (['good', '--rate', '-1'], 'rate must be positive'),
         (['good', '--start-offset', '-1'], 'start offset must not be negative'),
-        (['good', '--clock', '-1'], 'clock must not be negative'),
         (['good', '--start-offset', '1000'], 'good: nothing to play'),
         (['good', '--topics', '/nope'], 'good: no topic /nope in it; there are: '),
     ],
