@@ -205,7 +205,7 @@ class Replay:
         return taken
 
     def receive(self, wanted: Counter[str], but: int = 0) -> bool:
-        """Receive until no topic lacks more messages of the wanted numbers, from the start, than `but`.
+        """Receive until no topic lacks more than `but` of its wanted messages, from the start.
 
         Returns:
             Whether they arrived; False after some seconds without any message.

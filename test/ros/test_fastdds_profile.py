@@ -24,32 +24,29 @@ def _nothing_chosen(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
 
 
-def test_profile_is_used_if_nobody_has_chosen_one():
+@pytest.mark.parametrize(
+    ('environment', 'in_the_folder', 'used'),
+    [
+        ({}, False, True),
+        ({VARIABLE: '/my.xml'}, False, False),
+        ({'FASTDDS_DEFAULT_PROFILES_FILE': '/my.xml'}, False, False),
+        ({}, True, False),
+        ({'SKIP_DEFAULT_XML_FILE': '1'}, True, True),
+        ({'GEAR_KINEMATICS_FASTDDS_PROFILE': 'off'}, False, False),
+    ],
+)
+def test_profile_is_used_if_nobody_has_chosen_another(
+    monkeypatch, tmp_path, environment, in_the_folder, used
+):
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    if in_the_folder:
+        (tmp_path / 'DEFAULT_FASTRTPS_PROFILES.xml').touch()
     use_profile()
-    assert Path(os.environ[VARIABLE]).read_bytes() == PROFILE.read_bytes()
-
-
-@pytest.mark.parametrize('name', [VARIABLE, 'FASTDDS_DEFAULT_PROFILES_FILE'])
-def test_profile_in_the_environment_prevails(name, monkeypatch):
-    monkeypatch.setenv(name, '/my.xml')
-    use_profile()
-    assert os.environ[name] == '/my.xml'
-    assert len({VARIABLE, 'FASTDDS_DEFAULT_PROFILES_FILE'} & os.environ.keys()) == 1
-
-
-def test_profile_in_the_current_folder_prevails_if_it_is_read(monkeypatch, tmp_path):
-    (tmp_path / 'DEFAULT_FASTRTPS_PROFILES.xml').touch()
-    use_profile()
-    assert VARIABLE not in os.environ
-    monkeypatch.setenv('SKIP_DEFAULT_XML_FILE', '1')
-    use_profile()
-    assert VARIABLE in os.environ
-
-
-def test_profile_can_be_switched_off(monkeypatch):
-    monkeypatch.setenv('GEAR_KINEMATICS_FASTDDS_PROFILE', 'off')
-    use_profile()
-    assert VARIABLE not in os.environ
+    if used:
+        assert Path(os.environ[VARIABLE]).read_bytes() == PROFILE.read_bytes()
+    else:
+        assert os.environ.get(VARIABLE) == environment.get(VARIABLE)
 
 
 def test_other_middleware_gets_no_profile(monkeypatch):

@@ -97,16 +97,6 @@ def test_arguments_are_suggested_if_it_is_clear_which(joints, joint, arguments):
     assert suggestion or warning.endswith(', /b (joint m)')
 
 
-def test_topic_that_appears_later_is_suggested_with_its_joints():
-    graph = Graph()
-    graph.pass_seconds(20)
-    assert graph.warnings == []
-    graph.joints['/motor'] = ['rotor']
-    graph.pass_seconds(3)
-    [warning] = graph.warnings
-    assert ' there are: /motor (joint rotor); did you mean' in warning
-
-
 @pytest.mark.parametrize(('forbidden', 'publishers'), [(['/motor'], 0), ((), 1)])
 def test_nothing_is_suggested_of_a_forbidden_topic_or_with_a_publisher(forbidden, publishers):
     graph = Graph(motor=['rotor'], forbidden=forbidden)

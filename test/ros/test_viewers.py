@@ -2,20 +2,14 @@
 
 import ast
 import json
-import math
 import runpy
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
 
-import numpy as np
 import pytest
 import yaml
-from shown_markers import all_at
-from visualization_msgs.msg import Marker
 
-from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.ros.node import GearStatePublisher
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -118,92 +112,10 @@ def test_both_look_from_the_frame_of_the_stator(rviz, foxglove):
     assert foxglove['configById']['3D!mechanism']['followTf'] == 'stator'
 
 
-class View(NamedTuple):
-    """A camera, with angles in rad, about a point of the frame of the stator."""
-
-    focus: list[float]
-    distance: float
-    elevation: float
-    azimuth: float
-    field: float
-    """Field of view, from the lower to the upper edge."""
-    near: float
-
-    def seen(self, points: np.ndarray) -> np.ndarray:
-        """Project points to the picture, whose height is from -1 to 1."""
-        across = np.array([-math.sin(self.azimuth), math.cos(self.azimuth), 0.0])
-        flat = np.array([math.cos(self.azimuth), math.sin(self.azimuth), 0.0])
-        back = math.cos(self.elevation) * flat + [0.0, 0.0, math.sin(self.elevation)]
-        relative = points - self.focus
-        depth = self.distance - relative @ back
-        assert depth.min() > self.near
-        axes = np.stack([across, np.cross(back, across)], axis=1)
-        return relative @ axes / depth[:, np.newaxis] / math.tan(0.5 * self.field)
-
-
-@pytest.fixture(scope='module')
-def views(rviz, foxglove) -> dict[str, View]:
-    current = rviz['Visualization Manager']['Views']['Current']
-    camera = foxglove['configById']['3D!mechanism']['cameraState']
-    return {
-        'rviz': View(
-            [current['Focal Point'][axis] for axis in 'XYZ'],
-            current['Distance'],
-            current['Pitch'],
-            current['Yaw'],
-            math.radians(45.0),  # OGRE's
-            current['Near Clip Distance'],
-        ),
-        'foxglove': View(
-            camera['targetOffset'],
-            camera['distance'],
-            math.radians(90.0 - camera['phi']),
-            math.radians(270.0 - camera['thetaOffset']),
-            math.radians(camera['fovy']),
-            camera['near'],
-        ),
-    }
-
-
-def surface(marker: Marker) -> np.ndarray:
-    """Points of a marker; for a body, those of a cylinder around it."""
-    position, scale = marker.pose.position, marker.scale
-    middle = np.array([position.x, position.y, position.z])
-    angle, height = np.meshgrid(np.linspace(0.0, math.tau, 72), [-0.5 * scale.z, 0.5 * scale.z])
-    radius = 0.5 * max(scale.x, scale.y)
-    body = np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=-1)
-    outline = [(point.x, point.y, point.z) for point in marker.points]
-    return middle + np.reshape(outline or body, (-1, 3))
-
-
-@pytest.mark.parametrize('viewer', ['rviz', 'foxglove'])
-def test_mechanism_fills_the_view(views, viewer, actuator):
-    places = views[viewer].seen(np.concatenate([*map(surface, all_at(actuator, 0.7))]))
-    low, high = places.min(axis=0), places.max(axis=0)
-    assert np.all(np.maximum(-low, high) < 0.95)
-    assert high[1] - low[1] > 1.5
-    assert abs(high + low) == pytest.approx(0.0, abs=0.1)
-
-
-def test_both_look_from_the_same_direction(views):
-    rviz, foxglove = views['rviz'], views['foxglove']
-    assert rviz.elevation == pytest.approx(foxglove.elevation, abs=0.01)
-    assert rviz.azimuth == pytest.approx(foxglove.azimuth, abs=0.01)
-
-
 def test_foxglove_draws_no_frames_over_the_mechanism(foxglove):
     """By itself, it draws axes of 0.2 m in every frame."""
     frames = foxglove['configById']['3D!mechanism']['scene']['transforms']
     assert frames == {'axisScale': 0, 'lineWidth': 0, 'showLabel': False}
-
-
-def test_plots_are_named_in_foxglove_and_in_lichtblick(foxglove):
-    plots = [panel for panel in foxglove['configById'].values() if 'paths' in panel]
-    titles = [
-        {panel[f'{program}PanelTitle'] for program in ('foxglove', 'lichtblick')}
-        for panel in plots
-    ]
-    assert titles == [{'Output angle, rad'}, {'Output velocity, rad/s'}]
 
 
 def test_rviz_knows_whether_to_hide_its_docks(rviz):
@@ -303,21 +215,3 @@ def test_prefix_that_was_given_prevails_over_that_of_the_file(launched):
     node._perform_substitutions(launched)
     assert node.is_node_name_fully_specified()
     assert node.node_name == '/left/gear_state_publisher'
-
-
-@pytest.mark.parametrize(
-    ('file', 'function'),
-    [('gear_state_publisher.launch.py', 'start_node'), ('view.launch.py', 'start_viewers')],
-)
-def test_mistyped_parameter_file_is_refused(launched, file, function):
-    launched.launch_configurations['config'] = 'nope.yaml'
-    with pytest.raises(ConfigError, match=r'^nope\.yaml: No such file or directory$'):
-        described(launched, file, function)
-
-
-def test_parameter_file_in_the_home_directory_is_found(launched, tmp_path, monkeypatch):
-    monkeypatch.setenv('HOME', str(tmp_path))
-    launched.launch_configurations['config'] = '~/two.yaml'
-    [node] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
-    [found] = parameters_of(launched, node)
-    assert found == tmp_path / 'two.yaml'
