@@ -7,16 +7,14 @@ import os
 import re
 import signal
 import time
-from bisect import bisect_right
-from collections import Counter, defaultdict, deque
+from collections import Counter, deque
 from contextlib import ExitStack, closing, contextmanager, suppress
 from itertools import count, islice
 from pathlib import Path
-from random import Random
 
 import pytest
 from driver import MILLISECOND, drive, rotor_position
-from expected_outputs import DEFAULT, Settings, is_right
+from expected_outputs import is_right
 from live import (
     PATIENT,
     SECOND,
@@ -31,7 +29,6 @@ from live import (
     stamp_of,
 )
 from rclpy.duration import Duration
-from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -50,7 +47,6 @@ forks = multiprocessing.get_context('forkserver')
 forks.set_forkserver_preload(['rclpy.node', 'sensor_msgs.msg'])
 
 
-NO_CHANGES: dict[int, Settings] = {}
 NONE = {'lost': 0, 'wrong': 0}
 
 
@@ -60,11 +56,10 @@ class Tally:
     def __init__(self) -> None:
         self.lost = self.wrong = 0
 
-    def count(self, received, sent, *, joined_late=False, settings=NO_CHANGES) -> None:
+    def count(self, received, sent, *, joined_late=False) -> None:
         """Compare outputs, by topic, with the stamps of the messages sent, in order.
 
-        With `joined_late`, outputs may be missing before the first one. `settings` are those other
-        than the default ones, by stamp.
+        With `joined_late`, outputs may be missing before the first one.
         """
         for name, messages in received.items():
             if name not in STATES:
@@ -76,8 +71,7 @@ class Tally:
             self.lost += (Counter(due) - Counter(stamps)).total()
             to_come = iter(due)
             self.wrong += sum(
-                stamp not in to_come
-                or not is_right(name, message, rotor_position(stamp), settings.get(stamp, DEFAULT))
+                stamp not in to_come or not is_right(name, message, rotor_position(stamp))
                 for stamp, message in zip(stamps, messages, strict=True)
             )
 
@@ -351,75 +345,6 @@ def test_second_driver_is_reported_and_its_earlier_stamps_are_rejected(tmp_path,
 def rejected_in(status) -> str | None:
     values = {pair.key: pair.value for pair in status.values}
     return values.get('rejected: out of order')
-
-
-# Parameters.
-
-CHOICES = {
-    'rotor_direction': (1, -1),
-    'rotor_zero': (0.0, 1.25, -0.5),
-    'output_joint': ('output_shaft', 'shoulder'),
-    'frame_prefix': ('', 'left_'),
-}
-REFUSED = (
-    ('rotor_direction', 0),
-    ('rotor_direction', -1.0),
-    ('rotor_zero', math.nan),
-    ('rotor_zero', 'far'),
-    ('output_joint', 'satellite_a'),
-    ('frame_prefix', 3),
-    ('rotor_encoder', 'absolute'),
-    ('ring_teeth', 81),
-    ('no_such_parameter', 1.0),
-)
-
-
-def test_parameters_set_at_random_take_effect_between_two_messages(tmp_path, tally):
-    random = Random(6)  # noqa: S311, no secret
-    states, acknowledged = [DEFAULT], [0]
-    with connected(tmp_path) as peer:
-        drive = Drive(peer, rate=500.0)
-        start = time.monotonic()
-        for turn in range(150):
-            peer.wait_until(lambda t=turn: time.monotonic() >= start + t / 50.0, 'the next turn')
-            chosen = random.sample(list(CHOICES), random.randint(1, len(CHOICES)))
-            changes = {name: random.choice(CHOICES[name]) for name in chosen}
-            values = list(changes.items())
-            if bad := random.random() < 0.4:
-                values.insert(random.randint(0, len(values)), random.choice(REFUSED))
-            result = peer.set_atomically([Parameter(name, value=value) for name, value in values])
-            assert result.successful == (not bad), result.reason
-            if not bad:
-                states.append(states[-1]._replace(**changes))
-                acknowledged.append(len(drive.sent))
-        sent = drive.finish()
-        assert peer.get(*Settings._fields) == list(states[-1])
-        outputs = outputs_by_stamp(peer)
-    # The earliest state that fits, not before that of the last message nor the last set that was
-    # acknowledged before the message was sent.
-    seen, now = {}, 0
-    for number, stamp in enumerate(sent):
-        later = range(max(now, bisect_right(acknowledged, number) - 1), len(states))
-        now = next((k for k in later if fits(outputs[stamp], states[k])), later.start)
-        seen[stamp] = states[now]
-    tally.count(peer.received, sent, settings=seen)
-    assert tally.faults == NONE
-    assert len(set(seen.values())) > 12  # of the 24 that there are
-
-
-def outputs_by_stamp(peer) -> dict[int, dict]:
-    found = defaultdict(dict)
-    for name in STATES:
-        for message in peer.received[name]:
-            found[stamp_of(message)][name] = message
-    return found
-
-
-def fits(outputs, settings) -> bool:
-    return all(
-        is_right(name, message, rotor_position(stamp_of(message)), settings)
-        for name, message in outputs.items()
-    )
 
 
 # The end.

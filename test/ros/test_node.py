@@ -6,13 +6,16 @@ import sys
 import time
 from dataclasses import replace
 from fractions import Fraction
+from random import Random
 from types import SimpleNamespace
 
 import pytest
 import yaml
 from calibrations import AMPLITUDE, single_order
 from diagnostic_msgs.msg import DiagnosticArray
-from live import DEADLINE, rotor_bytes
+from expected_outputs import Settings, all_right
+from geometry_msgs.msg import PoseArray
+from live import DEADLINE, STATES, rotor_bytes
 from rclpy.exceptions import ParameterException
 from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.parameter import Parameter
@@ -32,6 +35,7 @@ from gear_kinematics.state.output_encoder import OutputEncoder
 
 pytestmark = pytest.mark.live
 
+TYPES = dict(zip(STATES, (JointState, PoseArray, JointState), strict=True))
 READ_ONLY = {
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
@@ -139,6 +143,47 @@ def test_refusal_of_a_change_names_the_parameter_once_and_its_cause(node, name, 
     assert result.reason.count(name) == 1
     assert all(word in result.reason for word in words), result.reason
     assert node.get_parameter(name).value == before
+
+
+CHOICES = {
+    'rotor_direction': (1, -1),
+    'rotor_zero': (0.0, 1.25, -0.5),
+    'output_joint': ('output_shaft', 'shoulder'),
+    'frame_prefix': ('', 'left_'),
+}
+REFUSED = (
+    ('rotor_direction', 0),
+    ('rotor_zero', 'far'),
+    ('output_joint', 'satellite_a'),
+    ('rotor_encoder', 'absolute'),
+    ('ring_teeth', 81),
+)
+
+
+def test_parameters_set_together_take_effect_with_the_next_message_or_not_at_all(
+    make, monkeypatch
+):
+    node, published, settings = make('changed'), [], Settings()
+    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    node._subscribed_states = list(STATES)
+    random = Random(6)  # noqa: S311, no secret
+    seen = set()
+    for turn in range(150):
+        chosen = random.sample(list(CHOICES), random.randint(1, len(CHOICES)))
+        changes = {name: random.choice(CHOICES[name]) for name in chosen}
+        values = list(changes.items())
+        if bad := random.random() < 0.4:
+            values.insert(random.randint(0, len(values)), random.choice(REFUSED))
+        result = node.set_parameters_atomically([Parameter(n, value=value) for n, value in values])
+        assert result.successful == (not bad), result.reason
+        settings = settings if bad else settings._replace(**changes)
+        seen.add(settings)
+        published.clear()  # of robot_description
+        position = 0.03 * turn
+        node._on_rotor_state(rotor_bytes(1 + turn, position=[position]))
+        outputs = [deserialize_message(data, TYPES[topic]) for topic, data in published]
+        assert all_right(outputs, position, settings)
+    assert len(seen) > 12  # of the 24 that there are
 
 
 def sections(*blocks: tuple[str, str]) -> str:

@@ -89,17 +89,6 @@ def test_error_is_published_with_the_encoders_stamp_and_judged(tmp_path):
         _, message, values = encoder_report(peer, lambda s: s.level == b'\0', 'ok', go_on)
         assert message == 'ok'
         assert int(values['samples']) >= COUNT
-        level, _, _ = encoder_report(
-            peer,
-            lambda s: 'rejected: position missing' in s.message,
-            'a warning of bad input',
-            lambda: driver.publish(rotor_state(START, ['shaft'])),
-        )
-        assert level == 1
-        _, message, values = encoder_report(
-            peer, lambda s: 'no output_encoder' in s.message, 'silence'
-        )
-        assert values['peak to peak (rad)'] == 'none'
 
 
 def test_output_is_corrected_by_a_calibration_that_can_be_changed(tmp_path):
@@ -155,32 +144,3 @@ def test_output_is_corrected_by_a_calibration_that_can_be_changed(tmp_path):
         assert peer.set(calibration=str(file)).successful
         corrected(0.0)
         assert without not in map(stamp_of, states)
-
-
-def test_calibration_that_no_longer_fits_is_a_warning(tmp_path):
-    path = tmp_path / 'calibration.yaml'
-    path.write_text(single_order().text(), 'utf-8')
-    with connected(tmp_path, *parameter('calibration', str(path))) as peer:
-        driver, number = encoder_driver(peer), 0
-
-        def turn():
-            nonlocal number
-            for _ in range(20):
-                number += 1
-                angle = 0.05 * number
-                # An offset of the encoder, and noise that no two neighbours share.
-                error = 0.3 + 2e-5 * (-1) ** number
-                stamp = START + number * MS
-                driver.publish(rotor_state(stamp, ['shaft'], [-angle / 19 + error]))
-                peer.send(rotor_state(stamp, position=[angle], velocity=[50.0]))
-                peer.receive()
-
-        level, message, values = encoder_report(
-            peer,
-            lambda s: any(p.key == 'samples' and int(p.value) > 1000 for p in s.values),
-            'a judgement',
-            turn,
-        )
-    assert (level, message) == (1, 'calibration no longer fits')
-    assert float(values['explained by the calibration (%)']) < 99.0
-    assert float(values['outside the interval (%)']) > 5.0

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from live import SECOND, START, rotor_bytes
 
+from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor
@@ -37,8 +38,8 @@ class Bench:
         data = rotor_bytes(stamp, [joint], [position])
         return self.encoder.accept(data, lambda: now)
 
-    def report(self, at=NOW, **changes):
-        return self.monitor.report(self.encoder, replace(self.settings, **changes), at)
+    def report(self, at=NOW, fit=None, **changes):
+        return self.monitor.report(self.encoder, replace(self.settings, **changes), at, fit)
 
 
 @pytest.fixture
@@ -194,3 +195,13 @@ def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
     report = bench.report()
     assert (report.level, report.message) == (OK, 'ok')
     assert report.values['rejected: position not finite'] == '1'
+
+
+@pytest.mark.parametrize(('explained', 'fits'), [(0.4, False), (0.999, True)])
+def test_calibration_that_no_longer_fits_is_a_warning(bench, explained, fits):
+    swing(bench, 0.001)
+    report = bench.report(fit=CalibrationFit(400, explained, 0.25, fits, 40.0))
+    expected = (OK, 'ok') if fits else (WARN, 'calibration no longer fits')
+    assert (report.level, report.message) == expected
+    assert report.values['explained by the calibration (%)'] == f'{100 * explained:.1f}'
+    assert report.values['outside the interval (%)'] == '25.0'

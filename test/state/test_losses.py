@@ -1,0 +1,24 @@
+"""Losses by the numbers of messages."""
+
+import pytest
+
+from gear_kinematics.state.losses import Losses
+
+
+@pytest.mark.parametrize(
+    ('numbers', 'missing'),
+    [
+        ((1, 2, 3), 0),
+        ((5, 6, 9, 10), 2),
+        ((5, 6, 1, 2, 4), 1),  # another driver in its place
+        ((900, 1, 901, 2, 902), 0),  # another driver for a short time
+        ((900, 1, 903, 4), 4),
+        ((7, None, 9), 1),
+    ],
+)
+def test_messages_between_two_numbers_of_a_driver_are_lost(numbers, missing):
+    losses = Losses()
+    for number in numbers:
+        losses.note(number)
+    assert losses.missing == missing
+    assert losses.numbered == (None not in numbers)
