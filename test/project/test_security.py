@@ -477,7 +477,7 @@ def test_evidence_is_there(name):
     """Every test and file that a document cites is there."""
     text = (ROOT / name).read_text('utf-8')
     tests = '\n'.join(path.read_text('utf-8') for path in (ROOT / 'test').rglob('test_*.py'))
-    defined = set(re.findall(r'^def (test_\w+)\(', tests, re.MULTILINE))
+    defined = set(re.findall(r'^(?:async )?def (test_\w+)\(', tests, re.MULTILINE))
     cited = set(re.findall(r'`(test_\w+)`', text))
     assert cited
     assert cited <= defined

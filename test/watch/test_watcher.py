@@ -374,91 +374,87 @@ def origin_of(address: str) -> str:
     return address.rsplit('/', 2)[0]
 
 
-def test_page_comes_with_the_token_of_its_address(watcher):
-    async def run():
-        async with serving(watcher) as address:
-            assert re.fullmatch(r'http://127\.0\.0\.1:\d+/[\w-]{32}/', address)
-            code, page, _ = await fetch(address)
-            assert code == 200
-            assert '<title>gearkin watch</title>' in page
-            assert f'connect-src ws://{origin_of(address)[7:]}' in page
-            assert not re.findall(r'(?:src|href)="(?!data:,")', page)
-            again = Server(watcher)
-            assert again.address.split('/')[3] != address.split('/')[3]
-            again._socket.close()
+def served(check):
+    """Make a test of a coroutine that takes the address of a server."""
 
-    asyncio.run(run())
+    def test(watcher):
+        async def run():
+            async with serving(watcher) as address:
+                await check(address)
+
+        asyncio.run(run())
+
+    return test
 
 
-def test_wrong_token_is_refused(watcher):
-    async def run():
-        async with serving(watcher) as address:
-            origin = origin_of(address)
-            for token in ('wrong', address.split('/')[3][:-1], '%00', 'é'):
-                assert await refused(f'{origin}/{token}/', Origin=origin)
-            assert (await fetch(f'{origin}/'))[0] == 404
-
-    asyncio.run(run())
-
-
-def test_other_origin_is_refused(watcher):
-    async def run():
-        async with serving(watcher) as address:
-            origin = origin_of(address)
-            for other in ('http://evil.example', 'null', 'http://127.0.0.1:1', f'{origin}.evil'):
-                assert await refused(address, Origin=other)
-            assert await handshake(address) == 403  # a browser names its origin
-            async with connected(address):
-                pass
-
-    asyncio.run(run())
+@served
+async def test_page_comes_with_the_token_of_its_address(address):
+    assert re.fullmatch(r'http://127\.0\.0\.1:\d+/[\w-]{32}/', address)
+    code, page, _ = await fetch(address)
+    assert code == 200
+    assert '<title>gearkin watch</title>' in page
+    assert f'connect-src ws://{origin_of(address)[7:]}' in page
+    assert not re.findall(r'(?:src|href)="(?!data:,")', page)
+    again = Server(WatcherStandIn(FULL))
+    assert again.address.split('/')[3] != address.split('/')[3]
+    again._socket.close()
 
 
-def test_other_host_is_refused(watcher):
-    async def run():
-        async with serving(watcher) as address:
-            port = origin_of(address).rpartition(':')[2]
-            for host in ('evil.example', f'evil.example:{port}', '127.0.0.1.evil.example', '['):
-                assert await refused(address, Host=host, Origin=f'http://{host}')
-            # As through a forwarded port.
-            for host in ('localhost:8000', f'127.0.0.1:{port}'):
-                code, page, _ = await fetch(address, Host=host)
-                assert code == 200
-                assert f'connect-src ws://{host}"' in page
-
-    asyncio.run(run())
+@served
+async def test_wrong_token_is_refused(address):
+    origin = origin_of(address)
+    for token in ('wrong', address.split('/')[3][:-1], '%00', 'é'):
+        assert await refused(f'{origin}/{token}/', Origin=origin)
+    assert (await fetch(f'{origin}/'))[0] == 404
 
 
-def test_page_is_neither_kept_nor_framed(watcher):
-    async def run():
-        async with serving(watcher) as address:
-            for path in (address, f'{origin_of(address)}/wrong/'):
-                _, _, headers = await fetch(path)
-                assert headers['Cache-Control'] == 'no-store'
-                assert headers['Content-Security-Policy'] == "frame-ancestors 'none'"
-                assert headers['Referrer-Policy'] == 'no-referrer'
-                assert 'Server' not in headers
-
-    asyncio.run(run())
+@served
+async def test_other_origin_is_refused(address):
+    origin = origin_of(address)
+    for other in ('http://evil.example', 'null', 'http://127.0.0.1:1', f'{origin}.evil'):
+        assert await refused(address, Origin=other)
+    assert await handshake(address) == 403  # a browser names its origin
+    async with connected(address):
+        pass
 
 
-def test_views_come_at_most_thirty_times_a_second_after_the_drawing(watcher):
-    async def run():
-        async with serving(watcher) as address, connected(address) as connection:
-            first = json.loads(await connection.read_message())
-            assert first['drawing'].count('<use ') == 5
-            view = json.loads(await connection.read_message())['view']
-            assert view['values'][0] == {
-                'name': 'output angle', 'value': '12.5°', 'detail': '0.2 rad', 'tone': '',
-            }  # fmt: skip
-            assert view['drivers'][0]['joints'] == ['brake', 'm1']
-            begin, count = time.monotonic(), 0
-            while time.monotonic() < begin + 0.5:
-                count += 'view' in json.loads(await connection.read_message())
-            elapsed = time.monotonic() - begin
-            assert 2 <= count <= 1 + 30.0 * elapsed
+@served
+async def test_other_host_is_refused(address):
+    port = origin_of(address).rpartition(':')[2]
+    for host in ('evil.example', f'evil.example:{port}', '127.0.0.1.evil.example', '['):
+        assert await refused(address, Host=host, Origin=f'http://{host}')
+    # As through a forwarded port.
+    for host in ('localhost:8000', f'127.0.0.1:{port}'):
+        code, page, _ = await fetch(address, Host=host)
+        assert code == 200
+        assert f'connect-src ws://{host}"' in page
 
-    asyncio.run(run())
+
+@served
+async def test_page_is_neither_kept_nor_framed(address):
+    for path in (address, f'{origin_of(address)}/wrong/'):
+        _, _, headers = await fetch(path)
+        assert headers['Cache-Control'] == 'no-store'
+        assert headers['Content-Security-Policy'] == "frame-ancestors 'none'"
+        assert headers['Referrer-Policy'] == 'no-referrer'
+        assert 'Server' not in headers
+
+
+@served
+async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(address):
+    async with connected(address) as connection:
+        first = json.loads(await connection.read_message())
+        assert first['drawing'].count('<use ') == 5
+        view = json.loads(await connection.read_message())['view']
+        assert view['values'][0] == {
+            'name': 'output angle', 'value': '12.5°', 'detail': '0.2 rad', 'tone': '',
+        }  # fmt: skip
+        assert view['drivers'][0]['joints'] == ['brake', 'm1']
+        begin, count = time.monotonic(), 0
+        while time.monotonic() < begin + 0.5:
+            count += 'view' in json.loads(await connection.read_message())
+        elapsed = time.monotonic() - begin
+        assert 2 <= count <= 1 + 30.0 * elapsed
 
 
 def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
@@ -507,18 +503,13 @@ def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
     asyncio.run(run())
 
 
-def test_large_body_is_refused_before_it_is_read(watcher):
-    async def run():
-        async with serving(watcher) as address:
-            _, host, port = origin_of(address).split(':')
-            reader, writer = await asyncio.open_connection(host[2:], int(port))
-            writer.write(
-                b'POST /wrong/ HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5000\r\n\r\n'
-            )
-            assert (await reader.read()).startswith(b'HTTP/1.1 400')
-            writer.close()
-
-    asyncio.run(run())
+@served
+async def test_large_body_is_refused_before_it_is_read(address):
+    _, host, port = origin_of(address).split(':')
+    reader, writer = await asyncio.open_connection(host[2:], int(port))
+    writer.write(b'POST /wrong/ HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5000\r\n\r\n')
+    assert (await reader.read()).startswith(b'HTTP/1.1 400')
+    writer.close()
 
 
 def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
