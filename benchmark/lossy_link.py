@@ -20,14 +20,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from network import NoNetworkError, two_hosts
 from peer import peer
 from processes import NODE, PROFILE, Program, private_surroundings, program
 from rotor_driver import SECOND
 from state_listener import Listener, receive_answers
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / 'test' / 'support'))
-
-from network import NoNetworkError, two_hosts
 
 DEPTH = 1000
 """Messages that the driver keeps to send them again."""

@@ -4,7 +4,6 @@ Everything happens once, in `run`; each test holds one claim against what was se
 are on the node's host: what they do not hear, the node has not published.
 """
 
-import os
 import time
 from contextlib import ExitStack, contextmanager
 from itertools import pairwise
@@ -16,7 +15,6 @@ from endpoints import (
     Driver,
     Line,
     Listener,
-    Remote,
     Report,
     number_of,
     reading,
@@ -81,7 +79,7 @@ class Run(NamedTuple):
 class Bench:
     """The driver, the listeners by line, and the cable, in hand."""
 
-    def __init__(self, driver: Remote, listeners: dict[str, Remote], cable: Cable) -> None:
+    def __init__(self, driver: Driver, listeners: dict[str, Listener], cable: Cable) -> None:
         self.driver = driver
         self.listeners = listeners
         self.cable = cable
@@ -91,34 +89,34 @@ class Bench:
         now = time.time_ns()
 
         def new():
-            found = {name: listener('report') for name, listener in self.listeners.items()}
-            return all(report and report[0] > now for report in found.values()) and found
+            found = {name: listener.report() for name, listener in self.listeners.items()}
+            return all(report and report.stamp > now for report in found.values()) and found
 
-        return {name: Report(*report) for name, report in wait_until(new, 'reports').items()}
+        return wait_until(new, 'reports')
 
     def wait_for(self, name, number) -> None:
         """Wait until a line has answered the driver's message of a number, or one after it."""
-        wait_until(lambda: self.listeners[name]('newest') >= number, f'{number} on {name}')
+        wait_until(lambda: self.listeners[name].newest() >= number, f'{number} on {name}')
 
     def settle(self, *names) -> int:
         """Pause the driver until lines have answered all that it sent; returns how many."""
-        sent = self.driver('pause')
+        sent = self.driver.pause()
         for name in names:
             self.wait_for(name, sent - 1)
         return sent
 
     def home(self, name) -> float:
         """Home a node and give the zero that it answers with."""
-        *_, zero, unit = self.listeners[name]('home').split()
+        *_, zero, unit = self.listeners[name].home().split()
         assert unit == 'rad'
         return float(zero)
 
     def cut(self, length) -> Cut:
         """Pull the cable for some messages."""
         with self.cable.pulled():
-            begin = self.driver('sent')
-            wait_until(lambda: self.driver('sent') >= begin + length, 'messages sent in vain')
-        returned, number = time.monotonic(), self.driver('sent')
+            begin = self.driver.sent()
+            wait_until(lambda: self.driver.sent() >= begin + length, 'messages sent in vain')
+        returned, number = time.monotonic(), self.driver.sent()
         resumed = {}
         for name in PROMPT:
             self.wait_for(name, number)
@@ -131,7 +129,7 @@ def lost(report) -> int:
 
 
 @contextmanager
-def node(name, folder, environment):
+def node(name, folder):
     """Run the node of a line; in the end it has exit code 0 and shows no traceback."""
     log = folder / f'{name}.log'
     arguments = ['--ros-args', '-r', f'__ns:=/{name}',
@@ -139,7 +137,7 @@ def node(name, folder, environment):
                  '-p', f'max_rotor_speed:={MAX_ROTOR_SPEED}']  # fmt: skip
     with (
         log.open('w', encoding='utf-8') as stream,
-        running_node(arguments, stdout=stream, stderr=stream, env=environment) as process,
+        running_node(arguments, stdout=stream, stderr=stream) as process,
     ):
         yield
     text = log.read_text(encoding='utf-8')
@@ -150,7 +148,7 @@ def node(name, folder, environment):
 @pytest.fixture(scope='module')
 def run(tmp_path_factory) -> Run:
     folder = tmp_path_factory.mktemp('two_hosts')
-    environment = os.environ | {
+    environment = {
         # The other host is not on the loopback. There is nobody else, and no way out.
         'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET',
         # The hosts have one memory, which must not be a way round the cable.
@@ -158,23 +156,23 @@ def run(tmp_path_factory) -> Run:
         'ROS_LOG_DIR': str(folder),
     }
     with ExitStack() as stack:
+        patch = stack.enter_context(pytest.MonkeyPatch.context())
+        for name, value in environment.items():
+            patch.setenv(name, value)
         try:
             driver_host, node_host, cable = stack.enter_context(two_hosts())
         except NoNetworkError as error:
             pytest.skip(str(error))
         with driver_host.entered():
-            driver = stack.enter_context(running(Driver, LINES, env=environment))
+            driver = stack.enter_context(running(Driver, LINES))
         with node_host.entered():
             for name in LINES:
-                stack.enter_context(node(name, folder, environment))
+                stack.enter_context(node(name, folder))
             # One for each, since what one line makes up for in a burst can overrun a socket.
-            listeners = {
-                name: stack.enter_context(running(Listener, name, env=environment))
-                for name in LINES
-            }
+            listeners = {name: stack.enter_context(running(Listener, name)) for name in LINES}
         bench = Bench(driver, listeners, cable)
 
-        driver('drive')
+        driver.drive()
         for name in LINES:
             bench.wait_for(name, 0)
         first = bench.settle(*LINES) - 1
@@ -182,7 +180,7 @@ def run(tmp_path_factory) -> Run:
         begin = bench.reports()
 
         cable.lose(LOSS)
-        driver('drive')
+        driver.drive()
 
         def some_losses():
             reports = bench.reports()
@@ -197,21 +195,14 @@ def run(tmp_path_factory) -> Run:
         # message may be among the lost.
         cable.lose(0)
         sent = bench.settle('reliable', 'reliable_and_deep')
-        end = bench.reports()
         return Run(
             sent,
             zeros,
             begin,
             lossy,
             cuts,
-            end,
-            {
-                name: [
-                    [bytes.fromhex(data) for data in messages]
-                    for messages in listener('outputs', first)
-                ]
-                for name, listener in listeners.items()
-            },
+            bench.reports(),
+            {name: listener.outputs(first) for name, listener in listeners.items()},
             node_host.card()['stats64']['rx']['packets'],
             node_host.dropped(),
         )

@@ -1,17 +1,12 @@
-"""A driver and a listener as processes of their own, on any host, controlled through pipes.
+"""A driver and a listener as processes of their own, on any host: Fast DDS has one per process."""
 
-A line on stdin names a method of theirs and its arguments, and a line on stdout is what it
-returned, both in JSON. They end with their stdin.
-"""
-
-import json
 import math
+import multiprocessing
 import struct
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
+from multiprocessing.managers import BaseManager
 from threading import Event, Thread
 from typing import Any, NamedTuple
 
@@ -81,14 +76,14 @@ class Endpoint:
 class Driver(Endpoint):
     """Drives every line at once. After a pause the stamps go on from where they stopped."""
 
-    def __init__(self, lines: dict[str, list]) -> None:
+    def __init__(self, lines: dict[str, Line]) -> None:
         super().__init__('driver')
         self._publishers = []
         for name, line in lines.items():
-            reliability, depth, encoder = line
-            qos = QoSProfile(depth=depth, reliability=ReliabilityPolicy[reliability])
+            reliability = ReliabilityPolicy[line.reliability]
+            qos = QoSProfile(depth=line.depth, reliability=reliability)
             publisher = self._node.create_publisher(JointState, f'/{name}/rotor_state', qos)
-            self._publishers.append((publisher, encoder))
+            self._publishers.append((publisher, line.encoder))
         self._sent = 0
         self._paused = Event()
         self._thread = Thread()
@@ -149,10 +144,10 @@ class Listener(Endpoint):
         """Return the number of the newest message that is answered on every topic, or -1."""
         return min(number_of(data[-1]) if data else -1 for data in self._outputs.values())
 
-    def outputs(self, first: int) -> list[list[str]]:
-        """Return the answers on every topic from that to the driver's `first` on, as digits."""
+    def outputs(self, first: int) -> list[list[bytes]]:
+        """Return the answers on every topic from that to the driver's `first` on."""
         return [
-            [data.hex() for data in messages if number_of(data) >= first]
+            [data for data in messages if number_of(data) >= first]
             for messages in self._outputs.values()
         ]
 
@@ -171,38 +166,19 @@ class Listener(Endpoint):
         super().close()
 
 
-class Remote:
-    """An endpoint in a process of its own."""
+class Process(BaseManager):
+    """A process in which an endpoint is."""
 
-    def __init__(self, process: subprocess.Popen) -> None:
-        self._process = process
 
-    def __call__(self, method: str, *arguments) -> Any:
-        """Let it do something and return what that returns."""
-        print(json.dumps([method, *arguments]), file=self._process.stdin, flush=True)
-        answer = self._process.stdout.readline()
-        assert answer, f'the process ended in {method}'
-        return json.loads(answer)
+for _kind in (Driver, Listener):
+    Process.register(_kind.__name__, _kind)
 
 
 @contextmanager
-def running(kind: type[Endpoint], argument, **options) -> Iterator[Remote]:
-    """Run an endpoint; in the end it has exit code 0."""
-    command = [sys.executable, __file__, kind.__name__, json.dumps(argument)]
-    pipes = {'stdin': subprocess.PIPE, 'stdout': subprocess.PIPE}
-    with subprocess.Popen(command, text=True, **pipes, **options) as process:
-        yield Remote(process)
-    assert process.returncode == 0
-
-
-def main() -> None:
-    kind, argument = sys.argv[1:]
-    endpoint = {'Driver': Driver, 'Listener': Listener}[kind](json.loads(argument))
-    with closing(endpoint):
-        for line in sys.stdin:
-            method, *arguments = json.loads(line)
-            print(json.dumps(getattr(endpoint, method)(*arguments)), flush=True)
-
-
-if __name__ == '__main__':
-    main()
+def running(kind: type[Endpoint], argument) -> Iterator[Any]:
+    """Run an endpoint in a process of its own, where this thread is."""
+    with (
+        Process(ctx=multiprocessing.get_context('spawn')) as process,
+        closing(getattr(process, kind.__name__)(argument)) as endpoint,
+    ):
+        yield endpoint
