@@ -7,9 +7,9 @@ import os
 import re
 import signal
 import time
-from collections import Counter, deque
+from collections import Counter
 from contextlib import ExitStack, closing, contextmanager, suppress
-from itertools import count, islice
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -292,36 +292,6 @@ def test_clock_that_steps(tmp_path, tally):
 
 
 # Several drivers and listeners.
-
-
-def test_twenty_subscribers_come_and_go(tmp_path, tally, record_property):
-    with connected(tmp_path) as peer:
-        drive, began = Drive(peer), time.monotonic()
-        to_come = (Listener(peer.namespace, f'listener_{number}') for number in range(20))
-        present = deque(islice(to_come, 5))
-
-        def leave(listener):
-            # Nothing is sent meanwhile, and what was sent has to come.
-            listener.wait_until(lambda: newest(listener) == drive.sent[-1], 'the last output')
-            listener.close()
-            tally.count(listener.received, drive.sent, joined_late=True)
-
-        def another_is_served():
-            listener = present[0]
-            present.rotate()
-            listener.receive()
-            if heard(listener) < 10:
-                return False
-            present.remove(listener)
-            leave(listener)
-            present.extend(islice(to_come, 1))
-            return True
-
-        for number in range(20):
-            peer.wait_until(another_is_served, f'the outputs for listener {number}')
-        record_property('rate', len(drive.sent) / (time.monotonic() - began))
-        tally.count(peer.received, drive.finish())
-    assert tally.faults == NONE
 
 
 def test_second_driver_is_reported_and_its_earlier_stamps_are_rejected(tmp_path, tally):

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from steady_driver import MILLISECOND
 
-from gear_kinematics.bag import Bag
+from gear_kinematics.bag import Bag, DamagedBagError
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.ros.live import running_node
@@ -93,13 +93,19 @@ def driving():
 
 
 def assert_is_whole(path: Path, *, least: int) -> None:
-    """Check that a recording has every message of the driver from first to last, and validates."""
-    with Bag(path) as bag:
-        messages = [data for _, _, data in bag.messages([MOTOR])]
+    """Check that a recording has every message of the driver from first to last, and validates.
+
+    A process that is killed can leave its last record half written.
+    """
+    messages, whole = [], False
+    with Bag(path) as bag, contextlib.suppress(DamagedBagError):
+        for _, _, data in bag.messages([MOTOR]):
+            messages.append(data)  # noqa: PERF402, kept if the next is damaged
+        whole = True
     stamps = decode_joint_states(messages, 'm1').stamp
     assert len(stamps) >= least
     assert set(np.diff(stamps).tolist()) == {MILLISECOND}
-    assert main(['validate', str(path)]) == 0
+    assert not whole or main(['validate', str(path)]) == 0
 
 
 class WatcherStandIn:
