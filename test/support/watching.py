@@ -100,7 +100,7 @@ def assert_is_whole(path: Path, *, least: int) -> None:
     messages, whole = [], False
     with Bag(path) as bag, contextlib.suppress(DamagedBagError):
         for _, _, data in bag.messages([MOTOR]):
-            messages.append(data)  # noqa: PERF402, kept if the next is damaged
+            messages.append(data)
         whole = True
     stamps = decode_joint_states(messages, 'm1').stamp
     assert len(stamps) >= least
