@@ -8,9 +8,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackagePrefix, FindPackageShare
 
-from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.launch_arguments import node_arguments, refuse_unknown
-from gear_kinematics.shape.urdf import urdf
 
 
 def check(context: LaunchContext) -> None:
@@ -26,15 +24,7 @@ def start_viewers(context: LaunchContext) -> list[Node]:
     parameters = node_arguments(context.launch_configurations).parameters
     # robot_state_publisher needs the URDF as a parameter, and publishes it again. That topic is
     # renamed below, so that it does not collide with the node's.
-    mechanism, module = parameters.mechanism, parameters.module
-    meshes = folder_uri(parameters.meshes, mechanism, module)
-    description = urdf(
-        mechanism,
-        module=module,
-        output_joint=parameters.output_joint,
-        frame_prefix=parameters.frame_prefix,
-        meshes=meshes,
-    )
+    description = parameters.urdf()
     fixed_frame = f'{parameters.frame_prefix}stator'
     return [
         Node(

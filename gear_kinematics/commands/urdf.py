@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments
@@ -10,7 +11,6 @@ from gear_kinematics.commands.files import write_file
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import meshes
 from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
-from gear_kinematics.shape.urdf import urdf
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,14 +40,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         warn_if_teeth_cannot_mesh(mechanism, module, sys.stderr)
         _write(mechanism, module, options.meshes)
         uri = options.mesh_uri or options.meshes.resolve().as_uri()
-    text = urdf(
-        mechanism,
-        module=module,
-        output_joint=config.output_joint,
-        frame_prefix=config.frame_prefix,
-        meshes=meshes.folder_uri(uri, mechanism, module),
-    )
-    print(text, end='')
+    print(replace(config, meshes=uri).urdf(), end='')
     return ExitCode.DONE
 
 

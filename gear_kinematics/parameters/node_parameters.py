@@ -17,6 +17,7 @@ from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, Mecha
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import ConfigError, given_parameters
 from gear_kinematics.parameters.yaml_file import Dumper
+from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
 
@@ -227,6 +228,21 @@ class NodeParameters:
             known = f'gear_ratio is {self.gear_ratio}: only the ratio of this gear is known'
             raise MechanismError([f'{known}, not its bodies'])
         return Mechanism(self.ring_teeth, self.satellite_teeth, self.eccentricity, self.branches)
+
+    def urdf(self) -> str:
+        """Write the URDF of the mechanism.
+
+        Raises:
+            ValueError: if there is none, or `output_joint` is empty or the name of another joint.
+        """
+        mechanism, module = self.mechanism, self.module
+        return urdf(
+            mechanism,
+            module=module,
+            output_joint=self.output_joint,
+            frame_prefix=self.frame_prefix,
+            meshes=meshes.folder_uri(self.meshes, mechanism, module),
+        )
 
     @property
     def single_turn(self) -> bool:

@@ -11,10 +11,8 @@ from std_msgs.msg import String
 from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.parameters.meshes import folder_uri
 from gear_kinematics.ros.markers import Markers
 from gear_kinematics.ros.outputs import Outputs
-from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.wire import topics
 
 
@@ -22,9 +20,7 @@ class Display:
     """Publishes the URDF after every change, and the markers while they have viewers."""
 
     def __init__(self, node: Node, parameters: NodeParameters, outputs: Outputs) -> None:
-        self._mechanism, self._module = parameters.mechanism, parameters.module
         self._outputs = outputs
-        self._meshes = folder_uri(parameters.meshes, self._mechanism, self._module)
         self._description = ''
         outputs.create(topics.ROBOT_DESCRIPTION, String, _latched())
         if rate := parameters.markers_rate:
@@ -36,20 +32,15 @@ class Display:
 
     def update(self, parameters: NodeParameters) -> None:
         """Use names of joints and links; publishes the URDF if it has changed."""
-        prefix = parameters.frame_prefix
-        description = urdf(
-            self._mechanism,
-            module=self._module,
-            output_joint=parameters.output_joint,
-            frame_prefix=prefix,
-            meshes=self._meshes,
-        )
+        description = parameters.urdf()
         if description == self._description:
             return
         self._description = description
         message = serialize_message(String(data=description))
         self._outputs.send([(topics.ROBOT_DESCRIPTION, message)])
-        self._markers = Markers(self._mechanism, module=self._module, frame_prefix=prefix)
+        self._markers = Markers(
+            parameters.mechanism, module=parameters.module, frame_prefix=parameters.frame_prefix
+        )
 
     def _on_viewers(self, event: QoSPublisherMatchedInfo) -> None:
         """Run the timer of the markers while there are subscribers; resend for a new one."""

@@ -130,7 +130,7 @@ ROOMS = {
     'kinematics': (),
     'wire': ('kinematics',),
     'shape': ('kinematics',),
-    'parameters': ('kinematics', 'wire'),
+    'parameters': ('kinematics', 'shape', 'wire'),
     'correction': ('kinematics', 'parameters', 'wire'),
     'state': ('correction', 'kinematics', 'parameters', 'shape', 'wire'),
     'bag': ('correction', 'kinematics', 'parameters', 'state', 'wire'),
