@@ -4,7 +4,7 @@ import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from gear_kinematics.kinematics import Gear
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -26,6 +26,13 @@ _RPM = 60.0 / TURN  # of 1 rad/s
 _LEVELS = {OK: 'healthy', WARN: 'warning', ERROR: 'error'}
 
 
+class Curve(NamedTuple):
+    """The latest value of a curve; None while there is none."""
+
+    unit: str
+    value: float | None
+
+
 @dataclass(frozen=True, slots=True)
 class Entry:
     """A quantity, or a status of diagnostics."""
@@ -34,15 +41,7 @@ class Entry:
     value: str
     detail: str = ''
     tone: Tone = ''
-
-
-@dataclass(frozen=True, slots=True)
-class Curve:
-    """The latest value of a curve; None while there is none."""
-
-    name: str
-    unit: str
-    value: float | None
+    curve: Curve | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +55,6 @@ class View:
     message: str = ''  # on the state, in sentences
     values: tuple[Entry, ...] = ()
     diagnostics: tuple[Entry, ...] = ()
-    curves: tuple[Curve, ...] = ()
     drivers: tuple[Driver, ...] = ()
     recording: str = ''  # on the recording in progress, if there is one
     failure: str = ''  # why the last recording ended by itself, if it did
@@ -71,7 +69,7 @@ def view_of(gear: GearNode, rotor: Latest | None, others: Sequence[str]) -> View
         values=tuple(values_of(gear, rotor)),
         diagnostics=tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values()),
         **state_of(gear, rotor, others),
-        **motion_of(gear),
+        **_angles(gear),
     )
 
 
@@ -107,25 +105,15 @@ def _state_of(gear: GearNode | None, rotor: Latest | None) -> tuple[State, str, 
     return 'connected', '', ''
 
 
-def motion_of(gear: GearNode) -> dict[str, Any]:
-    """Give the numbers for the drawing and the curves."""
-    output, error = gear.joint(topics.OUTPUT_STATE), gear.joint(topics.TRANSMISSION_ERROR)
+def _angles(gear: GearNode) -> dict[str, Any]:
+    """Give the angles of the drawing, within the turn."""
+    output = gear.joint(topics.OUTPUT_STATE)
     if not (output and gear.gear):
         return {}
     rotor = gear.gear.gear_ratio.rotor_angle(output.position)
-    quantities = (
-        ('output angle', '°', math.degrees(output.position), output),
-        ('output speed', ' rpm', _RPM * (output.velocity or 0.0), output),
-        ('transmission error', '″', arc_seconds(error.position) if error else 0.0, error),
-    )
     return {
-        'rotor': math.degrees(math.remainder(rotor, TURN)),
-        'output': math.degrees(math.remainder(output.position, TURN)),
-        'curves': tuple(
-            Curve(name, unit, value if math.isfinite(value) and not _freshness(joint) else None)
-            for name, unit, value, joint in quantities
-            if joint and (name != 'output speed' or output.velocity is not None)
-        ),
+        name: math.degrees(math.remainder(angle, TURN))
+        for name, angle in (('rotor', rotor), ('output', output.position))
     }
 
 
@@ -146,8 +134,9 @@ def values_of(gear: GearNode, rotor: Latest | None) -> Iterator[Entry]:
         angle = _degrees(corrected.position)
         yield Entry('corrected angle', angle, detail, _freshness(corrected))
     if error := gear.joint(topics.TRANSMISSION_ERROR):
-        detail = _peak_to_peak(gear)
-        yield Entry('transmission error', arc(error.position), detail, _freshness(error))
+        tone, detail = _freshness(error), _peak_to_peak(gear)
+        curve = _curve('″', arc_seconds(error.position), tone)
+        yield Entry('transmission error', arc(error.position), detail, tone, curve)
 
 
 def status_entry(status: Status, now: float) -> Entry:
@@ -163,14 +152,18 @@ def status_entry(status: Status, now: float) -> Entry:
 
 
 def _motion(output: Joint, gear: Gear) -> Iterator[Entry]:
-    ratio, tone = gear.gear_ratio, _freshness(output)
-    rotor = ratio.rotor_angle(output.position)
-    yield Entry('output angle', _degrees(output.position), f'{output.position:.5f} rad', tone)
+    ratio, tone, angle = gear.gear_ratio, _freshness(output), output.position
+    rotor, curve = ratio.rotor_angle(angle), _curve('°', math.degrees(angle), tone)
+    yield Entry('output angle', _degrees(angle), f'{angle:.5f} rad', tone, curve)
     yield Entry('rotor angle', _degrees(rotor), f'{rotor / TURN:.3f} turns', tone)
     if output.velocity is not None:
         speed = _RPM * output.velocity
         detail = f'rotor {ratio.rotor_angle(speed):.1f} rpm'
-        yield Entry('output speed', f'{speed:.2f} rpm', detail, tone)
+        yield Entry('output speed', f'{speed:.2f} rpm', detail, tone, _curve(' rpm', speed, tone))
+
+
+def _curve(unit: str, value: float, tone: Tone) -> Curve:
+    return Curve(unit, value if math.isfinite(value) and not tone else None)
 
 
 def _peak_to_peak(gear: GearNode) -> str:

@@ -37,7 +37,7 @@
       [detail, 'detail']));
   }
 
-  function showCurve(figure, {name, unit, value}) {
+  function showCurve(figure, {name, curve: [unit, value]}) {
     const now = performance.now() / 1000;
     const points = (curves[name] ?? []).filter(([time]) => time > now - SPAN);
     points.push([now, value]);
@@ -107,9 +107,10 @@
     record.disabled = !recording && !running && !now.drivers.length;
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
-    resize(find('curves'), now.curves.length,
+    const shown = now.values.filter(({curve}) => curve);
+    resize(find('curves'), shown.length,
       () => find('curve').content.firstElementChild.cloneNode(true));
-    now.curves.forEach((curve, k) => showCurve(find('curves').children[k], curve));
+    shown.forEach((entry, k) => showCurve(find('curves').children[k], entry));
     showDrivers(now.drivers);
   }
 

@@ -30,10 +30,10 @@ from gear_kinematics.watch.view import (
     Curve,
     Entry,
     View,
-    motion_of,
     state_of,
     status_entry,
     values_of,
+    view_of,
 )
 from gear_kinematics.watch.watcher import Answer
 from gear_kinematics.wire import topics
@@ -100,18 +100,24 @@ def gear_node(**changes):
     return SimpleNamespace(**{**node, **changes})
 
 
+def curve(value, unit):
+    return Curve(unit, pytest.approx(value))
+
+
 def test_values_are_those_of_the_topics():
     rotor = SimpleNamespace(age=0.0023, rate=999.6)
     assert list(values_of(gear_node(), rotor)) == [
-        Entry('output angle', '-370.000°', '-6.45772 rad'),
+        Entry('output angle', '-370.000°', '-6.45772 rad', '', curve(-370.0, '°')),
         Entry('rotor angle', '7030.000°', '19.528 turns'),
-        Entry('output speed', '-9.55 rpm', 'rotor 181.4 rpm'),
+        Entry('output speed', '-9.55 rpm', 'rotor 181.4 rpm', '', curve(-30.0 / math.pi, ' rpm')),
         Entry('input', '1000 Hz', 'last message 2 ms ago'),
         Entry('corrected angle', '-370.250°', '± 30.000″ (95 %)'),
         Entry(
             'transmission error',
             '-1′ 30.000″',
             'peak to peak 3′ 00.000″ in 10 s, limit 6′ 00.000″',
+            '',
+            curve(-90.0, '″'),
         ),
     ]
 
@@ -122,23 +128,17 @@ def test_values_that_are_out_of_date_say_so():
     rotor = SimpleNamespace(age=61.0, rate=0.0)
     found = {entry.name: entry for entry in values_of(silent, rotor)}
     assert found['output angle'].tone == 'stale'
-    assert motion_of(silent)['curves'] == (Curve('output angle', '°', None),)
+    assert found['output angle'].curve == Curve('°', None)
     assert found['input'] == Entry('input', '0 Hz', 'last message 1 min ago', 'bad')
     unheard = SimpleNamespace(age=None, rate=0.0)
     assert Entry('input', '0 Hz', 'no message yet', 'bad') in values_of(silent, unheard)
 
 
-def test_drawing_and_curve_get_angles_within_a_turn():
-    motion = motion_of(gear_node())
-    assert motion['output'] == pytest.approx(-10.0)
-    assert motion['rotor'] == pytest.approx(7030.0 - 20 * 360.0)
-    curves = {curve.name: (round(curve.value, 9), curve.unit) for curve in motion['curves']}
-    assert curves == {
-        'output angle': (-370.0, '°'),
-        'output speed': (round(-30.0 / math.pi, 9), ' rpm'),
-        'transmission error': (-90.0, '″'),
-    }
-    assert motion_of(gear_node(joint={}.get)) == {}
+def test_drawing_gets_angles_within_a_turn():
+    view = view_of(gear_node(), None, ())
+    assert view.output == pytest.approx(-10.0)
+    assert view.rotor == pytest.approx(7030.0 - 20 * 360.0)
+    assert view_of(gear_node(joint={}.get), None, ()).rotor is None
 
 
 @pytest.mark.parametrize('text', ['none', 'nan', '9' * 400, '1e200', '0x1'])
@@ -448,6 +448,7 @@ async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(addres
         view = json.loads(await connection.read_message())['view']
         assert view['values'][0] == {
             'name': 'output angle', 'value': '12.5°', 'detail': '0.2 rad', 'tone': '',
+            'curve': None,
         }  # fmt: skip
         assert view['drivers'][0]['joints'] == ['brake', 'm1']
         begin, count = time.monotonic(), 0
