@@ -21,20 +21,14 @@ class _OtherNodesError(ConfigError):
 
 
 def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
-    """Check that parameter files have parameters, and at least one has some for the node.
+    """Check that a node's parameter files have parameters, and at least one some for the node.
 
-    ROS silently ignores other files, and the node would run with its default values.
-
-    Args:
-        paths: parameter files of ROS, as many as the node is started with.
-        node: the node's fully qualified name.
+    ROS silently ignores other files, and the node would run with its default values: here they
+    raise ConfigError.
 
     Returns:
         The paths of calibrations by the values of the parameter in the files, to which relative
         ones are relative.
-
-    Raises:
-        ConfigError: if a file cannot be read or has no parameters, or none has any for the node.
     """
     useless = []
     calibrations: dict[str, Path] = {}

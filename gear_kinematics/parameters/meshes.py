@@ -14,11 +14,7 @@ _URI = re.compile(r'[A-Za-z][A-Za-z0-9+.-]*://[!-~]+')
 
 
 def check(value: str) -> None:
-    """Check a value of the parameter, or the URI of a folder.
-
-    Raises:
-        ValueError: if it is none.
-    """
+    """Raise ValueError unless it is a value of the parameter, or the URI of a folder."""
     if value not in {AUTO, NONE} and not _URI.fullmatch(value):
         raise ValueError(
             f'must be {AUTO}, {NONE} or a URI such as package://my_robot/meshes, not {value!r}'

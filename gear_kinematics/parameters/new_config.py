@@ -16,12 +16,9 @@ from gear_kinematics.wire.topics import ROTOR_STATE
 
 
 def new_config(topic: str, joint: str, name: str) -> str:
-    """Return the text of a parameter file for the joint of a driver.
+    """Return the text of a parameter file of a name for the joint on a driver's topic.
 
-    Args:
-        topic: of the driver.
-        joint: its name there, or its index if no joint has a name.
-        name: of the file, for the command that starts the node.
+    The joint is an index where joints have no names.
     """
     # The head of the default file is about the default file.
     body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
@@ -52,25 +49,19 @@ def start_command(topic: str, name: str) -> str:
 
 
 def write_new(path: Path, text: str) -> None:
-    """Write a file that must not exist yet, completely or not at all.
-
-    Raises:
-        ConfigError: if it exists already or cannot be written.
-    """
+    """Write a file that must not exist yet, completely or not at all; else raise ConfigError."""
     try:
-        file = path.open('x', encoding='utf-8')
+        with path.open('x', encoding='utf-8') as file:
+            try:
+                file.write(text)
+                file.flush()
+            except BaseException:
+                path.unlink()
+                raise
     except FileExistsError as error:
         raise ConfigError(f'{path}: exists already') from error
     except OSError as error:
         raise ConfigError(f'{path}: {error.strerror}') from error
-    try:
-        with file:
-            file.write(text)
-    except BaseException as error:
-        path.unlink()
-        if isinstance(error, OSError):
-            raise ConfigError(f'{path}: {error.strerror}') from error
-        raise
 
 
 def unused_name(folder: Path, name: str) -> Path:

@@ -37,12 +37,7 @@ _TOPICS = Topics()
 def run(console: Console, calibration_file: Path | None = None) -> BagReport:
     """Play the shipped bag's rotor states into a node process and validate its outputs.
 
-    Args:
-        console: to show them on, moving if it is a terminal.
-        calibration_file: of the gear; None takes that of the parameters, if any.
-
-    Raises:
-        ValueError: if the calibration cannot be used.
+    The calibration, by default that of the parameters if any, raises ValueError if it is unusable.
     """
     config = NodeParameters.load()
     calibration = None

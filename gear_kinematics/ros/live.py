@@ -207,11 +207,7 @@ class Replay:
     def receive(self, wanted: Counter[str], but: int = 0) -> bool:
         """Receive until no topic lacks more than `but` of its wanted messages, from the start.
 
-        Returns:
-            Whether they arrived; False after some seconds without any message.
-
-        Raises:
-            ReplayError: if the node has ended.
+        Returns False after some seconds without any message; raises ReplayError if the node ends.
         """
         total, deadline = -1, 0.0
         while max((wanted - self.counts).values(), default=0) > but:

@@ -48,11 +48,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     """Publishes the state of the mechanism for every valid message on rotor_state."""
 
     def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
-        """Declare the parameters and open the topics.
-
-        Args:
-            parameter_files: from the command line, which must contain this node.
-            options: of `Node`.
+        """Declare the parameters, of which the files must have some, and open the topics.
 
         Raises:
             ParameterException: if a parameter is refused.
@@ -153,11 +149,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         return SetParametersResult(successful=not reason, reason=reason)
 
     def _prepare(self, changed: Iterable[tuple[str, Any]]) -> None:
-        """Make what the changed parameters affect and can be refused for, also one set twice.
-
-        Raises:
-            ValueError: if they are refused.
-        """
+        """Make what the changed parameters affect and can be refused for, also one set twice."""
         settings, calibrated = self._settings, self._calibrated
         messages = state_messages(settings)
         for name, value in changed:

@@ -54,14 +54,11 @@ class OutputEncoder:
         return parameters.values() | _UNRELATED == self._parameters.values() | _UNRELATED
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
-        """Process the next message.
+        """Process the next message; returns the errors that are known now, in order.
 
         Args:
             data: a serialised sensor_msgs/JointState.
             now: the clock, ns, for messages without a stamp.
-
-        Returns:
-            The errors that are known now, in the order of their stamps.
 
         Raises:
             RejectedInputError: if the message has no valid angle. It is counted.

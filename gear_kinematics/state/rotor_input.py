@@ -153,11 +153,7 @@ class RotorInput:
         return self._turns.home(rotor_angle, self._parameters.rotor_direction)
 
     def zero_for(self, rotor_angle: float) -> float:
-        """Return the `rotor_zero` that `home` would give, and change nothing.
-
-        Raises:
-            RuntimeError: before the first valid message.
-        """
+        """Return, or raise, what `home` would, and change nothing."""
         return self._turns.zero_for(rotor_angle, self._parameters.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:

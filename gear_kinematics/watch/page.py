@@ -40,11 +40,7 @@ _BODY = """\
 
 
 def watch_page(server: str) -> str:
-    """Write the page.
-
-    Args:
-        server: its address for WebSockets: `ws://host:port`.
-    """
+    """Write the page of a server, by its address for WebSockets: `ws://host:port`."""
     style, script = (
         files(__package__).joinpath(f'watch.{kind}').read_text('utf-8') for kind in ('css', 'js')
     )

@@ -96,13 +96,10 @@ class Recording:
             thread.start()
 
     def add(self, node: Node, types: Mapping[str, str], answers: Mapping[str, str]) -> None:
-        """Record topics from now on; those that are recorded already are left alone.
+        """Record topics, given with their types, from now on, beside those that are recorded.
 
-        Args:
-            node: subscribes; subscriptions are made and removed by the caller's thread only.
-            types: names of the types by topic.
-            answers: topics whose messages have the stamps of those that they answer, each with
-                the topic of these.
+        `answers` are topics whose messages have the stamps of those that they answer, each with
+        the topic of these. Subscriptions are made and removed by the caller's thread only.
         """
         for topic, kind in types.items():
             if topic not in self._channels:

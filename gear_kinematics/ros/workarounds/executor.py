@@ -12,11 +12,7 @@ ENDLESS = 3600.0
 
 
 def make_executor(kind: str = 'auto', context: Context | None = None) -> Executor:
-    """Create the executor that the parameter `executor` selects.
-
-    Raises:
-        ValueError: if this rclpy lacks it.
-    """
+    """Create the executor that the parameter `executor` selects; ValueError if rclpy lacks it."""
     if kind != 'single_threaded':
         try:
             from rclpy.experimental.events_executor import EventsExecutor  # noqa: PLC0415

@@ -20,13 +20,8 @@ def check_shared_memory(participants: int = 1) -> str | None:
     """Check before rclpy is imported; returns a warning if messages may get lost.
 
     Fast DDS falls back to UDP if it cannot reserve memory for messages. If there is enough for the
-    messages but not for a port to receive them, they are lost silently.
-
-    Args:
-        participants: number of DDS participants to be created.
-
-    Raises:
-        SharedMemoryError: if the process would be killed.
+    messages but not for a port to receive them, they are lost silently. SharedMemoryError is
+    raised if the process would be killed.
     """
     try:
         status = os.statvfs(_PLACE)

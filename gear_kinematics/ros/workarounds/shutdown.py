@@ -33,9 +33,7 @@ def shut_down(node: Node) -> None:
 def _end_discovery(node: Node) -> None:
     """Wait, with a time limit, until no discovery callback runs, and prevent further ones.
 
-    Raises:
-        OSError: if rmw_fastrtps is not in use.
-        AttributeError: if it does not have these functions.
+    OSError means that rmw_fastrtps is not in use, AttributeError that it lacks these functions.
     """
     rcl, rmw = (
         ctypes.CDLL(f'lib{name}.so', os.RTLD_NOLOAD | os.RTLD_NOW)
