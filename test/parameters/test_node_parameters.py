@@ -10,9 +10,7 @@ import yaml
 
 from gear_kinematics.kinematics import Branch, MechanismError
 from gear_kinematics.parameters import (
-    BRANCH_PARAMETERS,
     NODE,
-    PARAMETERS,
     ConfigError,
     NodeParameters,
     default_config,
@@ -56,11 +54,6 @@ OUR_OWN = {
     'transmission_error_max_gap': 0.1,
     'transmission_error_travel': math.radians(1.0),
 }
-READ_ONLY = {
-    'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
-    'markers_rate', 'meshes', 'executor',
-}  # fmt: skip
-LIVE = {'rotor_direction', 'rotor_zero', 'home_angle'}
 
 
 def write(folder: Path, text: str) -> Path:
@@ -112,12 +105,6 @@ def test_written_parameters_are_read_again(tmp_path):
         parameters.mechanism  # noqa: B018, it raises
 
 
-def test_parameters_that_are_fixed_at_the_start_are_read_only():
-    assert {name for name, parameter in PARAMETERS.items() if parameter.read_only} == READ_ONLY
-    assert all(parameter.read_only for parameter in BRANCH_PARAMETERS.values())
-    assert set(PARAMETERS) >= LIVE
-
-
 REFUSED = [
     ('ring_teeth', 1, ('2', '100000')),
     ('ring_teeth', 100_001, ('2', '100000')),
@@ -155,11 +142,8 @@ def test_fault_names_parameter_value_and_bound(tmp_path, name, value, bounds):
     ('name', 'value'),
     [
         ('ring_teeth', 2),
-        ('ring_teeth', 100_000),
-        ('eccentricity', 1e-6),
         ('eccentricity', 1.0),
         ('rotor_direction', -1),
-        ('rotor_direction', 1),
         ('rotor_zero', -1e15),
         ('rotor_encoder', 'single_turn'),
         ('gear_ratio', '-58/3'),
@@ -207,9 +191,7 @@ def test_branch_keys_may_be_nested_or_dotted(tmp_path, nested):
 @pytest.mark.parametrize(
     'block',
     [
-        '/**: {}',
         'gear_state_publisher: {}',
-        '/gear_state_publisher: {}',
         '/arm/gear_state_publisher: {}',
         '/**/gear_state_publisher: {}',
         'arm: {{gear_state_publisher: {}}}',
@@ -275,9 +257,7 @@ def test_file_that_leaves_open_which_node_is_meant_is_refused(tmp_path, names):
     )
 
 
-@pytest.mark.parametrize(
-    'node', ['/left', '/gear_state_publisher', '/left/x', 'gear', 'left', '/', 'no name', '']
-)
+@pytest.mark.parametrize('node', ['/left', '/gear_state_publisher', 'gear', '/', ''])
 def test_file_that_has_nothing_for_the_node_is_refused(tmp_path, node):
     path = blocks(tmp_path, LEFT, RIGHT)
     with pytest.raises(ConfigError) as caught:
@@ -303,28 +283,19 @@ def test_one_of_several_files_has_something_for_the_node(tmp_path):
         f'did you mean `{LEFT}`?; '
         f'{files[2]}: no parameters of {RIGHT} in it, only of /**/x, /y'
     )
+    (tmp_path / 'empty.yaml').write_text('')
+    with pytest.raises(ConfigError, match=r'empty\.yaml: no ros__parameters in it'):
+        require_any([*files, tmp_path / 'empty.yaml'], LEFT)
 
 
-def test_none_of_several_files_is_empty(tmp_path):
-    files = [config(tmp_path, ring_teeth=90), tmp_path / 'empty.yaml']
-    files[1].write_text('')
-    with pytest.raises(ConfigError) as caught:
-        require_any(files, LEFT)
-    assert str(caught.value) == f'{files[1]}: no ros__parameters in it'
-
-
-@pytest.mark.parametrize(
-    'values',
-    [
-        {'use_sim_time': True},
-        {'start_type_description_service': False},
-        {'qos_overrides': {'/rotor_state': {'subscription': {'reliability': 'reliable'}}}},
-        {'qos_overrides./rotor_state.subscription.depth': 5},
-    ],
-    ids=['use_sim_time', 'type description', 'nested', 'dotted'],
-)
-def test_parameters_of_every_ros_node_are_known(tmp_path, values):
-    # gearkin reads the same file as the node.
+def test_parameters_of_every_ros_node_are_known(tmp_path):
+    """gearkin reads the same file as the node."""
+    values = {
+        'use_sim_time': True,
+        'start_type_description_service': False,
+        'qos_overrides': {'/rotor_state': {'subscription': {'reliability': 'reliable'}}},
+        'qos_overrides./output_state.publisher.depth': 5,
+    }
     assert load(config(tmp_path, ring_teeth=90, **values)).ring_teeth == 90
 
 
@@ -340,14 +311,11 @@ def test_every_way_to_write_a_number_in_a_node_file_is_read(tmp_path, number):
     [
         (None, 'No such file or directory'),
         (b'\xff\xfe\x00', "can't decode byte 0xff"),
-        ('ratio: "Übersetzung"'.encode('latin-1'), "can't decode byte 0xdc"),
         (b'a: [1', "expected ',' or ']'"),
         (b'a: b: c', 'mapping values are not allowed'),
         (b'a: &x 1\nb: *x', 'aliases are not supported in line 2'),
         (b'', 'no ros__parameters in it'),
-        (b'80', 'no ros__parameters in it'),
         (b'[1, 2]', 'no ros__parameters in it'),
-        (b'ring_teeth: 80', 'no ros__parameters in it'),
         (b'/**: {ros__parameters: 5}', 'no ros__parameters in it'),
         (b'/**: {parameters: {ring_teeth: 80}}', 'no ros__parameters in it'),
         (b'a b: {ros__parameters: {ring_teeth: 80}}', '/a b is not a valid node name'),
@@ -365,17 +333,8 @@ def test_what_is_no_parameter_file_is_refused_in_one_line(tmp_path, content, cau
     assert '\n' not in str(caught.value)
 
 
-def test_relative_path_of_a_calibration_is_relative_to_the_file_that_names_it(tmp_path):
-    assert load(config(tmp_path, calibration='mine.yaml')).calibration == str(
-        tmp_path / 'mine.yaml'
-    )
-    assert load(config(tmp_path, calibration='/there/mine.yaml')).calibration == (
-        '/there/mine.yaml'
-    )
-
-
-def test_node_finds_a_calibration_beside_the_file_that_names_it(tmp_path):
-    (tmp_path / 'first').mkdir()
-    files = [config(tmp_path / 'first', calibration='a.yaml'), config(tmp_path, calibration='b')]
-    found = {'a.yaml': tmp_path / 'first' / 'a.yaml', 'b': tmp_path / 'b'}
-    assert require_any(files, '/gear_state_publisher') == found
+@pytest.mark.parametrize('path', ['mine.yaml', '/there/mine.yaml'])
+def test_path_of_a_calibration_is_relative_to_the_file_that_names_it(tmp_path, path):
+    file = config(tmp_path, calibration=path)
+    assert load(file).calibration == str(tmp_path / path)
+    assert require_any([file], '/gear_state_publisher') == {path: tmp_path / path}

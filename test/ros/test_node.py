@@ -4,6 +4,7 @@ import math
 import re
 import sys
 import time
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 from fractions import Fraction
 from random import Random
@@ -24,7 +25,9 @@ from rclpy.qos import QoSProfile
 from rclpy.serialization import deserialize_message
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
+from std_msgs.msg import String
 from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
@@ -445,6 +448,33 @@ def test_markers_cost_nothing_without_viewers_and_can_be_switched_off(node, make
 def test_description_shows_the_meshes_that_are_asked_for(make, values, meshes):
     description = make('meshes', **values)._display._description
     assert set(re.findall('filename="(.*)/satellite.stl"', description)) == meshes
+
+
+def test_description_and_markers_follow_the_prefix_and_are_sent_when_they_change(
+    make, monkeypatch
+):
+    node, published = make('described'), []
+    monkeypatch.setattr(node._outputs, 'send', published.extend)
+    node.set_parameters([Parameter('rotor_zero', value=1.0)])
+    assert not published
+    node.set_parameters([Parameter('frame_prefix', value='arm_')])
+    [(topic, data)] = published
+    assert topic == 'robot_description'
+    robot = ET.fromstring(deserialize_message(data, String).data)  # noqa: S314, our own
+    bodies = [
+        'stator',
+        'rotor',
+        'satellite_a',
+        'satellite_b',
+        'oldham_a',
+        'oldham_b',
+        'output_shaft',
+    ]
+    links = {f'arm_{body}' for body in bodies}
+    assert {link.get('name') for link in robot.iter('link')} == links
+    node._display._publish_markers()
+    markers = deserialize_message(published[1][1], MarkerArray).markers
+    assert {marker.header.frame_id for marker in markers} == links
 
 
 def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeypatch, tmp_path):

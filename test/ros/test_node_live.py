@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 import time
-import xml.etree.ElementTree as ET
 from collections import deque
 from contextlib import ExitStack, contextmanager
 
@@ -18,7 +17,6 @@ import yaml
 from blocked_bags import gearkin_here
 from expected_outputs import Settings, all_right
 from live import (
-    LATCHED,
     PATIENT,
     SECOND,
     START,
@@ -31,7 +29,6 @@ from live import (
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-from visualization_msgs.msg import MarkerArray
 
 from gear_kinematics.bag import BagWriter
 from gear_kinematics.ros.live import running_node
@@ -299,11 +296,6 @@ def test_home_makes_the_position_the_home_angle(start):
     assert level == ERROR
 
 
-def names_in(description, kind) -> set[str]:
-    robot = ET.fromstring(description)  # noqa: S314, the project's own
-    return {element.get('name') for element in robot.iterfind(kind)}
-
-
 def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
     """Beside a driver with other names, homed at run time, and validated without any option."""
     names = {'rotor_state': 'motor/joint_states'}
@@ -337,33 +329,6 @@ def test_the_recording_that_the_readme_makes_is_proven(start, tmp_path):
     assert 'm1, the only joint on /motor/joint_states, is taken' in done.stdout
     assert 'compared with rotor_zero 12.3 instead of 0, as after homing' in done.stdout
     assert gearkin_here('validate', 'monday', '--strict', cwd=tmp_path).returncode == 1
-
-
-def test_description_and_markers_are_latched_and_follow_the_prefix(start):
-    peer = start(*PATIENT).peer
-    description = peer.description()
-    assert names_in(description, 'link') == {
-        'stator', 'rotor', 'satellite_a', 'satellite_b', 'oldham_a', 'oldham_b', 'output_shaft'
-    }  # fmt: skip
-    [name] = [name for name in peer.received if name.startswith('robot_description')]
-    peer.listen(MarkerArray, 'markers', LATCHED)
-    markers = peer.received['markers']
-    peer.wait_until(lambda: markers, 'markers')
-    assert peer.set(frame_prefix='arm_').successful
-    peer.wait_until(lambda: len(peer.received[name]) == 2, 'a new description')
-    peer.wait_until(
-        lambda: {m.header.frame_id[:4] for m in markers[-1].markers} == {'arm_'}, 'new markers'
-    )
-    # A late subscriber receives the new description only.
-    assert peer.description() == peer.received[name][1].data
-    output = peer.answer(rotor_state(START, position=[1.0]))
-    assert all_right(output, 1.0, Settings(frame_prefix='arm_'))
-    assert set(output[2].name) == names_in(peer.received[name][1].data, 'joint')
-    # A change of something else does not publish it.
-    assert peer.set(rotor_zero=1.0).successful
-    peer.answer(rotor_state(START + 1, position=[1.0]))
-    peer.status()
-    assert len(peer.received[name]) == 2
 
 
 # Quality of service.
