@@ -167,7 +167,8 @@ def launched(tmp_path):
     config = tmp_path / 'two.yaml'
     config.write_text(TWO_NODES)
     context.launch_configurations.update(
-        config=str(config), frame_prefix='', namespace='left', rotor_state='rotor_state',
+        config=str(config), frame_prefix='', namespace='left', rotor_joint='',
+        rotor_state='rotor_state',
         rviz='false', rviz_config='view.rviz', publish_frequency='100',
     )  # fmt: skip
     return context
