@@ -2,12 +2,12 @@
 
 import struct
 import threading
-import time
 from dataclasses import replace
 from pathlib import Path
 from types import MappingProxyType
 
 import pytest
+from blocked_bags import wait_until
 
 from gear_kinematics.bag import Bag, BagError, LiveBagWriter
 from gear_kinematics.parameters import NodeParameters
@@ -17,7 +17,6 @@ from gear_kinematics.watch.recording import Recording
 from gear_kinematics.watch.watcher import Watcher
 
 JOINT_STATE = 'sensor_msgs/msg/JointState'
-DEADLINE = 20.0
 
 
 class Source:
@@ -53,19 +52,16 @@ def begin(path: Path, answers=MappingProxyType({})) -> Recording:
     return ongoing
 
 
+def count(ongoing: Recording) -> int:
+    return sum(ongoing.status().counts.values())
+
+
 def put(source, topic, *numbers, received=100, stamps=()) -> None:
     """Put messages there, with their numbers and with stamps, s."""
     source.waiting[topic] = [
         Taken(struct.pack('<4xiI12x', stamp, 0), received + k, number)
         for k, (number, stamp) in enumerate(zip(numbers, stamps or range(1, 9), strict=False))
     ]
-
-
-def wait_for(condition) -> None:
-    deadline = time.monotonic() + DEADLINE
-    while not condition():
-        assert time.monotonic() < deadline
-        time.sleep(0.005)
 
 
 def test_messages_of_all_topics_are_written_in_the_order_of_their_reception(source, tmp_path):
@@ -92,10 +88,10 @@ def test_losses_are_counted_over_all_rounds_unless_they_are_unknown(
 ):
     ongoing = begin(tmp_path / 'bag')
     put(source, '/a', 1, 2)
-    wait_for(lambda: sum(ongoing.status().counts.values()) == 2)
+    wait_until(lambda: count(ongoing) == 2, '2 messages')
     monkeypatch.setattr(source, 'drivers', drivers)
     put(source, '/a', *later)
-    wait_for(lambda: sum(ongoing.status().counts.values()) == 4)
+    wait_until(lambda: count(ongoing) == 4, '4 messages')
     assert str(ongoing.stop()) == f'4 messages, {lost}'
 
 
@@ -103,7 +99,7 @@ def test_last_inputs_are_answered_before_a_recording_ends(source, tmp_path):
     ongoing = begin(tmp_path / 'bag', answers={'/b': '/a'})
     put(source, '/a', 1, 2)
     put(source, '/b', 1)
-    wait_for(lambda: sum(ongoing.status().counts.values()) == 3)
+    wait_until(lambda: count(ongoing) == 3, '3 messages')
     stop = threading.Thread(target=ongoing.stop)
     stop.start()
     put(source, '/b', 2, stamps=[2])
@@ -116,19 +112,15 @@ def test_full_disk_ends_a_recording_and_what_was_written_stays(source, tmp_path,
     monkeypatch.setattr(recording, '_FLUSH_PERIOD', 0.0)
     ongoing = begin(path)
     put(source, '/a', 1, 2)
-    wait_for(
-        lambda: (
-            sum(ongoing.status().counts.values()) == 2
-            and (path / 'bag_0.mcap').stat().st_size > 500
-        )
-    )
+    file = path / 'bag_0.mcap'
+    wait_until(lambda: count(ongoing) == 2 and file.stat().st_size > 500, '2 messages')
 
     def full(*_):
         raise BagError(f'{path}: No space left on device')
 
     monkeypatch.setattr(LiveBagWriter, 'write_all', full)
     put(source, '/a', 3)
-    wait_for(lambda: ongoing.status().error)
+    wait_until(lambda: ongoing.status().error, 'the error')
     recorded = ongoing.stop()
     assert recorded.error == f'{path}: No space left on device'
     assert not (path / 'metadata.yaml').exists()
@@ -139,7 +131,7 @@ def test_full_disk_ends_a_recording_and_what_was_written_stays(source, tmp_path,
 def test_topic_that_appears_later_is_recorded_from_then_on(source, tmp_path):
     ongoing = begin(tmp_path / 'bag')
     put(source, '/a', 1)
-    wait_for(lambda: ongoing.status().counts['/a'] == 1)
+    wait_until(lambda: count(ongoing) == 1, 'a message')
     source.waiting['/later'] = []
     ongoing.add(None, {'/later': 'diagnostic_msgs/msg/DiagnosticArray'}, {})
     put(source, '/later', 1, 2)
@@ -156,7 +148,7 @@ def test_fault_in_a_thread_ends_a_recording_with_its_cause(tmp_path, monkeypatch
 
     ongoing = begin(tmp_path / 'bag')
     monkeypatch.setattr(broken, 'take' if broken is Source else 'write_all', fail)
-    wait_for(lambda: ongoing.status().error)
+    wait_until(lambda: ongoing.status().error, 'the error')
     assert ongoing.stop().error == 'OverflowError: too odd'
 
 
@@ -167,10 +159,10 @@ def test_watcher_goes_on_after_what_it_cannot_show(monkeypatch):
 
     with Watcher() as going_on:
         monkeypatch.setattr(watcher, 'state_of', broken)
-        wait_for(lambda: going_on.view.state == 'fault')
+        wait_until(lambda: going_on.view.state == 'fault', 'the fault')
         assert going_on.view.message == 'What came cannot be shown: OverflowError: too odd'
         monkeypatch.undo()
-        wait_for(lambda: going_on.view.state == 'no node')
+        wait_until(lambda: going_on.view.state == 'no node', 'its end')
 
 
 @pytest.mark.live
@@ -181,7 +173,7 @@ def test_watcher_tells_what_has_ended_it(monkeypatch):
     monkeypatch.setattr(watcher.graph, 'gear_nodes', broken)
     ended = Watcher()
     with pytest.raises(RuntimeError, match='the middleware is gone'), ended:
-        wait_for(lambda: ended.ended)
+        wait_until(lambda: ended.ended, 'the end')
 
 
 def test_watcher_that_cannot_join_says_why(monkeypatch):

@@ -1,17 +1,15 @@
 """`gearkin watch` and `gearkin init` in a terminal and in a pipe, beside a driver at 1 kHz."""
 
 import contextlib
-import fcntl
 import os
 import re
-import select
-import struct
 import subprocess
 import termios
-import time
 from pathlib import Path
 
 import pytest
+from blocked_bags import wait_until
+from terminals import ENVIRONMENT, Terminal
 from watching import (
     DEADLINE,
     ENCODER,
@@ -42,62 +40,51 @@ def running(tmp_path_factory):
         yield
 
 
-class Terminal:
+class Person(Terminal):
     """A program in a terminal, and a person in front of it."""
 
     def __init__(self, folder: Path, *arguments: str) -> None:
-        self._master, slave = os.openpty()
-        fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 50, 160, 0, 0))
-        self.before = termios.tcgetattr(slave)
-        self.process = subprocess.Popen(
-            [*GEARKIN, *arguments],
-            cwd=folder,
-            stdin=slave,
-            stdout=slave,
-            stderr=slave,
-            env=os.environ | {'TERM': 'xterm'},
-        )
-        self._slave = slave
-        self._text = ''
-
-    def wait_for(self, pattern: str) -> str:
-        """Wait until something new is shown, and give what matches."""
-        deadline = time.monotonic() + DEADLINE
-        while not (found := re.search(pattern, self._text)):
-            ready, _, _ = select.select([self._master], [], [], deadline - time.monotonic())
-            assert ready, self._text
-            read = os.read(self._master, 65536).decode(errors='replace')
-            self._text += re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', read)
-        self._text = self._text[found.end() :]
-        return found[0]
-
-    def type(self, keys: str) -> None:
-        os.write(self._master, keys.encode())
+        self._command, self._folder, self._seen = [*GEARKIN, *arguments], folder, 0
 
     def __enter__(self):
+        super().__enter__()
+        self._before = termios.tcgetattr(self.other)
+        streams = dict.fromkeys(('stdin', 'stdout', 'stderr'), self.other)
+        self._process = subprocess.Popen(
+            self._command, cwd=self._folder, env=ENVIRONMENT, **streams
+        )
         return self
 
     def __exit__(self, kind, *_) -> None:
         if kind:
-            self.process.kill()
-        self.process.wait()
-        for descriptor in (self._master, self._slave):
-            os.close(descriptor)
+            self._process.kill()
+        self._process.wait()
+        super().__exit__()
+
+    def wait_for(self, pattern: str) -> str:
+        """Wait until something new is shown, and give what matches."""
+
+        def found():
+            plain = re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', self.shown())
+            return re.compile(pattern).search(plain, self._seen)
+
+        match = wait_until(found, pattern)
+        self._seen = match.end()
+        return match[0]
+
+    def type(self, keys: str) -> None:
+        os.write(self._own, keys.encode())
 
     def end(self) -> int:
         """Wait for the end, and give the exit code."""
-        deadline = time.monotonic() + DEADLINE
-        while self.process.poll() is None:  # it waits for its last output to be read
-            assert time.monotonic() < deadline
-            if select.select([self._master], [], [], 0.05)[0]:
-                os.read(self._master, 65536)
-        assert termios.tcgetattr(self._slave) == self.before
-        return self.process.returncode
+        code = self._process.wait(DEADLINE)
+        assert termios.tcgetattr(self.other) == self._before
+        return code
 
 
 @pytest.mark.usefixtures('running')
 def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
-    with Terminal(tmp_path, 'watch', '--text', '--node', OTHER) as terminal:
+    with Person(tmp_path, 'watch', '--text', '--node', OTHER) as terminal:
         terminal.wait_for(f'gearkin watch {OTHER} connected')
         terminal.wait_for(r'output angle +-?\d+\.\d+° ')
         terminal.wait_for(r'rotor input +healthy')
@@ -113,20 +100,12 @@ def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
         assert terminal.end() == 0
 
 
-def until(condition):
-    deadline = time.monotonic() + DEADLINE
-    while not (found := condition()):
-        assert time.monotonic() < deadline
-        time.sleep(0.02)
-    return found
-
-
 @pytest.mark.usefixtures('running')
 def test_commands_that_cannot_be_done_are_answered_with_the_cause(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'there').mkdir()
     with Watcher(OTHER) as watcher:
-        until(lambda: watcher.view.state == 'connected' and watcher.view.drivers)
+        wait_until(lambda: watcher.view.state == 'connected' and watcher.view.drivers, 'a node')
         for asked, cause in (
             (watcher.stop(), 'Nothing is being recorded.'),
             (watcher.configure(MOTOR, 'm2'), f'There is no joint m2 on {MOTOR}.'),
@@ -140,17 +119,17 @@ def test_commands_that_cannot_be_done_are_answered_with_the_cause(tmp_path, monk
             raise BagError('full: No space left on device')
 
         monkeypatch.setattr(LiveBagWriter, 'write_all', full)
-        words = until(lambda: watcher.view.failure)
+        words = wait_until(lambda: watcher.view.failure, 'a failure')
         assert words == 'The recording has ended: full: No space left on device'
 
 
 def test_drivers_are_recorded_where_there_is_no_node(tmp_path):
     with Watcher('/nobody/gear_state_publisher') as watcher:
-        until(lambda: watcher.view.drivers)
+        wait_until(lambda: watcher.view.drivers, 'drivers')
         assert watcher.home().result(DEADLINE).text == 'There is no node to home.'
         path = tmp_path / 'drivers'
         assert watcher.record(path).result(DEADLINE).done
-        until(lambda: ', 1' in watcher.view.recording)
+        wait_until(lambda: ', 1' in watcher.view.recording, 'messages')
     assert watcher.exit_message.endswith(f' 0 lost: gearkin validate {path}')
     with Bag(path) as bag:
         # The outputs of another node may be discovered before that node.
@@ -160,7 +139,7 @@ def test_drivers_are_recorded_where_there_is_no_node(tmp_path):
 
 
 def test_init_lists_the_joints_and_asks_in_a_terminal(tmp_path):
-    with Terminal(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
+    with Person(tmp_path, 'init', '--topic', MOTOR, '-o', 'mine.yaml') as terminal:
         terminal.wait_for(rf'{MOTOR} +brake, m1 +[1-9]\d+ Hz')
         choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
         terminal.wait_for('Number of the joint of the rotor: ')
