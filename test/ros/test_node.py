@@ -218,23 +218,18 @@ OF_ANY_NODE = (
     [
         (sections((LEFT, TEETH), (RIGHT, 'ring_teeth: 82')), RIGHT, (82, 0.0)),
         (sections((LEFT, TEETH), (RIGHT, 'ring_teeth: 82')), ROOT, None),
-        (sections((LEFT, TEETH)), '/left/gear', None),
-        (NESTED, LEFT, (81, 0.0)),
         (NESTED, RIGHT, (82, 0.0)),
         (sections(('gear_state_publisher', TEETH)), LEFT, None),
         (sections(('left/gear_state_publisher', TEETH)), LEFT, (81, 0.0)),
-        (sections(('*', TEETH)), ROOT, (81, 0.0)),
         (sections(('*', TEETH)), LEFT, None),
         (sections(('**', TEETH)), '/robot/left/gear', (81, 0.0)),
         (sections(('/*/gear_state_publisher', TEETH)), LEFT, (81, 0.0)),
         (sections(('/*/gear_state_publisher', TEETH)), ROOT, None),
         (sections(('/**/gear_state_publisher', TEETH)), ROOT, (81, 0.0)),
-        (sections(('/left/**', TEETH)), LEFT, (81, 0.0)),
         (sections(('/left/**', TEETH)), RIGHT, None),
         (sections(('/left/*', TEETH)), '/left/of/gear', None),
         # The block that begins later prevails, even if it is the more general one.
         (sections(('/**', 'ring_teeth: 80'), (LEFT, TEETH)), LEFT, (81, 0.0)),
-        (sections((LEFT, TEETH), ('/**', 'ring_teeth: 82')), LEFT, (82, 0.0)),
         (sections((LEFT, TEETH), ('/**', 'rotor_zero: 2.0')), LEFT, (81, 2.0)),
         (
             sections(*((n, f'rotor_zero: {k}.0') for k, n in enumerate(['/**', LEFT, '/**']))),

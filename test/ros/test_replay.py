@@ -1,17 +1,18 @@
-"""Bags played into DDS: by a separate process to a listener, and into a live node."""
+"""Bags played into DDS: to a listener, and into a live node."""
 
-import json
 import math
 import os
 import signal
 import subprocess
-import sys
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import replace
 from itertools import count, pairwise
 from pathlib import Path
+from threading import Event
+from types import SimpleNamespace
 
 import pytest
 from live import DEADLINE, Participant, rotor_bytes
@@ -24,7 +25,7 @@ from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.ros import live
 from gear_kinematics.ros.live import ReplayError, live_messages
-from gear_kinematics.ros.replay import play
+from gear_kinematics.ros.replay import play, stopped_by_signals
 
 pytestmark = pytest.mark.live
 
@@ -32,15 +33,6 @@ PERIOD = 2_000_000  # ns
 COUNT = 500
 DURATION = (COUNT - 1) * PERIOD / SECOND  # s
 SLEW = 0.005  # s; drift between the clocks of stamps and of the player
-PLAY = """
-import json, sys
-from gear_kinematics.bag import Bag
-from gear_kinematics.ros.replay import play, stopped_by_signals
-path, topics, options = sys.argv[1], *map(json.loads, sys.argv[2:])
-with Bag(path) as bag, stopped_by_signals() as stopped:
-    played = play(bag, topics, stopped=stopped, **options)
-    print(played.messages, played.worst_delay)
-"""
 names = (f'/played_{os.getpid()}_{number}' for number in count())
 
 
@@ -97,27 +89,23 @@ def listener():
 
 @contextmanager
 def playing(path: Path, topics, **options):
-    """Play in a separate process, which ends with 0 and nothing on stderr."""
-    command = [sys.executable, '-c', PLAY, str(path), json.dumps(topics), json.dumps(options)]
-    with subprocess.Popen(
-        command, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
+    """Play in a thread; gives what was played, and a function that stops it."""
+    ended = Event()
+    playing = SimpleNamespace(stop=ended.set)
+    with Bag(path) as bag, ThreadPoolExecutor() as pool:
+        played = pool.submit(play, bag, topics, stopped=ended.is_set, **options)
         try:
-            yield process
-            said, errors = process.communicate(timeout=DEADLINE)
-        except BaseException:
-            process.kill()
-            raise
-    assert (process.returncode, errors) == (0, '')
-    sent, worst_delay = said.split()
-    process.sent, process.worst_delay = int(sent), float(worst_delay)
+            yield playing
+            playing.result = played.result(DEADLINE)
+        finally:
+            ended.set()
 
 
-def assert_took(heard, process, duration) -> None:
+def assert_took(heard, played, duration) -> None:
     """Compare the time from the first message to the last with that of the bag, s."""
     took = heard[-1][0] - heard[0][0]
     # On a busy machine, too, nothing is early, and delays are reported.
-    assert abs(took - duration) <= process.worst_delay + SLEW
+    assert abs(took - duration) <= played.result.worst_delay + SLEW
 
 
 def data_of(heard) -> list[bytes]:
@@ -128,64 +116,74 @@ def stamps(heard) -> list[int]:
     return [stamp_of(decode(data, JOINT_STATE)) for data in data_of(heard)]
 
 
-# The process and a listener.
+# A thread and a listener.
 
 
 def test_topics_are_played_whole_in_order_and_in_time_once_there_is_a_subscriber(
     bag_path, recorded, listener
 ):
     rotor, output = next(names), next(names)
-    with playing(bag_path, {ROTOR: rotor, OUTPUT: output}) as process:
+    with playing(bag_path, {ROTOR: rotor, OUTPUT: output}) as played:
         listener.wait_until(lambda: listener.node.count_publishers(rotor), 'the publisher')
         heard = listener.listen(rotor), listener.listen(output)
         listener.wait_until(lambda: len(heard[0]) + len(heard[1]) >= COUNT * 1.1, 'every message')
-    assert process.sent == COUNT * 1.1
+    assert played.result.messages == COUNT * 1.1
     assert data_of(heard[0]) == recorded
     assert data_of(heard[1]) == recorded[::10]
-    assert_took(heard[0], process, DURATION)
+    assert_took(heard[0], played, DURATION)
 
 
 def test_part_of_a_bag_is_played_at_half_the_rate(bag_path, recorded, listener):
     name = next(names)
     heard = listener.listen(name)
     part = {'start_offset': 0.2, 'duration': 0.7}
-    with playing(bag_path, {ROTOR: name}, **part, rate=0.5) as process:
+    with playing(bag_path, {ROTOR: name}, **part, rate=0.5) as played:
         listener.wait_until(lambda: len(heard) >= 351, 'every message')
-    assert process.sent == 351
+    assert played.result.messages == 351
     assert data_of(heard) == recorded[100:451]
-    assert_took(heard, process, 2.0 * 0.7)
+    assert_took(heard, played, 2.0 * 0.7)
 
 
-def test_a_loop_repeats_until_a_signal(bag_path, recorded, listener):
+def test_a_loop_repeats_until_it_is_stopped(bag_path, recorded, listener):
     name = next(names)
     heard = listener.listen(name)
     # A rate at which the queue of a listener on a busy machine does not overflow.
-    with playing(bag_path, {ROTOR: name}, loop=True) as process:
+    with playing(bag_path, {ROTOR: name}, loop=True) as played:
         listener.wait_until(lambda: len(heard) >= 2.5 * COUNT, 'the third round')
-        process.send_signal(signal.SIGINT)
-    assert len(heard) <= process.sent
+        played.stop()
+    assert len(heard) <= played.result.messages
     assert data_of(heard) == (recorded * (len(heard) // COUNT + 1))[: len(heard)]
     back = [k for k, (a, b) in enumerate(pairwise(stamps(heard)), start=1) if b < a]
     assert back == list(range(COUNT, len(heard), COUNT))
 
 
 @pytest.mark.parametrize('subscribed', [True, False])
-def test_a_signal_ends_a_long_silence_and_the_wait_for_a_subscriber(
+def test_a_long_silence_and_the_wait_for_a_subscriber_can_be_stopped(
     tmp_path, listener, subscribed
 ):
     states = rotor_states([SECOND, 3600 * SECOND])
     path = write_bag(tmp_path / 'silence', states, {ROTOR: JOINT_STATE})
     name = next(names)
     heard = listener.listen(name) if subscribed else []
-    with playing(path, {ROTOR: name}) as process:
+    with playing(path, {ROTOR: name}) as played:
         listener.wait_until(
             lambda: heard if subscribed else listener.node.count_publishers(name), 'the start'
         )
-        process.send_signal(signal.SIGTERM)
-    assert process.sent == subscribed
+        played.stop()
+    assert played.result.messages == subscribed
 
 
-# In this process.
+# Without a listener.
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_signals_stop_a_replay_and_keep_their_effect_afterwards(number):
+    before = signal.getsignal(number)
+    with stopped_by_signals() as stopped:
+        assert not stopped()
+        signal.raise_signal(number)
+        assert stopped()
+    assert signal.getsignal(number) == before
 
 
 def test_without_a_wait_no_subscriber_is_needed(bag_path):

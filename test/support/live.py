@@ -232,19 +232,13 @@ class Peer(Listener):
         what='diagnostics',
         meanwhile=lambda: None,
         since=None,
-        node='gear_state_publisher',
     ):
-        """Wait for the first report on this peer's node that meets a condition.
+        """Wait for the first report on this peer's node whose status meets a condition.
 
-        Args:
-            condition: of its status.
-            what: for the message if there is none in time.
-            meanwhile: called repeatedly while waiting.
-            since: time after which it was published, ns; None for now, as a report that is still
-                on its way is about what was before.
-            node: another one in the namespace.
+        `meanwhile` is called repeatedly. The report was published after `since`, ns, by default
+        now, as one that is still on its way is about what was before.
         """
-        name = f'{self.namespace}/{node}'
+        name = f'{self.namespace}/gear_state_publisher'
         since = since or time.time_ns()
 
         def found():
