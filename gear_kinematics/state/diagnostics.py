@@ -37,32 +37,13 @@ class Fault(str):
         return fault
 
 
-@dataclass(frozen=True, slots=True)
-class Report:
+class Report(NamedTuple):
     """One status: level, message, and values by name."""
 
     level: int
     message: str
     values: dict[str, str]
     """Where there are faults, `advice` is what to do about them."""
-
-    @classmethod
-    def of(
-        cls,
-        errors: Sequence[Fault],
-        warnings: Sequence[Fault],
-        values: dict[str, str],
-        *,
-        losses_known: bool = True,
-    ) -> Self:
-        """Report on faults, or that there are none."""
-        level = ERROR if errors else WARN if warnings else OK
-        if faults := (*errors, *warnings):
-            values['advice'] = ' '.join(dict.fromkeys(fault.advice for fault in faults))
-        notes = () if losses_known else ('losses unknown',)
-        if notes:
-            values['lost messages'] = 'unknown'
-        return cls(level, '; '.join((*faults, *notes)) or 'ok', values)
 
 
 class GraphFaults(NamedTuple):
@@ -98,6 +79,19 @@ class DriverMonitor:
             advice = 'The middleware has not delivered these messages.'
             faults.append(Fault(f'lost {newly_lost}', advice))
         return faults
+
+    def _report(
+        self, errors: Sequence[Fault], warnings: Sequence[Fault], values: dict[str, str]
+    ) -> Report:
+        """Report on faults, or that there are none."""
+        level = ERROR if errors else WARN if warnings else OK
+        if faults := (*errors, *warnings):
+            values['advice'] = ' '.join(dict.fromkeys(fault.advice for fault in faults))
+        messages: list[str] = [*faults]
+        if not self.losses_known:
+            messages.append('losses unknown')
+            values['lost messages'] = 'unknown'
+        return Report(level, '; '.join(messages) or 'ok', values)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -155,7 +149,7 @@ class InputMonitor(DriverMonitor):
             'referenced': str(rotor_input.referenced).lower(),
             'loop-closure residual (m)': _residual(rotor_input),
         }
-        return Report.of(errors, warnings, values, losses_known=self.losses_known)
+        return self._report(errors, warnings, values)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -215,7 +209,7 @@ class EncoderMonitor(DriverMonitor):
                 warnings.append(Fault('calibration no longer fits', 'Calibrate the gear again.'))
             values['explained by the calibration (%)'] = _percent(fit.explained)
             values['outside the interval (%)'] = _percent(fit.outside)
-        return Report.of([], warnings, values, losses_known=self.losses_known)
+        return self._report([], warnings, values)
 
 
 def _rejections(counts: Counter[str]) -> Fault:
