@@ -112,18 +112,6 @@ def test_both_look_from_the_frame_of_the_stator(rviz, foxglove):
     assert foxglove['configById']['3D!mechanism']['followTf'] == 'stator'
 
 
-def test_foxglove_draws_no_frames_over_the_mechanism(foxglove):
-    """By itself, it draws axes of 0.2 m in every frame."""
-    frames = foxglove['configById']['3D!mechanism']['scene']['transforms']
-    assert frames == {'axisScale': 0, 'lineWidth': 0, 'showLabel': False}
-
-
-def test_rviz_knows_whether_to_hide_its_docks(rviz):
-    """Otherwise it reads an uninitialised variable."""
-    geometry = rviz['Window Geometry']
-    assert geometry['Hide Left Dock'] is geometry['Hide Right Dock'] is False
-
-
 def started_packages(path: Path) -> set[str]:
     """The packages whose nodes a launch file starts."""
     return {
