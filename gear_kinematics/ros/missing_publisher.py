@@ -25,24 +25,22 @@ class MissingPublisher:
         self._node = node
         self._topic = node.resolve_topic_name(ROTOR_STATE)
         self._suggested = False
-        self._subscriptions: dict[str, Subscription] = {}
-        self._joints: dict[str, list[str]] = {}
-        """The joints by topic, of those with a message."""
+        self._subscriptions: list[Subscription] = []
+        self._joints: dict[str, list[str] | None] = {}
+        """Those of each topic; None before it has a message."""
 
     def update(self, publishers: int) -> None:
         """Take the number of publishers on the rotor's topic; to be called once a second."""
-        if publishers:
-            self._suggested = False
-            self._unsubscribe()
-            return
-        if self._suggested:
-            return
-        if not self._subscriptions:
-            self._subscribe()
-        else:  # a second later, so that there are messages
+        if self._joints and not publishers:  # a second later, so that there are messages
             self._node.get_logger().warning(self._suggestion())
             self._suggested = True
-            self._unsubscribe()
+        for subscription in self._subscriptions:
+            self._node.destroy_subscription(subscription)
+        self._subscriptions.clear()
+        self._joints.clear()
+        self._suggested &= not publishers
+        if not (publishers or self._suggested):
+            self._subscribe()
 
     def _subscribe(self) -> None:
         """Subscribe to the other topics of joint states, except those of the node itself."""
@@ -56,36 +54,29 @@ class MissingPublisher:
         for topic in sorted(topics)[:_MAX_TOPICS]:
 
             def note(data: bytes, topic: str = topic) -> None:
-                if topic not in self._joints:
-                    self._joints[topic] = []
-                    with suppress(MalformedMessageError):
-                        self._joints[topic] = joints_of(data)
+                self._joints[topic] = []
+                with suppress(MalformedMessageError):
+                    self._joints[topic] = joints_of(data)
 
             with suppress(rclpy_implementation.RCLError):  # a security policy may forbid it
-                self._subscriptions[topic] = self._node.create_subscription(
-                    JointState, topic, note, qos, raw=True
+                self._subscriptions.append(
+                    self._node.create_subscription(JointState, topic, note, qos, raw=True)
                 )
-
-    def _unsubscribe(self) -> None:
-        for subscription in self._subscriptions.values():
-            self._node.destroy_subscription(subscription)
-        self._subscriptions.clear()
-        self._joints.clear()
+                self._joints[topic] = None
 
     def _suggestion(self) -> str:
         """Name the topics, and the arguments for the one that is meant, if that is clear."""
         joint = self._node.get_parameter('rotor_joint').value
-        topics = [f'{topic} ({self._described(topic)})' for topic in self._subscriptions]
+        topics = [f'{topic} ({_described(joints)})' for topic, joints in self._joints.items()]
         text = f'{self._topic} has no publisher; there are: {listed(topics)}'
-        candidates = [topic for topic, joints in self._joints.items() if joint in joints]
-        candidates = candidates or [topic for topic, joints in self._joints.items() if joints]
+        known = {topic: joints for topic, joints in self._joints.items() if joints}
+        candidates = [topic for topic, joints in known.items() if joint in joints] or [*known]
         if len(candidates) > 1:
             candidates = get_close_matches(self._topic, sorted(candidates), n=1)
         if not candidates:
             return text
         [topic] = candidates
-        renamed, parameter = f'{ROTOR_STATE}:={topic}', ''
-        joints = self._joints[topic]
+        renamed, parameter, joints = f'{ROTOR_STATE}:={topic}', '', known[topic]
         if joint not in joints and (joint or len(joints) > 1):
             # However far the nearest name is.
             [nearest] = get_close_matches(joint, joints, n=1, cutoff=0.0)
@@ -94,8 +85,8 @@ class MissingPublisher:
         launched = f'{renamed} {parameter}'.rstrip()
         return f'{text}; did you mean `{command}`, or with ros2 launch `{launched}`?'
 
-    def _described(self, topic: str) -> str:
-        joints = self._joints.get(topic)
-        if not joints:
-            return 'no message yet' if joints is None else 'no joints'
-        return f'joint {joints[0]}' if len(joints) == 1 else f'joints {listed(joints)}'
+
+def _described(joints: list[str] | None) -> str:
+    if not joints:
+        return 'no message yet' if joints is None else 'no joints'
+    return f'joint {joints[0]}' if len(joints) == 1 else f'joints {listed(joints)}'
