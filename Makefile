@@ -15,7 +15,8 @@ EXPLAIN_PIP = if grep -q 'connection broken' $(PIP_LOG); then \
 # Live tests wait most of the time, so that three workers keep two processors busy.
 # Without a limit, pytest-xdist begins a test that has ended its worker again, up to 8 times, and
 # may wait for good after that.
-PYTEST := -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0
+PYTEST := -m pytest --numprocesses 3 --dist loadfile --no-loadscope-reorder --max-worker-restart 0 \
+	-o faulthandler_exit_on_timeout=true
 LOCK := uv pip compile --universal --generate-hashes --python-version 3.11 \
 	--no-emit-index-url --quiet --upgrade
 
@@ -38,7 +39,6 @@ quick: lint ## Check style, and run the tests that need neither a live node nor 
 
 test: lint types docs ## Run every check: ruff, mypy, documentation, pytest
 	$(BIN)/python $(PYTEST)
-	@echo "$$(cat .pytest_cache/v/skipped)"
 
 coverage: $(VENV)/test.stamp ## Measure the coverage of all but the slow tests, which takes them twice as long
 	$(BIN)/coverage erase

@@ -4,6 +4,7 @@ Pages are photographed by the system's Chromium.
 """
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -21,7 +22,10 @@ from gear_kinematics.ros.live import running_node
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / 'test' / 'support'))
 
-from gear_recordings import record_both_encoders  # noqa: E402, see above
+import numpy as np  # noqa: E402, see above
+from braced_gears import BracedGear  # noqa: E402, see above
+from drawings import FLOWS, draw_bodies, draw_flow  # noqa: E402, see above
+from gear_recordings import ramps, record_both_encoders, write_csv  # noqa: E402, see above
 
 DOCS = Path('docs')
 BAG = 'bags/servo_point_to_point'
@@ -43,59 +47,84 @@ PAGES = {
     'pictures/preload.png': ['preload', '--wanted-threshold', '1', *SHAFT],
     'pictures/lost_motion.png': ['lost-motion', 'docs/examples/ramps.csv', *CONFIG],
 }
+SETTINGS = (0, 1, 2, 4, 5, 6)
+TALL = 'pictures/preload_advice.png'
 OF_RECORDINGS = {
     'pictures/validate.png': ['validate', 'other_gear', '--config', 'actuator.yaml'],
-    'pictures/calibrate.png': ['calibrate', 'monday', 'tuesday'],
+    'pictures/calibrate.png': ['calibrate', 'monday', 'tuesday', '-o', 'calibration.yaml'],
+    'pictures/calibrate_check.png': ['calibrate', 'friday', '--check', 'calibration.yaml'],
+    TALL: [
+        'lost-motion',
+        *(f'gear_preload_{k}.csv' for k in SETTINGS),
+        '--preloads',
+        '--load',
+        '2',
+    ],
 }
 """Pages of recordings that `record` makes."""
 OTHER_GEAR = '/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}'
 VIEW = {'width': 1100, 'height': 1000}  # pixels
+TALL_VIEW = {'width': 1100, 'height': 1330}  # pixels
 LIVE_VIEW = {'width': 1100, 'height': 740}  # pixels
 COLOURS = 64
 
 
 def record() -> None:
-    """Record other_gear, which has other teeth, and with both encoders monday and tuesday."""
+    """Record other_gear, which has other teeth, both encoders of another one, and torque ramps."""
     shutil.copy(ROOT / CONFIG[1], 'actuator.yaml')
     Path('other.yaml').write_text(OTHER_GEAR, 'utf-8')
     run(['compute', str(ROOT / BAG), 'other_gear', '--config', 'other.yaml'])
-    record_both_encoders(Path(), 'monday', 'tuesday')
+    record_both_encoders(Path(), 'monday', 'tuesday', 'friday')
+    gear, torque = BracedGear(rubbing=0.2), ramps(*[(6.0, 60)] * 3, *[(30.0, 90)] * 2)
+    noise = np.random.default_rng(1).normal(0.0, 1e-5, (len(SETTINGS), len(torque)))  # rad
+    for setting, off in zip(SETTINGS, noise, strict=True):
+        angle = gear.angles(torque, setting) + off
+        write_csv(Path(f'gear_preload_{setting}.csv'), angle_rad=angle, torque=torque)
 
 
-def photograph(pages: dict[str, list[str]], live: str = '') -> None:
-    """Have each page made, and keep its upper part as a PNG; and the live page, if it is named."""
+def photograph(pages: dict[str, list[str]], *live: str) -> None:
+    """Have each page made, and keep its upper part as a PNG; and the live page, if it is named.
+
+    The live page is kept as two files: while the driver runs, and after it has stopped.
+    """
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which('chromium'))
         tab = browser.new_page(viewport=VIEW, color_scheme='light')
         for name, arguments in pages.items():
             page = Path(folder, 'page.html')
             run([*arguments, '--html', str(page)])
+            tab.set_viewport_size(TALL_VIEW if name == TALL else VIEW)
             tab.goto(page.as_uri())
             tab.add_style_tag(content='footer { display: none; }')  # it has a date
             tab.wait_for_load_state('networkidle')
             keep(tab.screenshot(), DOCS / name)
         if live:
-            photograph_live(tab, DOCS / live)
+            photograph_live(tab, *(DOCS / name for name in live))
         browser.close()
 
 
-def photograph_live(tab: Page, target: Path) -> None:
+def photograph_live(tab: Page, running: Path, stopped: Path) -> None:
     """Have a driver and a node shown live, and keep the page as a PNG."""
-    program = [sys.executable, '-P', '-m', 'gear_kinematics']
+    started = []
     with ExitStack() as stack:
         stack.enter_context(running_node(stderr=subprocess.DEVNULL))
-        for arguments in (['replay', str(ROOT / BAG), '--loop'], ['watch']):
+        for words in (['replay', str(ROOT / BAG), '--loop'], ['watch']):
+            command = [sys.executable, '-P', '-m', 'gear_kinematics', *words]
             process = subprocess.Popen(  # noqa: S603, our own program
-                [*program, *arguments], stdout=subprocess.PIPE, text=True
+                command, stdout=subprocess.PIPE, text=True
             )
-            stack.callback(process.wait)
+            started.append(stack.enter_context(process))
             stack.callback(process.terminate)
-        address = process.stdout.readline().split()[-1]
+        driver, watch = started
+        address = watch.stdout.readline().split()[-1]
         tab.set_viewport_size(LIVE_VIEW)
         tab.goto(address)
         tab.get_by_text('healthy').wait_for()
         tab.wait_for_timeout(10_000.0)  # the span of the curves, ms
-        keep(tab.screenshot(), target)
+        keep(tab.screenshot(), running)
+        driver.terminate()
+        tab.get_by_text(re.compile('no input', re.IGNORECASE)).first.wait_for()
+        keep(tab.screenshot(), stopped)
 
 
 def keep(screenshot: bytes, target: Path) -> None:
@@ -114,7 +143,10 @@ if __name__ == '__main__':
     os.chdir(ROOT)  # pages show the paths that they were made from
     for name, arguments in DRAWN.items():
         run([*arguments, str(DOCS / name), '--force'])
-    photograph(PAGES, live='pictures/watch.png')
+    for name, flow in FLOWS.items():
+        draw_flow(flow, DOCS / name)
+    draw_bodies(DOCS / 'pictures/viewing.png')
+    photograph(PAGES, 'pictures/watch.png', 'pictures/diagnostics.png')
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         record()
         photograph(OF_RECORDINGS)

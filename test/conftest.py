@@ -40,8 +40,6 @@ import pytest  # noqa: E402
 from gear_kinematics.kinematics import Branch, Mechanism  # noqa: E402
 from gear_kinematics.parameters import NodeParameters  # noqa: E402
 
-pytest_plugins = ['hanging']
-
 ROOT = Path(__file__).resolve().parents[1]
 SHARED = ROOT.parent / 'shared'
 
@@ -67,16 +65,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             mark for mark in ('live', 'slow') if item.get_closest_marker(mark)
         )
     items.sort(key=lambda item: (not marks[item.path]['live'], -marks[item.path].total()))
-
-
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Keep a line on what was skipped, for the end of `make test`."""
-    if not terminalreporter.config.pluginmanager.has_plugin('cacheprovider'):
-        return
-    skipped = terminalreporter.stats.get('skipped', [])
-    reasons = sorted({report.longrepr[2].removeprefix('Skipped: ') for report in skipped})
-    line = f'{len(skipped)} tests skipped' + ''.join(f'; {reason}' for reason in reasons)
-    terminalreporter.config.cache.set('skipped', line)
 
 
 @pytest.fixture(scope='session')

@@ -42,11 +42,7 @@ def test_the_recorded_outputs_are_what_the_rotor_topic_calls_for(name):
         read(name, '/rotor_state'), single_turn=single_turn
     )
     assert (len(samples), rejected) == SHIPPED[name]
-    worst = replaying.compare_messages(
-        samples, read(name, '/output_state'), read(name, '/body_poses')
-    )
-    assert worst.angle <= replaying.BOUND
-    assert worst.position <= replaying.BOUND
+    replaying.assert_right(samples, read(name, '/output_state'), read(name, '/body_poses'))
     # The rate is that of a real driver.
     steps = [b.stamp - a.stamp for a, b in pairwise(samples)]
     assert sorted(steps)[len(steps) // 2] <= replaying.SECOND / 500 * 1.01

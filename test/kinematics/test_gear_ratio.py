@@ -4,7 +4,6 @@ import copy
 import math
 import pickle
 from fractions import Fraction
-from itertools import islice
 
 import mpmath
 import numpy as np
@@ -115,11 +114,8 @@ def test_simplest_fraction_is_the_first_of_rising_denominators(low, width):
         assert math.floor(high * denominator) < low * denominator
     inside = range(math.ceil(low * found.denominator), math.floor(high * found.denominator) + 1)
     assert abs(found.numerator) == min(map(abs, inside))
-
-
-def test_no_fraction_is_in_an_empty_interval():
     with pytest.raises(ValueError, match='no number is between'):
-        simplest_fraction(Fraction(1), Fraction(0))
+        simplest_fraction(high + 1, low)
 
 
 @given(st.fractions(-40, -1, max_denominator=99), st.fractions(0, 1, max_denominator=999))
@@ -132,8 +128,3 @@ def test_tooth_pairs_are_all_of_the_interval(low, width):
         if low <= Fraction(-satellite, ring - satellite) <= high
     ]
     assert list(tooth_pairs(low, high, 60)) == expected
-
-
-def test_tooth_pairs_of_19():
-    pairs = tooth_pairs(Fraction('-19.001'), Fraction('-18.999'), 1000)
-    assert list(islice(pairs, 4)) == [(20, 19), (40, 38), (60, 57), (80, 76)]

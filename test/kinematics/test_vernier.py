@@ -93,32 +93,20 @@ def test_nearest_is_nearest_of_all(ring_teeth):
 
 
 @pytest.mark.parametrize(
-    ('ring_teeth', 'angle', 'cause'),
+    ('function', 'arguments', 'cause'),
     [
-        (0, 1.0, 'at least 1 tooth, not 0'),
-        (-80, 1.0, 'at least 1 tooth, not -80'),
-        (80, math.nan, 'finite, not nan rad'),
-        (80, math.inf, 'finite, not inf rad'),
-        (80, -math.inf, 'finite, not -inf rad'),
+        (nearest_setting, (0, 1.0), 'at least 1 tooth, not 0'),
+        (nearest_setting, (80, math.nan), 'finite, not nan rad'),
+        (nearest_setting, (80, -math.inf), 'finite, not -inf rad'),
+        (pin_setting, (80, 80, 0, 0), 'tooth 80 is not one of 0 to 79'),
+        (pin_setting, (80, 0, 81, 0), 'ring hole 81 is not one of 0 to 80'),
+        (pin_setting, (80, 0, 0, 82), 'chassis hole 82 is not one of 0 to 81'),
+        (pin_setting, (80, 0, -1, 0), 'ring hole -1 is not one of 0 to 80'),
     ],
 )
-def test_impossible_arguments_are_refused(ring_teeth, angle, cause):
+def test_impossible_arguments_are_refused(function, arguments, cause):
     with pytest.raises(ValueError, match=cause):
-        nearest_setting(ring_teeth, angle)
-
-
-@pytest.mark.parametrize(
-    ('holes', 'cause'),
-    [
-        ((80, 0, 0), 'tooth 80 is not one of 0 to 79'),
-        ((0, 81, 0), 'ring hole 81 is not one of 0 to 80'),
-        ((0, 0, 82), 'chassis hole 82 is not one of 0 to 81'),
-        ((0, -1, 0), 'ring hole -1 is not one of 0 to 80'),
-    ],
-)
-def test_a_hole_that_does_not_exist_is_refused(holes, cause):
-    with pytest.raises(ValueError, match=cause):
-        pin_setting(80, *holes)
+        function(*arguments)
 
 
 @pytest.mark.parametrize('ring_teeth', SMALL)

@@ -46,6 +46,34 @@ def test_readme_is_one_screen():
     assert len(README.splitlines()) <= 120
 
 
+def test_every_page_is_in_the_one_index_and_a_how_to_has_its_picture():
+    docs = ROOT / 'docs'
+    index = (docs / 'index.md').read_text('utf-8')
+    pages = {path.stem for path in docs.glob('*.md')} - {'index'}
+    of_tables = re.findall(r'\]\((\w+)\.md\)', index)
+    of_sidebar = re.findall(r'^(\w+)$', index, re.MULTILINE)
+    assert sorted(of_tables) == sorted(of_sidebar) == sorted(pages)
+    assert '](docs/index.md)' in README
+    [how_to] = re.findall(r':caption: How to\n\n(.*?)```', index, re.DOTALL)
+    for page in how_to.split():
+        shown = re.findall(r'!\[.+\]\((.+)\)', (docs / f'{page}.md').read_text('utf-8'))
+        assert shown or page == 'security'
+        assert all((docs / picture).is_file() for picture in shown)
+
+
+def test_ci_and_hooks_run_what_make_does():
+    if not (ROOT / '.github').exists():
+        pytest.skip('a source distribution has no hidden files')
+    targets = re.findall('^([a-z]+):', (ROOT / 'Makefile').read_text('utf-8'), re.MULTILINE)
+    workflow = yaml.safe_load((ROOT / '.github/workflows/test.yml').read_text('utf-8'))
+    hooks = yaml.safe_load((ROOT / '.pre-commit-config.yaml').read_text('utf-8'))
+    [job] = workflow['jobs'].values()
+    run = [step['run'] for step in job['steps'] if 'run' in step]
+    hooked = [hook['entry'] for repo in hooks['repos'] for hook in repo['hooks']]
+    assert run == ['make test']
+    assert {'make lint', 'make test'} <= set(hooked) <= {f'make {target}' for target in targets}
+
+
 @pytest.mark.parametrize('page', PAGES, ids=lambda path: path.name)
 def test_every_command_in_the_documentation_has_arguments_that_exist(page):
     for words in commands(page.read_text('utf-8')):

@@ -1,19 +1,17 @@
 """What `make` shows while it builds its virtual environment."""
 
 import importlib.metadata
-import os
 import re
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from blocked_bags import finished
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 from terminals import ENVIRONMENT, Terminal
 
 REQUIREMENTS = Path(__file__).resolve().parents[2] / 'requirements'
-PROGRAM = REQUIREMENTS / 'install.py'
 PIP = """
 import sys
 print("Ignoring three: markers 'python_version < \\\\'3\\\\'' don't match your environment")
@@ -25,50 +23,26 @@ sys.exit(7)
 """
 
 
-@pytest.fixture
-def command(tmp_path):
-    """The program with a pip that only says that it installs."""
+def test_a_terminal_shows_how_many_packages_there_are_and_the_log_what_pip_said(tmp_path):
     (tmp_path / 'pip').mkdir()
     (tmp_path / 'pip' / '__init__.py').touch()
     (tmp_path / 'pip' / '__main__.py').write_text(PIP)
     pins = '\n'.join(f'{name}==1 \\\n    --hash=sha256:0' for name in ('one', 'two', 'four'))
-    text = f"{pins}\nthree==1 ; python_version < '3' \\\n    --hash=sha256:0\n# via -r demo.in\n"
-    (tmp_path / 'demo.txt').write_text(text)
-    return [sys.executable, PROGRAM, tmp_path / 'demo.txt', tmp_path / 'pip.log']
-
-
-def test_a_terminal_shows_how_many_packages_there_are(command, tmp_path):
+    lock, log = tmp_path / 'demo.txt', tmp_path / 'pip.log'
+    lock.write_text(f"{pins}\nthree==1 ; python_version < '3' \\\n    --hash=sha256:0\n")
+    command = [sys.executable, REQUIREMENTS / 'install.py', lock, log]
+    environment = ENVIRONMENT | {'PYTHONPATH': str(tmp_path)}
     with Terminal() as terminal:
-        done = subprocess.run(
-            command,
-            env=ENVIRONMENT | {'PYTHONPATH': str(tmp_path)},
-            stderr=terminal.other,
-            check=False,
-        )
+        assert finished(command, env=environment, stderr=terminal.other).returncode == 7
         shown = terminal.text()
-    assert done.returncode == 7
     assert '3 of 3 packages downloaded' in shown
     assert shown.endswith('\r\x1b[2K')
 
-
-def test_elsewhere_nothing_is_shown_and_the_log_has_what_pip_said(command, tmp_path):
-    done = subprocess.run(
-        command,
-        env=os.environ | {'PYTHONPATH': str(tmp_path)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = finished(command, env=environment)
     assert (done.returncode, done.stdout, done.stderr) == (7, '', '')
-    options = (tmp_path / 'pip.log').read_text().split()
+    options = log.read_text().split()
     assert options[0] == 'install'
-    assert {
-        '--require-hashes',
-        '--no-compile',
-        '--no-deps',
-        '-r',
-        str(tmp_path / 'demo.txt'),
-    } <= set(options)
+    assert {'--require-hashes', '--no-compile', '--no-deps', '-r', str(lock)} <= set(options)
 
 
 def pins(lock: str) -> dict[str, str]:

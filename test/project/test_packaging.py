@@ -10,19 +10,20 @@ import subprocess
 import sys
 import sysconfig
 import tarfile
-import threading
 import xml.etree.ElementTree as ET
 import zipfile
 from email.message import Message
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
+import yaml
+from blocked_bags import finished, started
 
 pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).resolve().parents[2]
 SHARE = 'share/gear_kinematics'
-DEADLINE = 60.0
 
 # Where rosdep calls a Python package other than Python does.
 ROSDEP_KEYS = {
@@ -51,49 +52,10 @@ def program(name: str) -> str:
 
 
 def run(*command, cwd: Path, env=None, stderr: str | None = None) -> str:
-    done = subprocess.run(
-        [str(part) for part in command],
-        cwd=cwd,
-        env=env,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    done = finished(command, cwd=cwd, env=env, timeout=None)
     assert done.returncode == 0, done.stdout + done.stderr
     assert stderr is None or done.stderr == stderr
     return done.stdout
-
-
-def isolated() -> dict[str, str]:
-    """Return the environment without the search path that a sourced workspace sets."""
-    return {name: value for name, value in os.environ.items() if name != 'PYTHONPATH'}
-
-
-def assert_starts_and_stops(*command, env=None) -> None:
-    """Start a node, wait for its first words, interrupt it, and expect a clean end."""
-    process = subprocess.Popen(
-        [str(part) for part in command],
-        env=env,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-    )
-    watchdog = threading.Timer(DEADLINE, process.kill)
-    watchdog.start()
-    try:
-        lines = []
-        for line in process.stdout:
-            lines.append(line)
-            if 'gear ratio' in line:
-                process.send_signal(signal.SIGINT)
-        output = ''.join(lines)
-        assert process.wait() == 0, output
-        assert 'gear ratio' in output
-    finally:
-        watchdog.cancel()
-        process.kill()
-        process.wait()
-        process.stdout.close()
 
 
 @pytest.fixture(scope='module')
@@ -133,19 +95,40 @@ def prefix(wheel, tmp_path_factory) -> Path:
     (packages / 'outer.pth').write_text(''.join(lines))
     install = [sys.executable, '-m', 'pip', '--python', python, 'install']
     install += ['--no-deps', '--no-index', '--force-reinstall', wheel]
-    run(*install, cwd=path, env=isolated())
+    without_workspace = {k: v for k, v in os.environ.items() if k != 'PYTHONPATH'}
+    run(*install, cwd=path, env=without_workspace)
     return path
 
 
-@pytest.fixture(scope='module')
-def workspace(tree, tmp_path_factory) -> Path:
-    colcon = program('colcon')
+class Installed(NamedTuple):
+    """The package as pip or colcon installs it."""
+
+    prefix: Path
+    setup: str
+    """What a shell has to do first."""
+    programs: Path
+
+    def command(self, name: str, *arguments: object) -> list[str]:
+        # exec, so that an interrupt reaches the program and not the shell
+        words = ['sh', '-c', f'{self.setup} && exec "$@"', 'sh', self.programs / name, *arguments]
+        return [*map(str, words)]
+
+
+@pytest.fixture(scope='module', params=['pip', 'colcon'])
+def installed(request, tree, tmp_path_factory) -> Installed:
+    if request.param == 'pip':
+        prefix = request.getfixturevalue('prefix')
+        return Installed(prefix, 'unset PYTHONPATH', prefix / 'bin')
     path = tmp_path_factory.mktemp('workspace')
-    command = [colcon, 'build', '--base-paths', tree, '--event-handlers', 'console_direct+']
+    build = [program('colcon'), 'build', '--base-paths', tree]
     # Where it is set, setuptools warns of it.
     environment = {k: v for k, v in os.environ.items() if k != 'PYTHONDONTWRITEBYTECODE'}
-    run(*command, cwd=path, env=environment, stderr='')
-    return path
+    run(*build, '--event-handlers', 'console_direct+', cwd=path, env=environment, stderr='')
+    prefix = path / 'install/gear_kinematics'
+    setup = f'. {path}/install/setup.sh'
+    found = run('sh', '-c', f'{setup} && command -v gearkin', cwd=path)
+    assert Path(found).is_relative_to(prefix)
+    return Installed(prefix, setup, prefix / 'lib/gear_kinematics')
 
 
 @pytest.fixture(scope='module')
@@ -215,25 +198,33 @@ def test_sdist_holds_what_its_tests_need(archives, tree):
     assert not {name for name in needed if '__pycache__' not in name} - names
 
 
-def test_pip_installs_programs_and_configuration(prefix):
-    assert (prefix / 'bin/gear_state_publisher').is_file()
-    assert (prefix / 'bin/gearkin').is_file()
-    assert (prefix / SHARE / 'config/actuator.yaml').is_file()
-    code = 'import gear_kinematics; print(gear_kinematics.__file__)'
-    location = run(prefix / 'bin/python', '-c', code, cwd=prefix, env=isolated())
-    assert Path(location.strip()).is_relative_to(prefix)
+def test_installed_node_runs(installed):
+    """It is interrupted after its first words, and has a clean end."""
+    config = installed.prefix / SHARE / 'config/actuator.yaml'
+    command = installed.command('gear_state_publisher', '--ros-args', '--params-file', config)
+    with started(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
+        lines = []
+        for line in process.stdout:
+            lines.append(line)
+            if 'gear ratio' in line:
+                process.send_signal(signal.SIGINT)
+        assert process.wait() == 0, lines
+        assert any('gear ratio' in line for line in lines), lines
 
 
-def test_pip_installed_node_runs(prefix):
-    config = prefix / SHARE / 'config/actuator.yaml'
-    node = prefix / 'bin/gear_state_publisher'
-    assert_starts_and_stops(node, '--ros-args', '--params-file', config, env=isolated())
+def test_installed_files_are_there_and_found(installed, tree, tmp_path):
+    share = installed.prefix / SHARE
+    assert all((share / name).is_file() for name in shared_files(tree))
+    robot = ET.fromstring(run(*installed.command('gearkin', 'urdf'), cwd=tmp_path))  # noqa: S314, our own
+    names = [mesh.get('filename') for mesh in robot.iter('mesh')]
+    assert len(names) == 10
+    assert all((share.parent / name.removeprefix('package://')).is_file() for name in names)
 
 
-@pytest.fixture(scope='module')
-def environment_of_make(tmp_path_factory) -> Path:
-    """Return where `make` builds the virtual environment, so that it has to only once."""
-    return tmp_path_factory.mktemp('make') / 'venv'
+@pytest.mark.parametrize('name', ['gearkin', 'gear_state_publisher'])
+def test_every_installation_states_the_version_of_the_manifest(installed, manifest, name):
+    version = run(*installed.command(name, '--version'), cwd=installed.prefix)
+    assert version == f'{name} {manifest.findtext("version")}\n'
 
 
 def words_of_make(tree: Path, *variables: str, **environment: str) -> list[str]:
@@ -244,13 +235,10 @@ def words_of_make(tree: Path, *variables: str, **environment: str) -> list[str]:
         for name, value in os.environ.items()
         if not name.startswith(('MAKE', 'PIP_')) and name != 'MFLAGS'
     }
-    done = subprocess.run(
+    done = finished(
         ['make', 'demo', *variables],
         cwd=tree,
         env=inherited | {'PIP_CONFIG_FILE': os.devnull} | environment,
-        capture_output=True,
-        text=True,
-        check=False,
     )
     assert done.returncode == 2
     return [line for line in done.stderr.splitlines() if not line.startswith('make')]
@@ -273,90 +261,26 @@ def test_make_demo_says_what_to_install_for_a_virtual_environment(tree, tmp_path
     assert not (tmp_path / 'venv').exists()
 
 
-def test_make_demo_says_that_it_needs_a_network(tree, environment_of_make):
-    lines = words_of_make(
-        tree,
-        f'PYTHON={sys.executable}',
-        f'VENV={environment_of_make}',
-        PIP_INDEX_URL='http://127.0.0.1:9',  # nobody listens
-        PIP_RETRIES='1',
-    )
-    log = f'{environment_of_make}/pip.log'
-    assert lines == [f'pip cannot reach the package index: see {log}; is there a network?']
-
-
-def test_make_demo_says_which_requirement_cannot_be_installed(tree, environment_of_make):
-    lock = tree / 'requirements/demo.txt'
+def test_make_demo_says_why_it_cannot_install(tree, tmp_path):
+    venv, lock = tmp_path / 'venv', tree / 'requirements/demo.txt'
+    of_make = (tree, f'PYTHON={sys.executable}', f'VENV={venv}')
+    nobody = {'PIP_INDEX_URL': 'http://127.0.0.1:9', 'PIP_RETRIES': '1'}
+    assert words_of_make(*of_make, **nobody) == [
+        f'pip cannot reach the package index: see {venv}/pip.log; is there a network?'
+    ]
+    script(tmp_path / 'uname', 'echo Linux aarch64')
+    path = f'{tmp_path}:{os.environ["PATH"]}'
+    assert words_of_make(*of_make, PIP_NO_INDEX='1', PATH=path) == [
+        'ROS has no wheels for Linux aarch64: install ROS 2 Jazzy, then colcon build'
+    ]
     locked = lock.read_text('utf-8')
     lock.write_text('no-such-package\n')
     try:
-        (line,) = words_of_make(
-            tree, f'PYTHON={sys.executable}', f'VENV={environment_of_make}', PIP_NO_INDEX='1'
-        )
+        [line] = words_of_make(*of_make, PIP_NO_INDEX='1')
     finally:
         lock.write_text(locked, 'utf-8')
     assert line.startswith(
         'ERROR: Could not find a version that satisfies the requirement no-such'
-    )
-
-
-def test_make_demo_says_where_ros_has_no_wheels(tree, environment_of_make, tmp_path):
-    script(tmp_path / 'uname', 'echo Linux aarch64')
-    lines = words_of_make(
-        tree,
-        f'PYTHON={sys.executable}',
-        f'VENV={environment_of_make}',
-        PIP_NO_INDEX='1',  # no wheel of any kind
-        PATH=f'{tmp_path}:{os.environ["PATH"]}',
-    )
-    assert lines == ['ROS has no wheels for Linux aarch64: install ROS 2 Jazzy, then colcon build']
-
-
-def test_colcon_installs_share(tree, workspace):
-    share = workspace / 'install/gear_kinematics' / SHARE
-    assert all((share / name).is_file() for name in shared_files(tree))
-
-
-def test_colcon_installed_node_runs(workspace):
-    install = workspace / 'install'
-    node = install / 'gear_kinematics/lib/gear_kinematics/gear_state_publisher'
-    config = install / 'gear_kinematics' / SHARE / 'config/actuator.yaml'
-    # exec, so that the interrupt reaches the node and not the shell
-    source_and_exec = f'. {install}/setup.sh && exec "$@"'
-    command = ['sh', '-c', source_and_exec, 'sh', node]
-    assert_starts_and_stops(*command, '--ros-args', '--params-file', config)
-
-
-def test_gearkin_is_on_the_path_of_a_sourced_workspace(workspace, tmp_path):
-    source_and_run = f'. {workspace}/install/setup.sh && command -v gearkin && gearkin urdf'
-    found, _, urdf = run('sh', '-c', source_and_run, cwd=tmp_path).partition('\n')
-    assert Path(found).is_relative_to(workspace)
-    assert_meshes_are_installed(urdf, workspace / 'install/gear_kinematics/share')
-
-
-def test_pip_installs_the_meshes_of_the_urdf(prefix):
-    urdf = run(prefix / 'bin/gearkin', 'urdf', cwd=prefix, env=isolated())
-    assert_meshes_are_installed(urdf, prefix / 'share')
-
-
-def assert_meshes_are_installed(urdf: str, share: Path) -> None:
-    robot = ET.fromstring(urdf)  # noqa: S314, the project's own words
-    assert robot.tag == 'robot'
-    names = [mesh.get('filename') for mesh in robot.iter('mesh')]
-    assert len(names) == 10
-    assert all((share / name.removeprefix('package://')).is_file() for name in names)
-
-
-def test_every_installation_states_the_version_of_the_manifest(manifest, prefix, workspace):
-    version = manifest.findtext('version')
-    colcon = workspace / 'install/gear_kinematics/lib/gear_kinematics'
-    sourced = ['sh', '-c', f'. {workspace}/install/setup.sh && exec "$@"', 'sh']
-    for program in ('gearkin', 'gear_state_publisher'):
-        for command in ([prefix / 'bin' / program], [*sourced, colcon / program]):
-            output = run(*command, '--version', cwd=prefix, env=isolated())
-            assert output == f'{program} {version}\n'
-    assert run(sys.executable, '-m', 'gear_kinematics', '--version', cwd=ROOT) == (
-        f'gearkin {version}\n'
     )
 
 
@@ -381,6 +305,13 @@ def test_changelog_is_one_to_the_release_tools(manifest):
     versions = [name for name, _, content in found.foreach_version() if content]
     assert version in versions
     assert len(versions) == text.count('\n---'), 'a heading is no version and date'
+
+
+def test_build_farm_documents_the_package(manifest):
+    path = ROOT / manifest.findtext('export/rosdoc2')
+    kind, document = yaml.safe_load_all(path.read_text('utf-8'))
+    assert kind == {'type': 'rosdoc2 config', 'version': 1}
+    assert (ROOT / document['settings']['python_source'] / '__init__.py').is_file()
 
 
 def test_manifest_names_everything_that_is_imported(manifest):

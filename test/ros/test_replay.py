@@ -17,7 +17,7 @@ from types import SimpleNamespace
 import pytest
 from live import DEADLINE, Participant, rotor_bytes
 from rclpy.qos import QoSProfile
-from replaying import BOUND, SECOND, compare_messages, decode, stamp_of, valid_samples
+from replaying import SECOND, assert_right, decode, stamp_of, valid_samples
 from sensor_msgs.msg import JointState
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, write_bag
 
@@ -304,7 +304,7 @@ def test_a_live_node_publishes_what_it_published_when_recorded(name, settings, r
     ],
 )
 def test_a_live_node_publishes_what_a_real_recording_calls_for(
-    shared_path, record_property, pattern, topic, joint, count
+    shared_path, pattern, topic, joint, count
 ):
     [path] = shared_path('data/bags').glob(pattern)
     settings = config(rotor_joint=joint)
@@ -312,11 +312,7 @@ def test_a_live_node_publishes_what_a_real_recording_calls_for(
         found = by_topic(live_messages(bag, settings, rotor_topic=topic, rate=1000.0))
     samples, rejected = valid_samples(found[ROTOR], joint=joint)
     assert (len(samples), rejected) == (count, {})
-    worst = compare_messages(samples, found[OUTPUT], found[POSES])
-    record_property('worst_angle', worst.angle)
-    record_property('worst_position', worst.position)
-    assert worst.angle <= BOUND
-    assert worst.position <= BOUND
+    assert_right(samples, found[OUTPUT], found[POSES])
 
 
 def test_live_messages_with_another_topic_joint_and_prefix_add_missing_stamps():

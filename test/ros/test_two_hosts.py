@@ -22,7 +22,7 @@ from endpoints import (
     running,
 )
 from network import Cable, NoNetworkError, two_hosts
-from replaying import BOUND, compare_messages, valid_samples
+from replaying import assert_right, valid_samples
 
 from gear_kinematics.ros.live import running_node
 
@@ -227,9 +227,7 @@ def test_no_output_is_wrong_or_out_of_order(run, name):
         messages = [rotor_message(number, encoder) for number in answered[homed : last + 1]]
         (zero, *samples), _ = valid_samples(messages, single_turn=encoder == 'single_turn')
         part = slice(homed + 1, last + 1)
-        worst = compare_messages(samples, states[part], poses[part], zero=zero.position)
-        assert worst.angle <= BOUND
-        assert worst.position <= BOUND
+        assert_right(samples, states[part], poses[part], zero=zero.position)
 
 
 def test_a_reliable_driver_that_keeps_its_messages_loses_none(run):
