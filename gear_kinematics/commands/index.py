@@ -279,8 +279,8 @@ def _outcome(answer: _Answer) -> Iterator[tuple[str, str]]:
                 f'{arc(least.high)}, which is wanted)'
             ),
         )
-        if measured.price:
-            yield 'price', f'{plus_minus(measured.price)} N·m more friction'
+        if measured.added_friction:
+            yield 'added friction', f'{plus_minus(measured.added_friction)} N·m'
     if preload is not None:
         wanted = f'{answer.preload:.4g} N·m'
         yield 'preload', f'{preload:.4g} N·m for a wanted {wanted} ({more:+.2g} N·m)'

@@ -10,13 +10,11 @@ from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import add_recordings, sources
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
+from gear_kinematics.measurement import names as naming
 from gear_kinematics.measurement.answer import Limits
-from gear_kinematics.measurement.compare import groups as grouping
 from gear_kinematics.measurement.compare.quantities import at_common_torque
-from gear_kinematics.measurement.compare.section import compared, over_positions, over_time
-from gear_kinematics.measurement.compare.trend import common_times
-from gear_kinematics.measurement.comparison import Comparison
-from gear_kinematics.measurement.document import document
+from gear_kinematics.measurement.compare.section import compared, over_time
+from gear_kinematics.measurement.document import Comparison, document
 from gear_kinematics.measurement.encoder_step import UNITS
 from gear_kinematics.measurement.figures import STIFFNESS_SHARES
 from gear_kinematics.measurement.lost_motion import (
@@ -28,7 +26,6 @@ from gear_kinematics.measurement.lost_motion import (
     measure_recording,
 )
 from gear_kinematics.measurement.preload.section import over_preload
-from gear_kinematics.measurement.preload.settings import settings_of
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import Verdict
 
@@ -103,10 +100,10 @@ def _add_several(parser: argparse.ArgumentParser) -> None:
     several.add_argument(
         '--positions',
         nargs='?',
-        const=grouping.DEFAULT_PATTERN,
+        const=naming.POSITION,
         metavar='PATTERN',
-        help='combine, or pair in groups, recordings at several positions of the output, by the '
-        'text in parentheses of a regular expression in their names (default: position_1 ...)',
+        help='pair recordings of gears at the same position of the output, by the text in '
+        'parentheses of a regular expression in their names (default: position_1 ...)',
     )
     several.add_argument(
         '--preloads',
@@ -163,18 +160,21 @@ def _check(options: argparse.Namespace) -> None:
     """Refuse options that exclude each other, and patterns that are none, before any work."""
     if options.preloads is None and (options.load or options.preload_unit):
         raise ValueError(f'--{"load" if options.load else "preload-unit"} needs --preloads')
-    if options.trend and (options.positions is not None or options.preloads is not None):
-        wrong = 'positions' if options.positions is not None else 'preloads'
-        raise ValueError(f'--{wrong} cannot be combined with --trend')
+    given = [name for name in ('positions', 'preloads') if getattr(options, name) is not None]
+    if given and (options.trend or len(given) > 1):
+        other = 'trend' if options.trend else 'preloads'
+        raise ValueError(f'--{given[0]} cannot be combined with --{other}')
     names = _names(options.recordings)
     if options.group:
-        _, others = grouping.grouped(names, options.group)
+        _, others = naming.grouped(names, options.group)
         names = [name for number, name in enumerate(names) if number not in others]
     if options.positions is not None:
-        grouping.positions_of(names, options.positions)
+        gears, _ = naming.positions_of(names, options.positions)
+        if not options.group and len(gears) == 1:
+            raise ValueError('--positions: these are of one gear; tell its states with --group')
     if options.preloads is not None:
         gear = arguments.load_config(options, options.recordings[0]).gear
-        settings_of(names, options.preloads, options.preload_unit, gear)
+        naming.settings_of(names, options.preloads, options.preload_unit, gear)
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
@@ -209,7 +209,7 @@ def _compared(
     """Return the reports, those that are compared at a common torque, and what they tell."""
     torques = options.rated_torque, options.stiffness_torques
     if options.trend:
-        times, source = common_times([report.recording for report in reports])
+        times, source = naming.common_times([report.recording for report in reports])
         order = sorted(range(len(reports)), key=times.__getitem__)
         ordered = at_common_torque([reports[number] for number in order], *torques)
         return ordered, [over_time(ordered, [times[number] for number in order], source)]
@@ -217,7 +217,7 @@ def _compared(
         return [*reports], []
     groups, apart = None, []
     if options.group:
-        groups, others = grouping.grouped([report.name for report in reports], options.group)
+        groups, others = naming.grouped([report.name for report in reports], options.group)
         for number in others:
             complain(f'{reports[number].name}: is of no group, and not compared')
         apart = [reports[number] for number in others]
@@ -227,17 +227,15 @@ def _compared(
     positions = None
     if options.positions is not None:
         names = [report.name for report in reports]
-        gears, positions = grouping.positions_of(names, options.positions)
-        if not groups:
-            found.append(over_positions(reports, gears, positions))
-            groups = gears if len(gears) > 1 else None
+        gears, positions = naming.positions_of(names, options.positions)
+        groups = groups or gears
     if options.preloads is not None:
         gear = arguments.load_config(options, options.recordings[0]).gear
-        settings, scale = settings_of(
+        settings, scale = naming.settings_of(
             [report.name for report in reports], options.preloads, options.preload_unit, gear
         )
         found.append(over_preload(reports, settings, scale, options.load))
-    elif groups or positions is None:
+    else:
         found += filter(None, [compared(reports, groups, positions)])
     if options.plot and not found:
         raise ValueError('--plot: the recordings have no figure in common')

@@ -2,16 +2,15 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
-from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.encoder_step import Source, Step
 from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.middle_line import Backlash, Cause
+from gear_kinematics.measurement.measured import Measured, shown
+from gear_kinematics.measurement.middle_line import Cause
 from gear_kinematics.measurement.ratio import ratio_remarks
-from gear_kinematics.measurement.tables import shown, too_uncertain
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, arc_minutes
 from gear_kinematics.report.document import number, printable
 
@@ -42,23 +41,21 @@ def answer(report: LostMotion) -> str:
 
 def _of_ramps(figures: GearFigures) -> str:
     width = f'At zero torque the output rests anywhere within {arc_minutes(figures.hysteresis)}′.'
-    backlash = figures.backlash
+    backlash, cause = figures.backlash, figures.backlash.cause
     if backlash.high is None:
-        return f'{width} How much of it is play is not known; {backlash.cause.value}.'
+        return f'{width} How much of it is play is not known; {cause.value}.'
     if value := backlash.value:
         return f'{width} Of it, {arc_minutes(value)}′ is play, the rest friction.'
     low, high = (number(end * ARC_MINUTES) for end in (backlash.low, backlash.high))
-    cause = f'; {cause}' if (cause := _cause(figures)) else ''
-    return f'{width} Of it, at least {low}′ and at most {high}′ is play, the rest friction{cause}.'
-
-
-def _cause(figures: GearFigures) -> str:
-    """Why the backlash has no value, or what to record so that it has."""
-    cause, friction = figures.backlash.cause, figures.friction
-    enough = 2.0 * friction.value if friction else math.inf
-    if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * figures.smallest.amplitude:
-        return f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
-    return cause.value
+    said = cause.value
+    enough = 2.0 * figures.friction.value if figures.friction else math.inf
+    if (
+        cause in {Cause.BENT, Cause.SOFT}
+        and enough < _SMALLER * figures.by_amplitude[0].ramps.amplitude
+    ):
+        said = f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
+    rest = f'the rest friction; {said}.' if said else 'the rest friction.'
+    return f'{width} Of it, at least {low}′ and at most {high}′ is play, {rest}'
 
 
 # Limits
@@ -86,36 +83,25 @@ class Limits:
 
     def judge(self, report: LostMotion) -> list[Judgement]:
         """Judge a recording by each limit, at the end of the interval that speaks against it."""
-        found = report.figures
-        moving = found or report.transmission
-        judged: list[tuple[str, float | None, Estimate | Backlash | None]] = [
-            ('hysteresis', self.hysteresis, found.hysteresis if found else None),
-            ('lost motion', self.lost_motion, moving.lost_motion if moving else None),
-            ('backlash', self.backlash, found.backlash if found else None),
-            (
-                'stiffness',
-                self.stiffness,
-                found.stiffness[-1].both if found and found.stiffness else None,
-            ),
+        limits = {name.replace('_', ' '): limit for name, limit in asdict(self).items()}
+        return [
+            _judged(figure, limit)
+            for figure in report.main_figures
+            if (limit := limits.get(figure.name)) is not None
         ]
-        return [_judged(name, limit, value) for name, limit, value in judged if limit is not None]
 
 
-def _judged(name: str, limit: float, value: Estimate | Backlash | None) -> Judgement:
-    if value is None or (isinstance(value, Backlash) and value.high is None):
+def _judged(figure: Measured, limit: float) -> Judgement:
+    name = figure.name
+    if not figure.ends:
         return Judgement(name, holds=False, text=f'the {name} is not known')
-    if isinstance(value, Backlash):
-        low, high = value.low, value.high or 0.0
-    else:
-        spread = value.uncertainty or 0.0
-        low, high = value.value - spread, value.value + spread
-    if name == 'stiffness':
-        holds, fails, unit, scale = low >= limit, high < limit, ' N·m/rad', 1.0
-    else:
-        holds, fails, unit, scale = high <= limit, low > limit, '′', ARC_MINUTES
+    sign = -1.0 if name == 'stiffness' else 1.0  # the least of it, not the most
+    low, high = sorted(sign * end for end in figure.ends)
+    holds, fails = high <= sign * limit, low > sign * limit
     place = 'is within' if holds else 'is beyond' if fails else 'may be beyond'
-    place = f'{place} the limit of {number(limit * scale)}{unit}'
-    return Judgement(name, holds, f'the {name} of {shown(value, scale)}{unit} {place}')
+    value, most = figure.cell.with_unit(), shown(figure.unit, limit).with_unit()
+    text = f'the {name} of {value} {place} the limit of {most}'
+    return Judgement(name, holds, text)
 
 
 # Remarks
@@ -142,9 +128,7 @@ def _remarks(report: LostMotion) -> Iterator[str]:
             yield _step(recording.locked.angle_step, 'the angle at the output')
         if len(found.by_amplitude) == 1:
             yield 'All ramps have about one amplitude: small ones would separate play better.'
-        if vague := too_uncertain(found):
-            yield f'Too uncertain to tell, as the ± exceeds the value: {", ".join(vague)}.'
-        if found.smallest.loops == 1 or found.largest.loops == 1:
+        if min(len(figures.ramps.loops) for figures in found.by_amplitude) == 1:
             yield 'There is no uncertainty where nothing was repeated.'
         if found.hysteresis.value < -(found.hysteresis.uncertainty or 0.0):
             yield (
@@ -155,7 +139,19 @@ def _remarks(report: LostMotion) -> Iterator[str]:
         rotor_step = both.rotor_step_at_output(report.gear_ratio)
         yield _step(rotor_step, 'the rotor encoder (at the output)')
         yield _step(both.output_step, 'the output encoder')
-        yield from _delay(report, timed=both.timed)
+        motion = report.transmission
+        late = motion.delay if motion else None
+        if motion and motion.reversals and not late:
+            yield (
+                'The speed varies too little to tell lost motion from a delay between the '
+                'encoders: move at several speeds, or tell the delay with --delay, in '
+                f'{"s" if both.timed else "rows"}.'
+            )
+        if late and abs(late.value) > (late.uncertainty or math.inf):
+            yield (
+                'The stamps of the two encoders differ by a delay. It has been taken out of the '
+                'transmission error.'
+            )
         for cause, count in both.unmatched.items():
             yield f'{count} output angles were not compared: {cause}.'
     yield (
@@ -163,25 +159,6 @@ def _remarks(report: LostMotion) -> Iterator[str]:
         'and the steps of the encoders. Errors of scale (1 % of the torque is 1 % of friction and '
         'stiffness) and other positions of the output are not in it.'
     )
-
-
-def _delay(report: LostMotion, *, timed: bool) -> Iterator[str]:
-    found = report.transmission
-    if not (found and found.reversals):
-        return
-    late = found.delay
-    if late is None:
-        yield (
-            'The speed varies too little to tell lost motion from a delay between the encoders: '
-            '"backward minus forward" is the sum of lost motion and delay times twice the speed. '
-            'Move at several speeds, or tell the delay with --delay, in '
-            f'{"s" if timed else "rows"}.'
-        )
-    elif abs(late.value) > (late.uncertainty or math.inf):
-        yield (
-            'The stamps of the two encoders differ by a delay. It has been taken out of the '
-            'transmission error.'
-        )
 
 
 def _step(step: Step, of: str) -> str:

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Sequence
 import numpy as np
 
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, Figures
-from gear_kinematics.measurement.loops import HalfLoop, Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import middle_lines
 from gear_kinematics.measurement.transmission import TransmissionFigures
@@ -21,24 +20,32 @@ _WAYS: tuple[tuple[int, str, Pen], ...] = (
     (1, 'forward', Pen.FIRST),
     (-1, 'backward', Pen.SECOND),
 )
+_HALVES = {True: ('torque rising', Pen.FIRST), False: ('torque falling', Pen.SECOND)}
 
 
 def panels(report: LostMotion) -> Iterator[Panel]:
     """Yield the plots of a report."""
     if found := report.figures:
-        for ramps, figures in zip(report.ramps, found.by_amplitude, strict=True):
-            yield _ramp_panel(ramps, figures, found.settings.rated_torque)
-    if report.transmission:
-        yield from _transmission(report.transmission)
+        yield from map(_ramp_panel, found.by_amplitude)
+    if motion := report.transmission:
+        yield _error_panel(motion)
 
 
-def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
+def _ramp_panel(figures: Figures) -> Panel:
+    ramps = figures.ramps
     centre = float(np.mean([loop.middle(0.0) for loop in ramps.loops]))
-    lines = [_half_loop(half, centre, ramps) for loop in ramps.loops for half in reversed(loop)]
+    lines = []
+    for half in (half for loop in ramps.loops for half in reversed(loop)):
+        # A ramp may continue to a larger amplitude, which has its own panel.
+        inside = np.flatnonzero(np.abs(half.torque) <= 1.02 * ramps.amplitude)
+        rows = inside[:: math.ceil(len(inside) / _MOST)]
+        name, pen = _HALVES[half.rising]
+        angle = (half.angle[rows] - centre) * ARC_MINUTES
+        lines.append(Line(name, pen, half.torque[rows], angle))
     for line in middle_lines(ramps):
         angle = (line.angle - centre) * ARC_MINUTES
         lines.append(Line('middle line: without friction', Pen.MODEL, line.load, angle))
-    at = LOST_MOTION_SHARE * rated_torque
+    at = LOST_MOTION_SHARE * figures.settings.rated_torque
     return Panel(
         f'ramps to {number(ramps.amplitude)} N·m: hysteresis {arc_minutes(figures.hysteresis)}′',
         f'torque at the output [N·m]; dashed: 0 and ±{100.0 * LOST_MOTION_SHARE:g} % of rated',
@@ -48,39 +55,16 @@ def _ramp_panel(ramps: Ramps, figures: Figures, rated_torque: float) -> Panel:
     )
 
 
-def _half_loop(half: HalfLoop, centre: float, ramps: Ramps) -> Line:
-    # A ramp may continue to a larger amplitude, which has its own panel.
-    inside = np.abs(half.torque) <= 1.02 * ramps.amplitude
-    every = math.ceil(np.count_nonzero(inside) / _MOST)
-    load, angle = (values[inside][::every] for values in (half.torque, half.angle))
-    angle = (angle - centre) * ARC_MINUTES
-    if half.rising:
-        return Line('torque rising', Pen.FIRST, load, angle)
-    return Line('torque falling', Pen.SECOND, load, angle)
-
-
-def _transmission(found: TransmissionFigures) -> Iterator[Panel]:
+def _error_panel(motion: TransmissionFigures) -> Panel:
     lines = []
     for way, name, pen in _WAYS:
-        rows = found.direction == way
+        rows = motion.direction == way
         if rows.any():
-            error = (found.error[rows] - found.offset) * ARC_MINUTES
-            angle, error = envelope(np.degrees(found.angle[rows]), error)
+            error = (motion.error[rows] - motion.offset) * ARC_MINUTES
+            angle, error = envelope(np.degrees(motion.angle[rows]), error)
             lines.append(Line(name, pen, angle, error, points=way == 0))
-    yield Panel(
-        'transmission error less its mean',
-        'output angle [°]',
-        'measured less ideal [arcmin]',
-        tuple(lines),
-    )
-    spectra = [
-        (name, pen, spectrum.orders[1:], spectrum.amplitude[1:])
-        for spectrum, (_, name, pen) in zip(found.spectra, _WAYS[1:], strict=True)
-        if spectrum
-    ]
-    highest = max((cycles[-1] for _, _, cycles, _ in spectra), default=0.0)
-    orders = [(float(o.cycles), o.name) for o in found.orders if float(o.cycles) <= highest]
-    yield from spectrum_panel('output', spectra, orders, decades=4)
+    title, label = 'transmission error less its mean', 'measured less ideal [arcmin]'
+    return Panel(title, 'output angle [°]', label, tuple(lines))
 
 
 def spectrum_panel(

@@ -1,7 +1,7 @@
 """The figures of a hysteresis curve as catalogues give them; docs/lost_motion.md defines them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 from gear_kinematics.measurement.loops import Array, HalfLoop, Loop, RampError, Ramps
+from gear_kinematics.measurement.measured import HYSTERESIS, Measured
 from gear_kinematics.measurement.middle_line import (
     MOST_FRICTION,
     Backlash,
@@ -19,6 +20,7 @@ from gear_kinematics.measurement.middle_line import (
     stiffness_of,
 )
 from gear_kinematics.measurement.resolution import hidden_resolution, slope_resolution
+from gear_kinematics.report.document import number
 
 LOST_MOTION_SHARE = 0.03
 """Lost motion is measured between ± this share of the rated torque."""
@@ -58,14 +60,12 @@ class Settings:
     """rad at the output, between readings of the encoder; 0 if unknown."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Figures:
     """Of the ramps of one amplitude: angles in rad, torques in N·m."""
 
-    amplitude: float
-    loops: int
-    rate: float | None
-    """N·m/s, of the torque; None if times are not known."""
+    settings: Settings
+    ramps: Ramps
     hysteresis: Estimate
     """The width of the curve at zero torque."""
     friction: Estimate | None
@@ -83,53 +83,31 @@ class Figures:
     overall: Stiffness | None
     """Slope of a straight line through each whole side of the loop."""
 
+    def listed(self) -> Iterator[Measured]:
+        """Yield the figures in the order of reports."""
+        at = number(LOST_MOTION_SHARE * self.settings.rated_torque)
+        load = number(self.settings.small_load)
+        without = 'lost motion without friction'
+        yield Measured(HYSTERESIS, 'rad', self.hysteresis, ' at zero torque')
+        yield Measured('backlash', 'rad', self.backlash)
+        yield Measured(without, 'rad', self.frictionless, f' at ±{load} N·m')
+        yield Measured('friction', 'N·m', self.friction)
+        yield Measured('lost motion', 'rad', self.lost_motion, f' at ±{at} N·m')
+        for stiffness in self.stiffness:
+            ends = f'{number(stiffness.low)} to {number(stiffness.high)} N·m'
+            yield Measured(f'stiffness {ends}', 'N·m/rad', stiffness.both)
+        overall = self.overall.both if self.overall else None
+        yield Measured('overall stiffness', 'N·m/rad', overall)
 
-@dataclass(frozen=True, slots=True)
-class GearFigures:
-    """Of a gear, from the ramps of all amplitudes, from small to large."""
 
-    settings: Settings
+@dataclass(frozen=True, eq=False, slots=True)
+class GearFigures(Figures):
+    """Of a gear: with friction from its smallest ramps, otherwise from its largest."""
+
+    backlash: Backlash
+    """What all ramps together leave room for."""
     by_amplitude: tuple[Figures, ...]
-
-    @property
-    def smallest(self) -> Figures:
-        """Figures of the smallest ramps, in which friction shows."""
-        return self.by_amplitude[0]
-
-    @property
-    def largest(self) -> Figures:
-        """Figures of the largest ramps, which load the gear."""
-        return self.by_amplitude[-1]
-
-    @property
-    def hysteresis(self) -> Estimate:
-        """rad, of the smallest ramps."""
-        return self.smallest.hysteresis
-
-    @property
-    def friction(self) -> Estimate | None:
-        """N·m, of the smallest ramps."""
-        return self.smallest.friction
-
-    @property
-    def lost_motion(self) -> Estimate | None:
-        """rad, of the largest ramps."""
-        return self.largest.lost_motion
-
-    @property
-    def frictionless(self) -> Estimate | None:
-        """Lost motion without friction, rad, of the smallest ramps that reach its load."""
-        return next((f.frictionless for f in self.by_amplitude if f.frictionless), None)
-
-    @property
-    def backlash(self) -> Backlash:
-        """What all ramps together leave room for."""
-        return reconciled([figures.backlash for figures in self.by_amplitude])
-
-    @property
-    def stiffness(self) -> tuple[Stiffness, ...]:
-        """Of the largest ramps."""
-        return self.largest.stiffness
+    """From small to large."""
 
 
 def settings_for(
@@ -165,7 +143,20 @@ def gear_figures(ramps: Sequence[Ramps], settings: Settings) -> GearFigures:
             'wrong sign'
         )
     loaded = stiffness_of(middle_lines(ramps[-1]), ramps[-1])
-    return GearFigures(settings, tuple(_figures(group, settings, loaded) for group in ramps))
+    found = tuple(_figures(group, settings, loaded) for group in ramps)
+    small, large = found[0], found[-1]
+    return GearFigures(
+        settings,
+        large.ramps,
+        small.hysteresis,
+        small.friction,
+        large.lost_motion,
+        next((figures.frictionless for figures in found if figures.frictionless), None),
+        reconciled([figures.backlash for figures in found]),
+        large.stiffness,
+        large.overall,
+        found,
+    )
 
 
 def _figures(ramps: Ramps, settings: Settings, loaded: float) -> Figures:
@@ -173,9 +164,8 @@ def _figures(ramps: Ramps, settings: Settings, loaded: float) -> Figures:
     lines, step = middle_lines(ramps), settings.angle_step
     hysteresis, frictionless = _hysteresis(ramps.loops, step), _frictionless(lines, settings)
     return Figures(
-        ramps.amplitude,
-        len(ramps.loops),
-        ramps.rate,
+        settings,
+        ramps,
         hysteresis,
         _friction(lines, ramps, step),
         _lost_motion(ramps.loops, settings),

@@ -7,14 +7,21 @@ measured in processes of this machine or on a Dask cluster.
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from gear_kinematics.bag import ReportProgress, fleet
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Gear, GearRatio
 from gear_kinematics.measurement.csv_files import Sources
-from gear_kinematics.measurement.figures import GearFigures, Settings, gear_figures, settings_for
+from gear_kinematics.measurement.figures import (
+    GearFigures,
+    Settings,
+    gear_figures,
+    settings_for,
+)
 from gear_kinematics.measurement.loops import RampError, Ramps, find_ramps
+from gear_kinematics.measurement.measured import HYSTERESIS, Measured
 from gear_kinematics.measurement.ratio import RatioEstimate, check_ratio, fit_ratio
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import Recording, RecordingError
@@ -32,9 +39,8 @@ class LostMotion:
     recording: Recording
     gear_ratio: GearRatio
     """With which it was read."""
-    ramps: tuple[Ramps, ...] = ()
-    """By amplitude, from small to large; none where there are no torque ramps."""
     figures: GearFigures | None = None
+    """None where there are no torque ramps."""
     measured: bool = False
     """Whether an encoder measured the output under torque; if not, it is taken to be locked."""
     transmission: TransmissionFigures | None = None
@@ -45,13 +51,27 @@ class LostMotion:
     wrong_ratio: str = ''
     """What is wrong with the ratio, in a sentence; empty if nothing shows."""
 
-    def at(self, rated_torque: float, corners: Sequence[float], small_load: float) -> 'LostMotion':
-        """The figures of the ramps at other reference values; see `figures.Settings`."""
-        if not self.figures:
+    @property
+    def main_figures(self) -> tuple[Measured, ...]:
+        """The figures of a summary, to which limits apply; without a value where unknown."""
+        found, motion = self.figures, self.transmission
+        stiffness = found.stiffness[-1].both if found and found.stiffness else None
+        moving = found or motion
+        return (
+            Measured(HYSTERESIS, 'rad', found.hysteresis if found else None),
+            Measured('backlash', 'rad', found.backlash if found else None),
+            Measured('lost motion', 'rad', moving.lost_motion if moving else None),
+            Measured('stiffness', 'N·m/rad', stiffness),
+            Measured('transmission accuracy', 'rad', motion.forward if motion else None),
+        )
+
+    def at(self, settings: Settings) -> 'LostMotion':
+        """The figures of the ramps at other reference values; the step of the encoder stays."""
+        if not (found := self.figures):
             return self
-        step = self.figures.settings.angle_step
-        settings = Settings(rated_torque, tuple(corners), small_load, step)
-        return replace(self, figures=gear_figures(self.ramps, settings))
+        settings = replace(settings, angle_step=found.settings.angle_step)
+        ramps = [own.ramps for own in found.by_amplitude]
+        return replace(self, figures=gear_figures(ramps, settings))
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,8 +113,14 @@ def measure(
         wrong = check_ratio(encoders, gear.gear_ratio)
         travel = parameters.transmission_error_travel
         found = transmission_figures(encoders, gear, travel, request.delay)
-    report = LostMotion(recording.name, recording, gear.gear_ratio)
-    report = replace(report, transmission=found, fitted=fitted, wrong_ratio=wrong)
+    report = LostMotion(
+        recording.name,
+        recording,
+        gear.gear_ratio,
+        transmission=found,
+        fitted=fitted,
+        wrong_ratio=wrong,
+    )
     if loading := recording.loading(gear.gear_ratio):
         try:
             ramps = find_ramps(loading.torque, loading.angle, loading.time)
@@ -102,7 +128,7 @@ def measure(
             settings = settings_for(ramps, step, request.rated_torque, request.corners)
             figures = gear_figures(ramps, settings)
             remarks += time_remarks(ramps, figures.friction, step)
-            report = replace(report, ramps=ramps, figures=figures, measured=loading.measured)
+            report = replace(report, figures=figures, measured=loading.measured)
         except RampError as error:
             if not found:
                 raise
@@ -115,10 +141,7 @@ def time_remarks(
 ) -> Iterator[str]:
     """Say what changes with time, with its size; it is not taken out of the figures.
 
-    Args:
-        ramps: from small to large amplitude.
-        friction: N·m, of the smallest, as creep adds to that of large ones.
-        angle_step: rad, between readings of the encoder; 0 if unknown.
+    The friction, N·m, is that of the smallest ramps, as creep adds to that of large ones.
     """
     if drift := max(ramps, key=lambda ramps: len(ramps.loops)).drift():
         moved, span = drift
@@ -150,8 +173,7 @@ class Task:
     """Whether to print tracebacks of unexpected errors to stderr."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Outcome:
+class Outcome(NamedTuple):
     """What became of a recording: a report or an error."""
 
     report: LostMotion | None
@@ -165,9 +187,8 @@ def measure_recording(task: Task, progress: ReportProgress | None = None) -> Out
         recording = replace(recording, name=task.name)
         return Outcome(measure(recording, task.parameters.gear, task.parameters, task.request))
     except (ValueError, OSError) as error:
-        if isinstance(error, (RampError, RecordingError)) and str(task.path) not in str(error):
-            return _failed(task, str(error))
-        return Outcome(None, str(error))
+        cause = str(error)
+        return Outcome(None, cause) if str(task.path) in cause else _failed(task, cause)
     except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
         return _failed(task, unexpected(error, debug=task.debug))
 

@@ -61,12 +61,8 @@ class RatioEstimate:
 
     @property
     def teeth(self) -> str:
-        """The tooth pairs, in words; empty without any."""
-        if not self.tooth_pairs:
-            return ''
-        shown = ', '.join(f'{ring}/{satellite}' for ring, satellite in self.tooth_pairs[:_SHOWN])
-        more = len(self.tooth_pairs) - _SHOWN
-        return f'{shown} and {more} more' if more > 0 else shown
+        """The first tooth pairs, in words; empty without any."""
+        return ', '.join(f'{ring}/{satellite}' for ring, satellite in self.tooth_pairs[:_SHOWN])
 
     @property
     def ratio(self) -> GearRatio:
@@ -102,8 +98,7 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
     Raises:
         RecordingError: if the errors cover a whole turn; within the turn they then mean nothing.
     """
-    error = encoders.error(assumed)
-    wrong = wrong_ratio(encoders, assumed)
+    error, wrong = encoders.error(assumed), wrong_ratio(encoders, assumed)
     if float(np.ptp(np.remainder(error - error[0] + 0.5 * TURN, TURN))) >= 0.5 * TURN:
         raise RecordingError(
             'the measured output angle does not follow the rotor: the errors cover a whole turn; '
@@ -234,7 +229,4 @@ def ratio_remarks(fitted: RatioEstimate) -> Iterator[str]:
         f'is there by coincidence with a probability of at most {number(fitted.chance, 2)}.'
     )
     if fitted.teeth:
-        yield (
-            f'Tooth pairs (ring gear/satellite) of up to {MOST_TEETH} teeth with such a ratio: '
-            f'{fitted.teeth}.'
-        )
+        yield f'Teeth of ring gear/satellite with such a ratio are, for example, {fitted.teeth}.'

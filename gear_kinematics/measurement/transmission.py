@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,17 +29,11 @@ _MIN_CYCLES = 2.0
 """Of an order in a run."""
 _MIN_SAMPLES = 4.0
 """In a cycle."""
-_BINS = 8.0
-"""Interpolated samples in the spectrum's shortest cycle."""
-_MOST_BINS = 100.0
-"""Interpolated samples for each one."""
-_MOST_TEETH = 100
-"""In mesh per turn of the rotor of an unknown gear."""
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """A marked order of the spectrum."""
+    """An order of the gear, as found in the transmission error."""
 
     name: str
     cycles: Fraction
@@ -48,14 +41,6 @@ class Order:
     forward: Estimate | None
     """Amplitude, rad; None where the motion is too short or the samples too far apart."""
     backward: Estimate | None
-
-
-class Spectrum(NamedTuple):
-    """Amplitudes over orders, (n,) each, in one direction."""
-
-    orders: Array
-    amplitude: Array
-    """rad."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -78,8 +63,6 @@ class TransmissionFigures:
     """s, or rows of a file without times, by which the stamps of the output are late; None if it
     cannot be told. The other figures are without it."""
     orders: tuple[Order, ...]
-    spectra: tuple[Spectrum | None, Spectrum | None]
-    """Forward and backward."""
     error: Array
     """(n,), measured minus ideal."""
     angle: Array
@@ -209,7 +192,6 @@ def transmission_figures(
         found.lost_motion if found else None,
         found.delay if found else None,
         tuple(Order(name, at, there.get(at), back.get(at)) for name, at in orders.items()),
-        (_spectrum(gear, forward), _spectrum(gear, backward)),
         motion.error,
         motion.angle,
         motion.direction,
@@ -268,23 +250,3 @@ def _fit(run: _Run, orders: Sequence[Fraction]) -> Array:
     cosines, sines = np.linalg.lstsq(design, run.error, rcond=None)[0][1:].reshape(2, -1)
     amplitudes: Array = np.hypot(cosines, sines)
     return amplitudes
-
-
-def _spectrum(gear: Gear, runs: Sequence[_Run]) -> Spectrum | None:
-    """Amplitudes of all orders that the longest run resolves, with a Hann window."""
-    run = max(runs, key=lambda run: run.turns, default=None)
-    if run is None:
-        return None
-    teeth = gear.ring_teeth if isinstance(gear, Mechanism) else _MOST_TEETH
-    highest = min(2.5 * float(teeth * abs(gear.gear_ratio)), 0.5 / run.spacing)
-    count = math.ceil(_BINS * highest * run.turns)
-    # Samples with a gap so wide tell no spectrum, which would be as long as it.
-    if highest * run.turns < _MIN_CYCLES or count > _MOST_BINS * len(run.angle):
-        return None
-    at = run.low + (np.arange(count) + 0.5) * (run.high - run.low) / count
-    error = np.interp(at, run.angle, run.error)
-    window = np.hanning(count)
-    amplitude = 2.0 * np.abs(np.fft.rfft((error - error.mean()) * window)) / window.sum()
-    orders = np.arange(len(amplitude)) / run.turns
-    shown = orders <= highest
-    return Spectrum(orders[shown], amplitude[shown])

@@ -50,9 +50,9 @@ def test_a_report_in_a_pipe_is_its_answer_and_with_v_the_figures(recording, caps
     assert float(said[2]) == pytest.approx(math.degrees(GEAR.play) * 60.0, abs=0.2)
     assert main(['lost-motion', '-v', str(recording)]) == 0
     told = facts(capsys.readouterr().out)
-    assert float(told['hysteresis at zero torque: value'].removesuffix(' arcmin')) == (
-        pytest.approx(arcmin, abs=0.1)
-    )
+    for column in ('value', 'to 4 N·m'):
+        value = told[f'hysteresis at zero torque: {column}'].split(' ± ')[0]
+        assert float(value) == pytest.approx(arcmin, abs=0.1)
     assert told['stiffness 20 to 40 N·m: value'].endswith(' N·m/rad')
     assert told['rated torque'] == '40 N·m'
 
@@ -131,22 +131,18 @@ def test_plots_and_pages_need_nothing_from_elsewhere(recording, motion, tmp_path
     plot, page = tmp_path / 'plot.png', tmp_path / 'page.html'
     assert main(['lost-motion', str(motion), '--plot', str(plot)]) == 0
     width, height = struct.unpack('>II', plot.read_bytes()[16:24])
-    assert (width, height) == (1800, 780)  # two panels
+    assert width > height > 500
     assert main(['lost-motion', str(recording), str(motion), '--html', str(page)]) == 0
     tree = html.document_fromstring(page.read_bytes(), parser=html.HTMLParser(encoding='utf-8'))
     assert not tree.xpath('//@src | //link')
     assert [h.text for h in tree.xpath('//h2')] == ['gear.csv', 'motion.csv']
     plots = [json.loads(s.text) for s in tree.xpath('//script[@type="application/json"]')]
     assert len(plots) == 2
-    for drawn in plots:
-        axes = {name for name in drawn['layout'] if name.startswith('xaxis')}
-        assert axes == {'xaxis1', 'xaxis2'}
+    for drawn, panels in zip(plots, (2, 1), strict=True):
+        assert sum(name.startswith('xaxis') for name in drawn['layout']) == panels
         for trace in drawn['data']:
             assert len(trace['x']) == len(trace['y']) > 1
             assert len(trace['x']) <= 2000
-    assert plots[1]['layout']['xaxis2']['type'] == 'log'
-    marked = {note['text'] for note in plots[1]['layout']['annotations']}
-    assert 'rotor × 1, satellite × 1' in marked
     assert capsys.readouterr().out
 
 
@@ -415,11 +411,11 @@ def test_ratio_is_estimated_and_the_gears_that_have_it_are_named(tmp_path, capsy
     assert main(['lost-motion', '-v', path, '--fit-ratio']) == 0
     output = capsys.readouterr().out
     assert re.search(r'estimated as -19\.333\d+ ± 0\.0000\d+, and taken as -58/3\.', output)
-    assert 'a ratio: 61/58, 122/116, 183/174.' in output
+    assert 'for example, 61/58, 122/116, 183/174.' in output
 
 
 @pytest.mark.slow
-def test_positions_of_two_gears_are_combined_and_compared(tmp_path, capsys):
+def test_positions_of_two_gears_are_paired(tmp_path, capsys):
     torque = ramps(*[(4.0, 60)] * 3, (40.0, 80))
     for name, play in {
         'old_pos1': 0.02,
@@ -430,18 +426,18 @@ def test_positions_of_two_gears_are_combined_and_compared(tmp_path, capsys):
         angle = creep(GEAR._replace(play=play), torque)
         write_csv(tmp_path / f'{name}.csv', angle=angle, torque=torque)
     paths = [str(path) for path in sorted(tmp_path.glob('*.csv'), reverse=True)]
-    assert main(['lost-motion', *paths, '--positions', '--json', '-']) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert {item['gear'] for item in document['positions']} == {'old.csv', 'new.csv'}
-    assert main(['lost-motion', *paths, '--positions', '--group', '(old|new)', '--json', '-']) == 0
-    document = json.loads(capsys.readouterr().out)
-    assert [group['name'] for group in document['groups']] == ['old', 'new']
+    for options in ((), ('--group', '(old|new)')):
+        assert main(['lost-motion', *paths, '--positions', *options, '--json', '-']) == 0
+        document = json.loads(capsys.readouterr().out)
+        groups = [group['name'].removesuffix('.csv') for group in document['groups']]
+        assert groups == ['old', 'new']
     # Pairs at each position: (5 + 3.33)/(20 + 3.33) and (6 + 3.33)/(22 + 3.33) mrad.
     (change,) = (c for c in document['changes'] if c['figure'] == 'hysteresis')
     pairs = [(5 + 10 / 3) / (20 + 10 / 3), (6 + 10 / 3) / (22 + 10 / 3)]
     assert change['ratio'] == pytest.approx(math.sqrt(pairs[0] * pairs[1]), rel=0.01)
     error = '--positions cannot be combined with --trend'
     assert refusal('lost-motion', *paths, '--positions', '--trend') == error
+    assert 'of one gear' in refusal('lost-motion', *paths[:2], '--positions')
 
 
 def test_preloads_say_up_to_which_setting_hysteresis_falls(tmp_path, capsys):

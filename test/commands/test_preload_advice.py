@@ -45,13 +45,13 @@ def test_index_gives_the_pins_for_the_upper_end(ramps_json, capsys):
     assert main(['index', '--measured', str(ramps_json), '--load', str(LOAD)]) == 0
     output = capsys.readouterr().out
     assert 'measured: both branches stay in mesh under 2 N·m from ' in output
-    assert 'N·m more friction' in output
+    assert 'added friction: ' in output
 
 
 def test_index_takes_the_load_of_the_file(ramps_json, tmp_path, capsys):
     assert main(['index', '--measured', str(ramps_json)]) == 0
     assert 'both branches stay in mesh under 2 N·m from ' in capsys.readouterr().out
-    path = changed(ramps_json, tmp_path, load=None, price=None)
+    path = changed(ramps_json, tmp_path, load=None, added_friction=None)
     assert main(['index', '--measured', str(path)]) == 0
     assert 'measured: hysteresis falls no further from ' in capsys.readouterr().out
     assert 'made without --load, not for 2 N·m' in refusal(

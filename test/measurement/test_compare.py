@@ -10,26 +10,25 @@ from scipy import stats
 
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.compare.changes import Change, changes_of, judged
-from gear_kinematics.measurement.compare.groups import (
-    DEFAULT_PATTERN,
+from gear_kinematics.measurement.compare.quantities import Quantity, at_common_torque, in_common
+from gear_kinematics.measurement.compare.section import _play
+from gear_kinematics.measurement.figures import gear_figures, settings_for
+from gear_kinematics.measurement.loops import find_ramps
+from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.names import (
+    POSITION,
     Group,
     positions_of,
     single,
 )
-from gear_kinematics.measurement.compare.quantities import Quantity, at_common_torque, in_common
-from gear_kinematics.measurement.compare.section import _play, over_positions
-from gear_kinematics.measurement.figures import gear_figures, settings_for
-from gear_kinematics.measurement.loops import find_ramps
-from gear_kinematics.measurement.lost_motion import LostMotion
 
 MINUTE = math.radians(1.0 / 60.0)
-GEAR = [Group('gear', (0, 1, 2))]
 
 
 def test_a_name_has_a_position_and_the_rest_is_the_gear():
     names = ['a_pos1.csv', 'b_position_1.csv', 'a_pos2.csv']
     gears = [Group('a.csv', (0, 2)), Group('b.csv', (1,))]
-    assert positions_of(names, DEFAULT_PATTERN) == (gears, ['1', '1', '2'])
+    assert positions_of(names, POSITION) == (gears, ['1', '1', '2'])
     assert positions_of(['g at90deg.csv'], r'at(\d+)deg') == ([Group('g.csv', (0,))], ['90'])
 
 
@@ -89,13 +88,6 @@ def test_without_repeats_the_scatter_is_that_within_recordings():
     assert not known.repeated
 
 
-def test_groups_without_a_common_position_are_not_compared():
-    groups = [Group('a', (0, 1)), Group('b', (2, 3)), Group('c', (4, 5))]
-    quantity = exact('a', 1.0, 2.0, 3.0, 4.0, 5.0, 6.0)
-    result = changes_of(quantity, groups, ['1', '2', '1', '2', '3', '4'])
-    assert [change.second for change in result] == ['b']
-
-
 def test_hysteresis_and_the_others_are_judged_apart():
     def change(name, probability):
         return Change(exact(name), 'a', 'b', 1.0, 2.0, (), probability, repeated=True)
@@ -122,12 +114,12 @@ def test_an_unchanged_gear_shows_a_change_in_at_most_5_percent():
 def measured(name, play, *, friction=0.8, stiffness=300.0, tests=((5.0, 100),) * 3, top=40.0):
     torque = ramps(*tests, (top, 100))
     found = find_ramps(torque, creep(Gear(play, stiffness, friction), torque))
-    return LostMotion(name, None, None, found, gear_figures(found, settings_for(found, 0.0)))
+    return LostMotion(name, None, None, gear_figures(found, settings_for(found, 0.0)))
 
 
 @pytest.fixture(scope='module')
 def reports():
-    return [measured(f'gear_{k}_pos1', play) for k, play in enumerate((0.010, 0.014, 0.011))]
+    return [measured(f'gear_{k}', play) for k, play in enumerate((0.010, 0.014, 0.011))]
 
 
 def test_figures_are_taken_at_the_same_torques(reports):
@@ -149,9 +141,8 @@ def test_figures_are_taken_at_the_same_torques(reports):
 
 def test_ramps_of_other_amplitudes_are_left_out_and_named(reports):
     other = measured('other', 0.01, tests=[(10.0, 100)] * 3)
-    found = in_common(at_common_torque([*reports, other]))
-    (remark,) = found.remarks
-    assert remark.endswith('about 10 N·m, which gear_0_pos1, gear_1_pos1, gear_2_pos1 lack')
+    (remark,) = in_common(at_common_torque([*reports, other])).remarks
+    assert remark.endswith('about 10 N·m, which gear_0, gear_1, gear_2 lack')
 
 
 @pytest.mark.parametrize(
@@ -167,21 +158,4 @@ def test_ramps_of_other_amplitudes_are_left_out_and_named(reports):
 def test_backlash_is_compared_by_its_intervals(old, new, told):
     bounds = [SimpleNamespace(low=a * MINUTE, high=b and b * MINUTE) for a, b in (old, new)]
     reports = [SimpleNamespace(figures=SimpleNamespace(backlash=each)) for each in bounds]
-    assert _play(reports, *single(['a', 'b'])) == told
-
-
-def test_positions_have_a_mean_and_ends_and_repeats_at_one_count_as_one(reports):
-    found = over_positions(at_common_torque(reports), GEAR, ['1', '2', '3'])
-    (hysteresis,) = (own for own in found.data['positions'] if own['figure'] == 'hysteresis')
-    plays = np.array([0.010, 0.014, 0.011]) + 2.0 * 0.8 / 300.0
-    assert hysteresis['mean'].value == pytest.approx(plays.mean(), abs=2e-5)
-    # Three values have two degrees of freedom: Student's factor is 4.303.
-    spread = 4.303 * plays.std(ddof=1) / math.sqrt(3.0)
-    assert hysteresis['mean'].uncertainty == pytest.approx(spread, rel=0.01)
-    assert hysteresis['least'] == {'value': pytest.approx(plays[0], abs=2e-5), 'position': '1'}
-    assert hysteresis['greatest'] == {'value': pytest.approx(plays[1], abs=2e-5), 'position': '2'}
-    assert found.sentence.startswith('over 3 positions: hysteresis ')
-    found = over_positions(at_common_torque(reports), GEAR, ['1', '2', '2']).data['positions'][0]
-    assert found['mean'].value == pytest.approx(0.01125 + 2.0 * 0.8 / 300.0, abs=2e-5)
-    with pytest.raises(ValueError, match='no figure is known at two positions'):
-        over_positions(at_common_torque(reports), GEAR, ['1', '1', '1'])
+    assert _play(reports, single(['a', 'b'])) == told

@@ -1,10 +1,11 @@
 """A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
 
 import math
+import re
 
 import numpy as np
 import pytest
-from gear_recordings import Samples, encoders, write_csv, write_recording
+from gear_recordings import encoders, write_csv
 from simulated_encoders import (
     ARC_MINUTE,
     TURN,
@@ -17,9 +18,7 @@ from simulated_encoders import (
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.lost_motion import Request, measure
 from gear_kinematics.measurement.ratio import check_ratio
-from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import Encoders, RecordingError
 from gear_kinematics.measurement.transmission import transmission_figures
 
@@ -43,23 +42,21 @@ def figures(both: Encoders, delay: float | None = None):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('delay', [0.0, 2e-3, -2e-3, 10e-3])
+@pytest.mark.parametrize('delay', [0.0, -2e-3, 10e-3])
 @pytest.mark.parametrize(
     'profile',
     [sine_strokes(3.0, 4.0), ramped_strokes(3.0, 2.0, 0.3), sine_strokes(0.5, 2.0)],
     ids=['sine', 'ramped', 'short'],
 )
 def test_delay_is_told_from_play_and_taken_out(profile, delay):
-    clean = recorded(Drive(PLAY, ERRORS, **STEPS), profile, 16.0)
     drive = Drive(PLAY, ERRORS, delay, noise=0.05 * ARC_MINUTE, **STEPS)
     found = figures(recorded(drive, profile, 16.0))
     assert found.lost_motion.value == pytest.approx(PLAY, abs=0.06 * ARC_MINUTE)
     assert 0.0 < found.lost_motion.uncertainty < 0.15 * ARC_MINUTE
     assert found.delay.value == pytest.approx(delay, abs=2e-5)
     assert found.delay.uncertainty < 5e-5
-    accuracy = figures(clean, 0.0).forward.value
-    noise = 2 * 4.5 * drive.noise
-    assert accuracy - 0.1 * ARC_MINUTE < found.forward.value < accuracy + noise
+    clean = figures(recorded(Drive(PLAY, ERRORS, **STEPS), profile, 16.0), 0.0).forward.value
+    assert -0.1 * ARC_MINUTE < found.forward.value - clean < 2 * 4.5 * drive.noise
 
 
 @pytest.mark.slow
@@ -91,22 +88,17 @@ def test_intervals_hold_for_any_seed():
 
 
 @pytest.mark.slow
-def test_delay_is_in_seconds_and_in_rows_only_without_times(tmp_path, config, actuator, capsys):
-    times, rotor, output = Drive(PLAY, delay=4e-3, **STEPS).readings(
-        sine_strokes(1.0, 2.0), 8.0, 500.0
-    )
-    at = stamps(times)
-    bag = write_recording(tmp_path / 'late', Samples(at, rotor), Samples(at, output))
-    found = measure(read(bag, config), actuator, config, Request())
-    assert found.transmission.delay.value == pytest.approx(4e-3, abs=2e-5)
+def test_delay_is_in_seconds_and_in_rows_only_without_times(tmp_path, capsys):
+    drive = Drive(PLAY, delay=4e-3, **STEPS)
+    times, rotor, output = drive.readings(sine_strokes(1.0, 2.0), 8.0, 500.0)
     for columns, delay, unit in (({}, 2.0, 'rows'), ({'time_s': times}, 4.0, 'ms')):
         csv = write_csv(tmp_path / 'late.csv', rotor=rotor, output=output, **columns)
         assert main(['lost-motion', '-v', str(csv)]) == 0
         printed = capsys.readouterr().out
-        lines = printed.splitlines()
-        value = next(line for line in lines if 'delay of the output encoder: value' in line)
-        number, shown = value.split(': ')[-1].split()
-        assert float(number) == pytest.approx(delay, abs=0.02)
+        value, shown = re.search(
+            r'delay of the output encoder: value: (\S+) ± \S+ (\S+)', printed
+        ).groups()
+        assert float(value) == pytest.approx(delay, abs=0.02)
         assert shown == unit
     assert 'The stamps of the two encoders differ by a delay' in printed
 
@@ -135,17 +127,11 @@ def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, sp
     assert ('80/76' in said) == (assumed != '19')
 
 
+@pytest.mark.parametrize('eccentricity', [0.0, 20.0 * ARC_MINUTE])
 @pytest.mark.parametrize(
     'profile',
-    [
-        even_strokes(3.0, 2.0),
-        sine_strokes(0.1, 2.0),
-        sine_strokes(0.5, 2.0),
-        sine_strokes(6.0, 4.0),
-        sine_strokes(14.0, 8.0),
-    ],
+    [even_strokes(3.0, 2.0), sine_strokes(0.1, 2.0), sine_strokes(6.0, 4.0)],
 )
-@pytest.mark.parametrize('eccentricity', [0.0, 20.0 * ARC_MINUTE])
 def test_right_ratio_is_not_doubted(profile, eccentricity):
     for seed in range(5):
         drive = Drive(PLAY, ERRORS | {1: eccentricity}, 2e-3, 0.2 * ARC_MINUTE, **STEPS)

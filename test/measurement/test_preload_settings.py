@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.preload.settings import settings_of
+from gear_kinematics.measurement.names import settings_of
 
 PINS = ['pins_0_0_0.csv', 'pins_0_78_1.csv', 'pins_79_5_81.csv']
 

@@ -69,12 +69,6 @@ def test_estimate_is_taken_where_a_simple_fraction_is_no_evidence():
     assert abs(float(found.ratio) + math.pi * math.e) <= found.measured.uncertainty
 
 
-def test_tooth_pairs_are_those_of_the_ratio():
-    found = estimate_ratio(*angles(Fraction(-58, 3), 30.0, noise=1e-6))
-    assert found.tooth_pairs == ((61, 58), (122, 116), (183, 174))
-    assert not estimate_ratio(*angles(Fraction(58, 3), 30.0)).tooth_pairs
-
-
 @pytest.mark.parametrize('encoder', ['multi_turn', 'single_turn'])
 @pytest.mark.parametrize('assumed', [-19, Fraction(1457, 26), 3])
 def test_ratio_is_found_whatever_ratio_was_assumed(assumed, encoder):

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from gear_kinematics.correction.uncertainty import resolution
 from gear_kinematics.measurement.resolution import hidden_resolution, slope_resolution
 
 
@@ -20,12 +19,6 @@ def test_scatter_of_repeats_shows_the_steps_of_an_encoder(scatter):
     repeats = [7.0 - scatter, 7.0, 7.0 + scatter]
     found = hidden_resolution(1.0, repeats, readings=1)
     assert 0.75 * found <= np.sqrt(np.mean(error**2)) <= 1.001 * found
-
-
-def test_readings_of_a_difference_share_its_scatter():
-    repeats = [1.0, 1.3, 1.6]
-    one = hidden_resolution(1.0, [x / math.sqrt(2.0) for x in repeats], readings=1)
-    assert hidden_resolution(1.0, repeats, readings=2) == pytest.approx(math.sqrt(2.0) * one)
 
 
 def test_a_single_reading_hides_its_whole_step():
@@ -43,10 +36,3 @@ def test_slope_of_a_line_is_as_uncertain_as_its_steps(steps):
     worst = np.polynomial.polynomial.polyfit(run, (np.round(aligned) - aligned).T, 1)[1]
     stated = slope_resolution(1.0, run=2.0, slope=-0.5 * steps)
     assert max(np.std(errors), np.std(worst)) <= stated
-
-
-def test_slope_over_few_steps_is_that_between_two_readings():
-    assert slope_resolution(0.3, run=2.0, slope=0.1) == pytest.approx(
-        math.sqrt(2.0) * resolution(0.3) / 2.0
-    )
-    assert slope_resolution(0.0, run=2.0, slope=0.1) == 0.0

@@ -8,7 +8,6 @@ from gear_recordings import Samples, encoders, quantised, write_csv, write_recor
 from simulated_encoders import START, TURN, Drive, even_strokes
 
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.lost_motion import Request, measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
@@ -71,42 +70,11 @@ def test_accuracy_is_peak_to_peak_in_one_direction(found):
 
 @pytest.mark.slow
 def test_amplitudes_of_the_marked_orders(found):
-    orders = {order.name: order for order in found.orders}
-    assert orders['rotor × 1'].cycles == 19
-    assert orders['satellite × 1'].cycles == 20
-    assert orders['teeth × 1'].cycles == 1520
+    assert {19, 20, 1520} <= {order.cycles for order in found.orders}
     for order in found.orders:
         expected = AMPLITUDES.get(order.cycles, 0.0)
         for way in (order.forward, order.backward):
             assert way.value == pytest.approx(expected, abs=3e-6), order.name
-
-
-@pytest.mark.slow
-def test_spectrum_has_its_peaks_at_these_orders(found):
-    for spectrum in found.spectra:
-        for order, amplitude in AMPLITUDES.items():
-            near = np.abs(spectrum.orders - order) < 0.4
-            # A Hann window leaves at least 85 % of what lies between two lines.
-            assert 0.8 * amplitude < spectrum.amplitude[near].max() < 1.05 * amplitude
-        quiet = (spectrum.orders > 100) & (spectrum.orders < 1400)
-        assert spectrum.amplitude[quiet].max() < 1e-5
-
-
-@pytest.mark.slow
-def test_values_of_a_csv_row_are_simultaneous(tmp_path, config, actuator):
-    ideal = there_and_back(2.2, 2)
-    path = write_csv(
-        tmp_path / 'both.csv',
-        time=np.zeros(len(ideal)),  # of no use
-        rotor_position=np.degrees(-19.0 * ideal),
-        output_position=np.degrees(output_of(ideal)),
-    )
-    recording = read(path, config, Sources(unit='deg'))
-    assert recording.remarks == ('the times in time are not used: they stand still',)
-    found = measure(recording, actuator, config, Request(delay=0.0)).transmission
-    assert found.samples == len(ideal)
-    assert found.lost_motion.value == pytest.approx(PLAY, abs=1e-5)
-    assert found.orders[2].forward.value == pytest.approx(AMPLITUDES[19], abs=3e-6)
 
 
 def test_short_motion_has_no_orders_that_it_cannot_resolve(actuator):
@@ -121,15 +89,10 @@ def test_short_motion_has_no_orders_that_it_cannot_resolve(actuator):
     assert found.lost_motion is None
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize('wrong', ['ratio', 'direction'])
-def test_output_that_does_not_follow_is_refused(tmp_path, config, actuator, wrong):
+@pytest.mark.parametrize('ways', [-1.0, 2.0])
+def test_output_that_does_not_follow_is_refused(tmp_path, config, actuator, ways):
     ideal = there_and_back(0.8, 1)
-    path = write_csv(
-        tmp_path / 'wrong.csv',
-        rotor=-19.0 * ideal,
-        output=-ideal if wrong == 'direction' else 2.0 * ideal,
-    )
+    path = write_csv(tmp_path / 'wrong.csv', rotor=-19.0 * ideal, output=ways * ideal)
     with pytest.raises(RecordingError, match='does not follow the rotor'):
         measure(read(path, config), actuator, config, Request())
 
@@ -144,11 +107,9 @@ def test_recording_without_matching_stamps_is_refused(tmp_path, config):
 
 def test_orders_of_any_tooth_pair():
     orders = marked_orders(Mechanism(61, 58, 1e-3, (Branch('a'),)))
-    assert orders['rotor × 1'] == Fraction(58, 3)
     assert orders['satellite × 1'] == Fraction(61, 3)
     # Seen from the satellite as many teeth mesh as seen from the ring gear.
-    assert orders['teeth × 1'] == 61 * Fraction(58, 3) == 58 * Fraction(61, 3)
-    assert orders['teeth × 2'] == 2 * orders['teeth × 1']
+    assert orders['teeth × 1'] == 61 * orders['rotor × 1'] == 58 * Fraction(61, 3)
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 """Since when a gear has changed: simulated sequences of recordings."""
 
 from datetime import UTC, datetime
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,12 +8,13 @@ import pytest
 from gear_recordings import Gear, creep, ramps
 
 from gear_kinematics.correction.uncertainty import Estimate
+from gear_kinematics.measurement.compare.changes import trend
 from gear_kinematics.measurement.compare.quantities import Quantity, at_common_torque
 from gear_kinematics.measurement.compare.section import over_time
-from gear_kinematics.measurement.compare.trend import common_times, named_time, trend
 from gear_kinematics.measurement.figures import gear_figures, settings_for
 from gear_kinematics.measurement.loops import find_ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.names import common_times, named_time
 
 DAY = 86400.0
 
@@ -64,7 +64,7 @@ def test_the_sentence_says_since_when():
         friction = 0.8 + 0.02 * (number % 3)
         found = find_ramps(torque, creep(Gear(play, 300.0, friction), torque))
         figures = gear_figures(found, settings_for(found, 0.0))
-        reports.append(LostMotion(f'0302_0{number}00.csv', None, None, found, figures))
+        reports.append(LostMotion(f'0302_0{number}00.csv', None, None, figures))
     comparison = over_time(at_common_torque(reports), [DAY * k for k in range(9)], 'names')
     # In the model the hysteresis is play + 2 friction / stiffness.
     assert comparison.sentence.startswith('since 0302_04: hysteresis 32.')
@@ -94,7 +94,7 @@ def test_time_in_a_name(name, time):
 def test_the_first_source_that_dates_all_recordings_counts(tmp_path):
     def made(name: str, start: float | None):
         (tmp_path / name).touch()
-        return SimpleNamespace(path=Path(tmp_path / name), start=start)
+        return SimpleNamespace(path=tmp_path / name, start=start)
 
     both, named = made('0712_1407.csv', 3.0), made('0712_1408.csv', None)
     assert common_times([both, both])[0] == [3.0, 3.0]

@@ -116,8 +116,17 @@ ROOMS = {
 }
 """Each room of the package and the rooms it imports, all of which stand before it."""
 MEASUREMENT = {
-    'preload': ('comparison', 'encoder_step', 'loops', 'lost_motion', 'wording'),
-    'compare': ('comparison', 'figures', 'loops', 'lost_motion', 'recording', 'wording'),
+    'preload': ('document', 'loops', 'lost_motion', 'measured', 'names', 'wording'),
+    'compare': (
+        'document',
+        'figures',
+        'loops',
+        'lost_motion',
+        'measured',
+        'names',
+        'recording',
+        'wording',
+    ),
     'calibration': ('curves', 'ratio', 'recording', 'transmission', 'wording'),
 }
 """Rooms within `measurement`, and what of its modules they import."""

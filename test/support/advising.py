@@ -3,8 +3,6 @@
 The figures are read from the curve of the gear itself; between recordings they scatter.
 """
 
-import math
-from collections import Counter
 from collections.abc import Sequence
 from functools import cache
 
@@ -13,7 +11,6 @@ from braced_gears import BracedGear
 
 from gear_kinematics.measurement.preload.advice import Reading, advise
 
-LOADS = (8.0, 20.0)  # N·m, range of the stiffness
 SETTINGS = {
     'seven, turns': ((0.0, 0.6, 1.2, 1.8, 3.0, 4.0, 5.0), True),
     'seven, numbers': ((0.0, 0.6, 1.2, 1.8, 3.0, 4.0, 5.0), False),
@@ -27,10 +24,12 @@ SETTINGS = {
 
 @cache
 def figures(gear: BracedGear, setting: float) -> tuple[float, ...]:
-    """Hysteresis, rad, friction, N·m, and stiffness, N·m/rad."""
+    """Hysteresis, rad, friction, N·m, and compliance from 8 to 20 N·m of both sides, rad/(N·m)."""
     drag = gear.drag(setting)
-    hysteresis = np.ptp(gear.turn(np.array([-drag, drag]), setting))
-    return hysteresis, drag, *gear.stiffness(setting, *LOADS)
+    far, near, back, forth, there, beyond = gear.turn(
+        np.array([-20.0, -8.0, -drag, drag, 8.0, 20.0]), setting
+    )
+    return forth - back, drag, (beyond - there) / 12.0, (near - far) / 12.0
 
 
 def readings(
@@ -40,13 +39,12 @@ def readings(
 
     Friction scatters by half of it, stiffness by a fifth.
     """
-    shares = scatter * np.array([1.0, 0.5, 0.2, 0.2])
+    shares = scatter * np.array([1.0, 0.5, -0.2, -0.2])
     found = []
     for setting in settings:
         noise = np.exp(shares * random.standard_normal(len(shares)))
-        hysteresis, drag, push, pull = noise * figures(gear, setting)
-        compliances = (1.0 / push, 1.0 / pull)
-        found.append(Reading(setting, hysteresis, drag, drag, compliances))
+        hysteresis, drag, *compliances = noise * figures(gear, setting)
+        found.append(Reading(setting, hysteresis, drag, drag, tuple(compliances)))
     return found
 
 
@@ -61,21 +59,20 @@ def coverage(name: str, seeds: int, load: float, scatter: float = 0.1) -> dict[s
     """
     settings, turns = SETTINGS[name]
     gear, random = BracedGear(), np.random.default_rng(1)
-    least, counts = gear.least(load), Counter()
-    price, widths = gear.drag(least) - gear.friction, []
+    least = gear.least(load)
+    more = gear.drag(least) - gear.friction
+    held, added, widths = [], [], []
     for _ in range(seeds):
         found = readings(gear, settings, scatter, random)
         advice = advise(found, gear.closing if turns else None, load)
         if span := advice.least:
-            cost = advice.price
-            counts['told'] += 1
-            counts['least'] += span.low <= least <= span.high
+            held.append(span.low <= least <= span.high)
             widths.append(span.high - span.low)
-            counts['priced'] += cost is not None
-            counts['price'] += bool(cost and abs(cost.value - price) <= cost.uncertainty)
+        if friction := advice.added_friction:
+            added.append(abs(friction.value - more) <= friction.uncertainty)
     return {
-        'told': counts['told'] / seeds,
-        'least': counts['least'] / max(counts['told'], 1),
-        'price': counts['price'] / counts['priced'] if counts['priced'] else math.nan,
+        'told': len(held) / seeds,
+        'least': float(np.mean(held)),
+        'added friction': float(np.mean(added)),
         'width': float(np.median(widths)),
     }

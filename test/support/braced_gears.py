@@ -20,11 +20,6 @@ class BracedGear:
     friction: float = 0.8  # N·m
     rubbing: float = 0.05  # N·m of friction per N·m of preload
 
-    @property
-    def end(self) -> float:
-        """The setting at which the backlash is used up."""
-        return self.backlash / self.closing
-
     def squeeze(self, setting: float) -> float:
         """Twist of both branches by the preload, rad; negative: play."""
         return self.closing * setting - self.backlash
@@ -39,7 +34,7 @@ class BracedGear:
 
     def least(self, load: float) -> float:
         """Setting from which on both branches push under a load of either sign, by bisection."""
-        low, high = self.end, self.end + 100.0
+        low, high = 0.0, self.backlash / self.closing + 100.0
         for _ in range(100):
             middle = 0.5 * (low + high)
             if self._both_push(middle, load) and self._both_push(middle, -load):
@@ -63,14 +58,6 @@ class BracedGear:
         pull = self.pull * np.maximum(squeeze - ahead - angle, 0.0)
         torque = push - pull + 1e-9 * angle  # in the play, any angle is as good
         return np.interp(load, torque, angle)
-
-    def stiffness(self, setting: float, low: float, high: float) -> tuple[float, float]:
-        """Slopes over a range of load under positive and negative torque, N·m/rad."""
-        load = np.linspace(low, high, 200)
-        return tuple(
-            1.0 / np.polyfit(load, sign * self.turn(sign * load, setting), 1)[0]
-            for sign in (1.0, -1.0)
-        )
 
     def angles(self, torque: np.ndarray, setting: float) -> np.ndarray:
         """Angles while the torque changes slowly, rad."""

@@ -125,12 +125,7 @@ SCENARIOS = (
     Scenario('play, Hertzian spring', play=0.01, spring=hertzian),
     Scenario('soft middle', spring=soft_middle),
     Scenario('creep with two times', play=0.01, creeps=((0.05, 1.0), (0.08, 20.0))),
-    Scenario(
-        'creep, softening spring',
-        play=0.01,
-        spring=softening,
-        creeps=((0.1, 5.0),),
-    ),
+    Scenario('creep, softening spring', play=0.01, spring=softening, creeps=((0.1, 5.0),)),
     Scenario('friction that builds up', play=0.01, bristle=0.5),
     Scenario('stick-slip', contained=False, play=0.01, slip=0.3),
     Scenario(
@@ -225,17 +220,13 @@ def _torque(s: Scenario) -> tuple[np.ndarray, np.ndarray]:
     return INTERVAL * np.arange(len(torque)), torque
 
 
-def _loops_of_rows(loops: Loops) -> np.ndarray:
-    rows = [round(duration / INTERVAL) for _, duration in loops]
-    return np.append(np.repeat(np.arange(len(rows)), rows), len(rows) - 1)
-
-
 def _motion(
     s: Scenario, shape: tuple[int, ...], random: np.random.Generator
 ) -> Iterator[np.ndarray]:
     """Yield the angles, of a shape (..., gears), without the errors of the encoder."""
     _, torque = _torque(s)
-    loop = _loops_of_rows(s.loops)
+    rows = [round(duration / INTERVAL) for _, duration in s.loops]
+    loop = np.append(np.repeat(np.arange(len(rows)), rows), len(rows) - 1)
     strength = s.friction * (1.0 + s.repeat * random.standard_normal((len(s.loops), *shape)))
     if np.any(s.inertia):
         yield from _moved(s, torque, strength[loop])

@@ -2,19 +2,25 @@
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import groupby, product
-from statistics import fmean
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.measurement.compare.changes import SIGNIFICANCE, Change, changes_of, judged
-from gear_kinematics.measurement.compare.groups import Group, by_label, single
-from gear_kinematics.measurement.compare.quantities import Chosen, Common, in_common
-from gear_kinematics.measurement.compare.trend import FEWEST, trend
-from gear_kinematics.measurement.comparison import HYSTERESIS, Comparison
+from gear_kinematics.measurement.compare.changes import (
+    FEWEST,
+    SIGNIFICANCE,
+    Change,
+    changes_of,
+    judged,
+    trend,
+)
+from gear_kinematics.measurement.compare.quantities import Common, in_common
+from gear_kinematics.measurement.document import Comparison
+from gear_kinematics.measurement.figures import Figures
 from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.measured import HYSTERESIS, SHOWN, shown
+from gear_kinematics.measurement.names import Group, single
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT
 from gear_kinematics.report.document import (
     Cell,
@@ -46,7 +52,6 @@ _WITHIN = (
     'each state several times, and name the groups with --group'
 )
 _ORDERS = f'{_JUDGED}, if the place of a step is right; by chance: share of random orders'
-_SAMPLE = f'Each ± ({PERCENT}) takes the measured positions as a random sample of all'
 
 
 def compared(
@@ -60,18 +65,13 @@ def compared(
     there is nothing to compare: None.
     """
     common = in_common(reports)
-    first, *others = named = groups or single([report.name for report in reports])
+    named = groups or single([report.name for report in reports])
     each = (changes_of(quantity, named, positions) for quantity in common.quantities)
     found = judged([change for own in each for change in own])
     if not found:
         return None
     repeated = any(change.repeated for change in found)
-    if len(others) == 1:
-        answer = (
-            f'{others[0].name} against {first.name}: {_changed(found)}{_play(reports, *named)}'
-        )
-    else:
-        answer = f'against {first.name}: {_total(found)}'
+    answer = _changed(found, named, _play(reports, named))
     answer += '' if repeated else '; judged by the scatter within single recordings'
     members = [
         {'name': group.name, 'recordings': [reports[k].name for k in group.members]}
@@ -79,55 +79,8 @@ def compared(
     ]
     data = {'groups': members, 'changes': [_data(change) for change in found]}
     texts = answer, _BETWEEN if repeated else _WITHIN
-    table = _table(found, lambda c: f', {c.second}' if len(others) > 1 else '')
+    table = _table(found, lambda c: f', {c.second}' if len(named) > 2 else '')  # noqa: PLR2004
     return _comparison('comparison', common, named, table, texts, data)
-
-
-def over_positions(
-    reports: Sequence[LostMotion], gears: Sequence[Group], positions: Sequence[str]
-) -> Comparison:
-    """Combine the recordings of each gear at positions of its output, at a common torque.
-
-    Recordings at the same position count as one, by their mean.
-
-    Raises:
-        ValueError: if no figure of a gear is known at two positions.
-    """
-    common, places, several = in_common(reports), by_label(positions), len(gears) > 1
-    rows, parts, data = [], [], []
-    for gear, quantity in product(gears, common.quantities):
-        known = {m: value.value for m in gear.members if (value := quantity.values[m])}
-        at = sorted(
-            (fmean(own), place)
-            for place, members in places
-            if (own := [known[member] for member in members if member in known])
-        )
-        if len(at) < 2:  # noqa: PLR2004, nothing to combine
-            continue
-        mean, (least, lowest), (greatest, highest) = (
-            Estimate.of_mean([value for value, _ in at]), at[0], at[-1]
-        )  # fmt: skip
-        subject = f'{gear.name}: {quantity.name}' if several else quantity.name
-        low, high, middle = (quantity.cell(value) for value in (least, greatest, mean))
-        ends = f'{low.with_unit()} at {lowest}', f'{high.with_unit()} at {highest}'
-        rows.append((Cell(printable(subject)), middle, *(Cell(printable(end)) for end in ends)))
-        if quantity.name == HYSTERESIS or (quantity.main and not several):
-            parts.append(f'{subject} {middle.with_unit()} ({low.text} to {high.text})')
-        data.append({
-            'gear': gear.name,
-            'figure': quantity.name,
-            'unit': quantity.unit,
-            'mean': mean,
-            'least': {'value': least, 'position': lowest},
-            'greatest': {'value': greatest, 'position': highest},
-        })  # fmt: skip
-    if not rows:
-        raise ValueError('--positions: no figure is known at two positions')
-    columns = 'over positions', 'mean', 'least', 'greatest'
-    table = Table(columns, tuple(rows), ('', 'least', 'greatest'))
-    texts = f'over {len(places)} positions: {", ".join(parts)}', _SAMPLE
-    drawn = gears if several else places
-    return _comparison('positions', common, drawn, table, texts, {'positions': data})
 
 
 def over_time(reports: Sequence[LostMotion], times: Sequence[float], source: str) -> Comparison:
@@ -184,22 +137,16 @@ def _comparison(
 
 def _table(found: Sequence[Change], about: Callable[[Change], str]) -> Table:
     """Return a row for each change, whose subject says besides the figure what it is about."""
-    columns = {
+    columns: dict[str, Callable[[Change], str | Cell]] = {
         'change': lambda c: printable(f'{c.quantity.name}{about(c)}'),
-        'before': lambda c: c.quantity.cell(c.before),
-        'after': lambda c: c.quantity.cell(c.after),
+        'before': lambda c: shown(c.quantity.unit, c.before),
+        'after': lambda c: shown(c.quantity.unit, c.after),
         'ratio': lambda c: number(c.after / c.before),
         'interval': lambda c: ' to '.join(map(number, c.interval)),
         'by chance': _chance,
-        'judgement': _judgement,
+        'judgement': lambda c: Cell(c.judgement, Tone.NOTABLE if c.significant else Tone.PLAIN),
     }
     return Table.of_items(columns, found, ('', 'judgement'))
-
-
-def _judgement(change: Change) -> Cell:
-    if change.significant:
-        return Cell('significant', Tone.NOTABLE)
-    return Cell('not judged' if change.probability is None else 'not significant')
 
 
 def _chance(change: Change) -> str:
@@ -208,39 +155,43 @@ def _chance(change: Change) -> str:
     return number(change.probability, 2) if change.probability >= _LEAST else f'< {_LEAST:g}'
 
 
-def _arrow(change: Change, *others: Change) -> str:
-    cell = change.quantity.cell
-    after = cell(*(own.after for own in (change, *others)), between=', ').with_unit()
-    return f'{change.quantity.name} {cell(change.before).text} → {after}'
+def _arrow(*changes: Change) -> str:
+    """Say how one figure has changed, in one group or several."""
+    first = changes[0]
+    before = shown(first.quantity.unit, first.before).text
+    after = shown(first.quantity.unit, *(change.after for change in changes)).with_unit()
+    return f'{first.quantity.name} {before} → {after}'
 
 
-def _changed(found: Sequence[Change]) -> str:
-    """Say what has changed: the hysteresis, and what else is significant."""
+def _changed(found: Sequence[Change], groups: Sequence[Group], play: str) -> str:
+    """Say what has changed: of two groups all that is clear, of several the first figure."""
+    first, second, *others = (group.name for group in groups)
+    if others:
+        same = [change for change in found if change.quantity == found[0].quantity]
+        clear = sum(change.significant for change in same)
+        return f'against {first}: {_arrow(*same)} ({clear} of {len(same)} significant)'
     parts = [
-        f'{_arrow(change)} ({_judgement(change).text})'
+        f'{_arrow(change)} ({change.judgement})'
         for change in found
         if change.significant or change.quantity.name == HYSTERESIS
     ]
-    return ', '.join(parts) or 'no significant change'
+    return f'{second} against {first}: {", ".join(parts) or "no significant change"}{play}'
 
 
-def _total(found: Sequence[Change]) -> str:
-    """Say in how many groups the first figure has changed."""
-    same = [change for change in found if change.quantity == found[0].quantity]
-    clear = sum(change.significant for change in same)
-    return f'{_arrow(*same)} ({clear} of {len(same)} significant)'
-
-
-def _play(reports: Sequence[LostMotion], *groups: Group) -> str:
+def _play(reports: Sequence[LostMotion], groups: Sequence[Group]) -> str:
     """Say by intervals what became of the backlash from one group to the other."""
-    bounds = []
-    for group in groups:
-        found = [own.backlash for member in group.members if (own := reports[member].figures)]
-        if not found:
-            return ''
-        highs = [math.inf if own.high is None else ARC_MINUTES * own.high for own in found]
-        bounds.append((ARC_MINUTES * min(own.low for own in found), max(highs)))
-    (old_low, old_high), (low, high) = bounds
+    found = [
+        [own.backlash for k in group.members if (own := reports[k].figures)] for group in groups
+    ]
+    if not all(found):
+        return ''
+    (old_low, old_high), (low, high) = (
+        (
+            ARC_MINUTES * min(one.low for one in own),
+            ARC_MINUTES * max(math.inf if one.high is None else one.high for one in own),
+        )
+        for own in (found[0], found[1])
+    )
     if high < old_low:
         return f'; play fell from at least {number(old_low)}′ to at most {number(high)}′'
     if low > old_high:
@@ -272,7 +223,7 @@ def _data(change: Change) -> Mapping[str, Any]:
 def _figure(common: Common, groups: Sequence[Group]) -> Figure:
     """Draw the loops of recordings over one another, and their main figures over the groups."""
     ticks = tuple((float(k), printable(group.name)) for k, group in enumerate(groups))
-    lines = tuple(sorted(_loops(groups, common.loops), key=lambda line: line.opacity))
+    lines = tuple(sorted(_loops(groups, common.loaded), key=lambda line: line.opacity))
     torque, angle = 'torque at the output [N·m]', 'wind-up at the output [arcmin]'
     panels = [Panel('mean loops', torque, angle, lines)] if lines else []
     places = [  # those of a group side by side
@@ -283,18 +234,19 @@ def _figure(common: Common, groups: Sequence[Group]) -> Figure:
     for quantity in filter(lambda quantity: quantity.main, common.quantities):
         known = [(x, v.value, v.uncertainty) for x, m in places if (v := quantity.values[m])]
         x, y, error = np.array(known, dtype=np.float64).T
-        scale, label = quantity.scale, f'{quantity.name} [{quantity.cell(0.0).unit}]'
+        unit, scale = SHOWN.get(quantity.unit, (quantity.unit, 1.0))
         line = Line('recordings', Pen.FIRST, x, scale * y, points=True, error=scale * error)
-        panels.append(Panel(quantity.name, '', label, (line,), ticks=ticks))
+        panels.append(Panel(quantity.name, '', f'{quantity.name} [{unit}]', (line,), ticks=ticks))
     return Figure(tuple(panels))
 
 
-def _loops(groups: Sequence[Group], chosen: Sequence[Chosen]) -> Iterator[Line]:
+def _loops(groups: Sequence[Group], chosen: Sequence[Figures | None]) -> Iterator[Line]:
     """Draw mean loops; of many groups, only the first and the last are told apart."""
     few = len(groups) <= len(_PENS)
     pens = dict(enumerate(_PENS)) if few else {0: Pen.FIRST, len(groups) - 1: Pen.SECOND}
     for k, group in enumerate(groups):
-        for ramps, _ in filter(None, (chosen[member] for member in group.members)):
+        for figures in filter(None, (chosen[member] for member in group.members)):
+            ramps = figures.ramps
             torque = ramps.amplitude * np.linspace(1.0, -1.0, _TORQUES)
             fall = np.mean([loop.fall.angle_at(torque) for loop in ramps.loops], axis=0)
             rise = np.mean([loop.rise.angle_at(torque[::-1]) for loop in ramps.loops], axis=0)

@@ -69,7 +69,7 @@ class Advice:
     least: Span | None = None
     """At which both branches stay in mesh under the load; without a load, x0. None if not known,
     as all that follows."""
-    price: Estimate | None = None
+    added_friction: Estimate | None = None
     """N·m of friction at that setting, above that without preload."""
     closed: float | None = None
     """The setting from which on there is no play without load."""
@@ -129,5 +129,5 @@ def advise(readings: Sequence[Reading], closing: float | None, load: float | Non
     # Friction grows with the preload, from the setting on at which the play is closed.
     line = stats.linregress(np.maximum(settings - closed, 0.0), [r.friction for r in readings])
     growth = Estimate(line.slope, line.stderr, len(readings) - 2, len(readings))
-    price = growth.times(float(load * softer / b)) if load else None
-    return Advice(*known, Span(float(value), low, high), price, closed, tuple(sides.tolist()))
+    added = growth.times(float(load * softer / b)) if load else None
+    return Advice(*known, Span(float(value), low, high), added, closed, tuple(sides.tolist()))

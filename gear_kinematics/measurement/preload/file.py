@@ -26,8 +26,8 @@ class MeasuredPreload(NamedTuple):
     """The least turn at which both branches stay in mesh under the load."""
     load: float | None
     """N·m; None: up to this turn the hysteresis falls."""
-    price: Estimate | None
-    """N·m of friction."""
+    added_friction: Estimate | None
+    """N·m, by the preload at this turn."""
     preload: Preload
     """The model of both branches at a turn of 0, with the measured play."""
     scale: float
@@ -48,11 +48,13 @@ def read_advice(path: Path) -> MeasuredPreload:
             cause = f'no least turn: {cause}'
         else:
             names = 'value', 'standard_uncertainty', 'degrees_of_freedom', 'repeats'
-            price = found['price'] and Estimate(*(found['price'][name] for name in names))
+            added = found['added_friction']
+            friction = added and Estimate(*(added[name] for name in names))
             (push, pull), closing = found['compliances'], found['closing']
             stiffness = Stiffness(1.0 / pull, 1.0 / push, math.inf)
             preload = Preload(stiffness, -closing * found['closed'])
-            return MeasuredPreload(Span(**found['least']), found['load'], price, preload, closing)
+            least = Span(**found['least'])
+            return MeasuredPreload(least, found['load'], friction, preload, closing)
     except OSError as error:
         raise ValueError(f'{path}: {error.strerror}') from error
     except (ValueError, KeyError, TypeError) as error:

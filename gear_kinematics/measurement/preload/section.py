@@ -5,12 +5,13 @@ from dataclasses import asdict
 
 import numpy as np
 
-from gear_kinematics.measurement.comparison import HYSTERESIS, Comparison
+from gear_kinematics.measurement.document import Comparison
 from gear_kinematics.measurement.loops import ALIKE
 from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.measured import HYSTERESIS
+from gear_kinematics.measurement.names import Scale
 from gear_kinematics.measurement.preload.advice import FEWEST, Advice, Reading, advise
 from gear_kinematics.measurement.preload.file import Span
-from gear_kinematics.measurement.preload.settings import Scale
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, plus_minus
 from gear_kinematics.report.document import (
     Figure,
@@ -35,7 +36,7 @@ def over_preload(
         ValueError: if there are too few settings with ramps of about one amplitude.
     """
     known = [report.figures for report in reports if report.figures]
-    amplitude = max((figures.smallest.amplitude for figures in known), default=0.0)
+    amplitude = max((figures.by_amplitude[0].ramps.amplitude for figures in known), default=0.0)
     for name in (HYSTERESIS, 'lost motion without friction'):
         found = [
             (report.name, reading)
@@ -51,9 +52,9 @@ def over_preload(
     advice = advise(readings, scale.play, load)
     sentence = _fall(advice, name, scale)
     if load and advice.least:
-        least, price = _spanned(advice.least, scale), advice.price
+        least, added = _spanned(advice.least, scale), advice.added_friction
         sentence += f'; both branches stay in mesh under {load:g} N·m from {least} on'
-        sentence += f', for {plus_minus(price)} N·m more friction' if price and price.clear else ''
+        sentence += f', for {plus_minus(added)} N·m more friction' if added and added.clear else ''
     elif load:
         sentence += f'; the least setting under {load:g} N·m is not known'
     table = Table.of_items(
@@ -83,8 +84,8 @@ def _reading(report: LostMotion, setting: float, amplitude: float, name: str) ->
     """Take a figure, by its name, of the small ramps of about an amplitude, N·m, if known."""
     if not report.figures:
         return None
-    small = min(report.figures.by_amplitude, key=lambda own: abs(own.amplitude - amplitude))
-    alike = 1.0 / ALIKE <= small.amplitude / amplitude <= ALIKE
+    small = min(report.figures.by_amplitude, key=lambda own: abs(own.ramps.amplitude - amplitude))
+    alike = 1.0 / ALIKE <= small.ramps.amplitude / amplitude <= ALIKE
     angle = small.hysteresis if name == HYSTERESIS else small.frictionless
     # A torque that is later than the angle makes the hysteresis negative.
     if not (alike and small.friction and angle and angle.value > 0.0):

@@ -1,0 +1,53 @@
+"""A measured figure as reports name and show it."""
+
+from typing import NamedTuple
+
+from gear_kinematics.correction.uncertainty import Estimate
+from gear_kinematics.measurement.middle_line import Backlash
+from gear_kinematics.measurement.wording import ARC_MINUTES, plus_minus
+from gear_kinematics.report.document import Cell, Tone, number
+
+HYSTERESIS = 'hysteresis'
+"""The name of the figure that is judged first."""
+SHOWN = {'rad': ('′', ARC_MINUTES), 's': ('ms', 1e3)}
+"""Units in which others are shown, and their factors."""
+
+
+class Measured(NamedTuple):
+    """A figure of a recording."""
+
+    name: str
+    unit: str
+    """SI."""
+    value: Estimate | Backlash | None
+    at: str = ''
+    """Where it was read, to follow the name."""
+
+    @property
+    def cell(self) -> Cell:
+        """The value with its ±, or as an interval; it stands out if its ± exceeds it."""
+        unit, scale = SHOWN.get(self.unit, (self.unit, 1.0))
+        value = self.value
+        if isinstance(value, Backlash):
+            if not value.value:
+                text = ' to '.join(number(end * scale) for end in self.ends) or 'unknown'
+                return Cell(text, unit=unit if self.ends else '')
+            value = value.value
+        tone = Tone.NOTABLE if value and not value.clear else Tone.PLAIN
+        return Cell(plus_minus(value, scale), tone, unit)
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """The ends of the interval that contains it, SI; none if that is not known."""
+        if isinstance(self.value, Backlash):
+            return () if self.value.high is None else (self.value.low, self.value.high)
+        if not self.value:
+            return ()
+        spread = self.value.uncertainty or 0.0
+        return self.value.value - spread, self.value.value + spread
+
+
+def shown(unit: str, *values: float) -> Cell:
+    """Show bare values in the unit of reports."""
+    unit, scale = SHOWN.get(unit, (unit, 1.0))
+    return Cell(', '.join(number(scale * value) for value in values), unit=unit)
