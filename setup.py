@@ -25,6 +25,7 @@ ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
 
 # The page of `gearkin watch`, for machines with and without a ROS installation
 WATCH = ['tornado>=6.2']
+ROSBAGS = ['rosbags>=0.11']
 
 setup(
     name=PACKAGE,
@@ -57,7 +58,6 @@ setup(
         'lz4',
         'numpy>=1.26',
         'PyYAML',
-        'rosbags>=0.11',
         'rich',
     ],
     extras_require={
@@ -66,12 +66,15 @@ setup(
         'ros': [
             'ros-jazzy-rclpy[fastrtps]==7.1.6',
             'ros-jazzy-common-interfaces==5.3.6',
+            *ROSBAGS,
             *WATCH,
         ],
         'watch': WATCH,
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],
         'dask': ['dask[distributed]'],
+        # ROS 1 bags, `gearkin compute`, and what `gearkin watch` records; Ubuntu has no package.
+        'rosbags': ROSBAGS,
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],
         # `gearkin animate` to an .mp4, where the system has no ffmpeg

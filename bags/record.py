@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from gear_kinematics.bag import BagWriter
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.live import Replay, running_node
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.cdr import JointStateTemplate

@@ -26,7 +26,8 @@ from mcap_ros2.decoder import DecoderFactory
 from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
-from gear_kinematics.bag import Bag, BagWriter, Message, in_batches
+from gear_kinematics.bag import Bag, Message, in_batches
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.share import share_directory

@@ -1,7 +1,8 @@
 """Recorded bags: reading and writing raw messages, without ROS.
 
-`rosbags` reads ROS 1 bags, defines the message types and writes. rosbag2 files are read here,
-because rosbags refuses unfinished and damaged files altogether and takes longer per message.
+rosbag2 files are read here, because rosbags refuses unfinished and damaged files altogether and
+takes longer per message. It converts ROS 1 bags and writes (`bag.writing`); as Ubuntu has no
+package of it, nothing else needs it.
 """
 
 from gear_kinematics.bag.errors import BagError, DamagedBagError, TopicError
@@ -13,14 +14,11 @@ from gear_kinematics.bag.reading import (
 )
 from gear_kinematics.bag.storage import Message, in_batches
 from gear_kinematics.bag.topics import Topic
-from gear_kinematics.bag.writing import BagWriter, LiveBagWriter
 
 __all__ = [
     'Bag',
     'BagError',
-    'BagWriter',
     'DamagedBagError',
-    'LiveBagWriter',
     'Message',
     'ReportProgress',
     'Topic',

@@ -9,8 +9,9 @@ from typing import Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, BagWriter, ReportProgress
+from gear_kinematics.bag import Bag, BagError, ReportProgress
 from gear_kinematics.bag.roles import Topics, corrected_beside
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.parameters import NodeParameters

@@ -5,16 +5,15 @@ from itertools import islice
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
-from gear_kinematics.bag.errors import bag_errors
-from gear_kinematics.bag.storage import DECOMPRESSORS
+from gear_kinematics.bag.codecs import CODECS
+from gear_kinematics.bag.errors import BagError, bag_errors
 from gear_kinematics.bag.topics import Topic
-from gear_kinematics.parameters.yaml_file import Loader, load_yaml
+from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
 from gear_kinematics.wire.nearest import among
 
 BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
 _STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
 
-_MAX_YAML = 2**22  # bytes: metadata of ten thousand topics or files
 _MAX_FILES = 50_000
 _MAX_NEIGHBOURS = 10_000
 
@@ -33,10 +32,7 @@ class Contents(NamedTuple):
 
 
 def find_contents(path: Path) -> Contents:
-    """Find the files of a recording, and read its metadata.
-
-    Args:
-        path: a rosbag2 folder, or a file.
+    """Find the files of a recording, a rosbag2 folder or a file, and read its metadata.
 
     Raises:
         ValueError: or other exceptions, if this is not a recording.
@@ -48,10 +44,7 @@ def find_contents(path: Path) -> Contents:
     metadata = path / 'metadata.yaml'
     if metadata.exists():
         with bag_errors(metadata):
-            if not metadata.is_file():  # a device may be endless
-                raise ValueError('not a regular file')
-            _check_length(metadata.stat().st_size)
-            return _listed_contents(path, parse_yaml(metadata.read_text('utf-8')))
+            return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
     # A recorder that is killed writes no metadata.
     files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
     if not files:
@@ -76,25 +69,16 @@ def _may_hold_bags(path: Path) -> bool:
 
 
 class _Loader(Loader):
-    """Reads what recorders write."""
+    """Reads what recorders write of ten thousand topics or files."""
 
+    max_bytes = 2**22
     max_events = 400_000
     aliases = True
 
 
 def parse_yaml(text: str) -> Any:
-    """Parse YAML of a bag.
-
-    Raises:
-        ValueError: if it is larger than any recorder writes.
-    """
-    _check_length(len(text))
+    """Parse YAML of a bag; raises any exception if it is none, or larger than recorders write."""
     return load_yaml(text, _Loader)
-
-
-def _check_length(length: int) -> None:
-    if length > _MAX_YAML:
-        raise ValueError(f'YAML has {length} bytes, more than {_MAX_YAML}')
 
 
 def _listed_contents(path: Path, metadata: Any) -> Contents:
@@ -102,7 +86,7 @@ def _listed_contents(path: Path, metadata: Any) -> Contents:
         raise ValueError('no metadata in it')  # noqa: TRY004, about data on disk
     information = metadata['rosbag2_bagfile_information']
     if information.get('compression_mode', '').lower() == 'message' and (
-        information['compression_format'] not in DECOMPRESSORS
+        information['compression_format'] not in CODECS
     ):
         raise ValueError(f'unsupported compression {information["compression_format"]!r}')
     message_count = int(information['message_count'])

@@ -4,6 +4,13 @@ import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+_REMEDIES = {
+    'rosbags': "pip install 'gear_kinematics[rosbags]'",
+    'zstandard': 'apt install python3-zstandard, or pip install backports.zstd',
+    'lz4': 'apt install python3-lz4, or pip install lz4',
+}
+"""How to install libraries that only some recordings need."""
+
 
 class BagError(ValueError):
     """A bag that cannot be used; the text is one line that names it and the cause."""
@@ -21,18 +28,17 @@ def cause(error: BaseException) -> str:
     """Describe an error of any library in one line."""
     if isinstance(error, KeyError):
         return f'{error} is missing'
+    if isinstance(error, ModuleNotFoundError):
+        library = (error.name or '').partition('.')[0]
+        if library in _REMEDIES:
+            return f'needs {library}: {_REMEDIES[library]}'
     # Some OSErrors are raised by libraries, without this text.
     text = str(getattr(error, 'strerror', None) or error)
     return ' '.join(text.split()) or type(error).__name__
 
 
 def unexpected(error: Exception, *, debug: bool) -> str:
-    """Describe an unexpected error in one line.
-
-    Args:
-        error: the error.
-        debug: whether to print its traceback to stderr.
-    """
+    """Describe an unexpected error in one line; prints its traceback to stderr for `debug`."""
     if debug:
         traceback.print_exception(error)
     hint = '' if debug else '; --debug shows where'

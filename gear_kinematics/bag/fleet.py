@@ -15,8 +15,8 @@ from typing import Any, Generic, TypeVar
 
 from gear_kinematics.bag.errors import cause
 
-_TRIES = 3
-"""Attempts at a recording whose worker dies."""
+_RETRIES = 2
+"""Further attempts at a recording whose process dies; Dask makes its own."""
 _CONNECT_TIMEOUT = 10.0  # s
 _PATIENCE = 60.0  # s to wait for a cluster without workers
 _DIED = 'its worker died repeatedly'
@@ -41,6 +41,10 @@ class Work(Generic[Task, Report]):
     """The same task with paths that workers with another working directory understand."""
 
 
+_Run = Callable[[Sequence[Task]], Iterator[tuple[int, Report]]]
+"""Works on tasks; yields reports by their numbers, without those whose workers died."""
+
+
 def on_this_machine(
     work: Work[Task, Report], tasks: Sequence[Task], jobs: int
 ) -> Iterator[tuple[Task, Report]]:
@@ -48,25 +52,29 @@ def on_this_machine(
 
     A recording whose process dies is tried again, and finally reported as lost.
     """
+    # A process that dies ends its pool. It was working on one of the first unfinished recordings.
+    return _retried(work, tasks, lambda some: _in_a_pool(work, some, jobs), jobs, _RETRIES)
+
+
+def _retried(
+    work: Work[Task, Report],
+    tasks: Sequence[Task],
+    run: _Run[Task, Report],
+    suspects: int,
+    retries: int,
+) -> Iterator[tuple[Task, Report]]:
+    """Work on all; where a worker dies, try the first unfinished tasks, the suspects, alone."""
     left = list(tasks)
     while left:
         done = set[int]()
-        for number, report in _in_a_pool(work, left, jobs):
+        for number, report in run(left):
             done.add(number)
             yield left[number], report
-        # A process that dies ends its pool. It was working on one of the first unfinished
-        # recordings; to find out on which, each of them gets a pool of its own.
         left = [task for number, task in enumerate(left) if number not in done]
-        for task in left[:jobs]:
-            yield task, _in_pools_of_its_own(work, task)
-        left = left[jobs:]
-
-
-def _in_pools_of_its_own(work: Work[Task, Report], task: Task) -> Report:
-    for _ in range(_TRIES - 1):
-        for _, report in _in_a_pool(work, [task], jobs=1):
-            return report
-    return work.lost(task, _DIED)
+        for task in left[:suspects]:
+            alone = (report for _ in range(retries) for _, report in run([task]))
+            yield task, next(alone, None) or work.lost(task, _DIED)
+        left = left[suspects:]
 
 
 def _in_a_pool(
@@ -137,11 +145,6 @@ def on_cluster(
     recordings under the same paths. A recording whose worker dies is tried again on another, and
     finally reported as lost.
 
-    Args:
-        work: what is done with each recording.
-        tasks: the recordings.
-        scheduler: such as tcp://host:8786.
-
     Raises:
         SchedulerError: if the cluster cannot be reached.
         ModuleNotFoundError: if dask is not installed.
@@ -156,16 +159,10 @@ def on_cluster(
     except (OSError, ValueError, TimeoutError) as error:
         raise SchedulerError(f'{scheduler}: no Dask scheduler there: {error}') from error
     with client:
-        done = set[int]()
-        for number, report in _on_workers(client, work, tasks):
-            done.add(number)
-            yield tasks[number], report
-        # Dask gives up every recording that was assigned to a dead worker; to find the cause, each
-        # is tried alone.
-        for number in sorted(set(range(len(tasks))) - done):
-            task = tasks[number]
-            alone = [report for _, report in _on_workers(client, work, [task])]
-            yield task, alone[0] if alone else work.lost(task, _DIED)
+        # Dask gives up every recording that was assigned to a dead worker.
+        yield from _retried(
+            work, tasks, lambda some: _on_workers(client, work, some), len(tasks), retries=1
+        )
 
 
 def _on_workers(

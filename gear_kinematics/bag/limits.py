@@ -35,23 +35,16 @@ class Limits:
         """The size, bytes, to which a compressed file may expand."""
         return cls.spare_size + cls.file_expansion * size
 
-    def count(self, records: int) -> None:
-        """Count records.
+    def count(self, *, records: int = 0, expanded: int = 0) -> None:
+        """Count records and decompressed bytes.
 
         Raises:
             ValueError: if there are too many.
         """
         self._records -= records
+        self._expanded -= expanded
         if self._records < 0:
             raise ValueError('there are more records than a bag of this size can hold')
-
-    def expand(self, size: int) -> None:
-        """Count decompressed bytes.
-
-        Raises:
-            ValueError: if there are too many.
-        """
-        self._expanded -= size
         if self._expanded < 0:
             raise ValueError('its compressed data expand to more than a bag of this size can hold')
 

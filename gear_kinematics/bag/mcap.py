@@ -8,13 +8,9 @@ from operator import itemgetter
 from pathlib import Path
 from zlib import crc32
 
+from gear_kinematics.bag.codecs import CODECS
 from gear_kinematics.bag.limits import Limits
-from gear_kinematics.bag.storage import (
-    DECOMPRESSORS,
-    Message,
-    Storage,
-    check_encoding,
-)
+from gear_kinematics.bag.storage import Message, Storage, check_encoding
 from gear_kinematics.bag.topics import Topic
 
 MCAP_MAGIC = b'\x89MCAP0\r\n'
@@ -179,7 +175,7 @@ class Mcap(Storage):
                 self._learn(opcode, records[start:end])
             elif not opcode:
                 raise ValueError('there is no record')
-        self.limits.count(number)
+        self.limits.count(records=number)
         return end
 
     def _learn(self, opcode: int, body: bytes) -> None:
@@ -241,12 +237,12 @@ class Mcap(Storage):
         data = body[40 + name_length :][:length]
         records = data
         if name:
-            if name not in DECOMPRESSORS:
+            if name not in CODECS:
                 raise ValueError(f'unsupported compression {name!r}')
             if size > self.limits.expanded_chunk(len(data)):
                 raise ValueError(f'a chunk of {size} bytes is too large')
-            records, _ = DECOMPRESSORS[name](data, size + 1)
-            self.limits.expand(len(records))
+            records, _ = CODECS[name].decompress(data, size + 1)
+            self.limits.count(expanded=len(records))
         if whole and len(records) != size:
             raise ValueError('a chunk does not have the size that it states')
         if whole and crc and crc32(records) != crc:

@@ -9,21 +9,13 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Self
 
+from gear_kinematics.bag.codecs import codec_of, decompress_file, decompressed
 from gear_kinematics.bag.contents import find_contents
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
 from gear_kinematics.bag.limits import Limits
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
-from gear_kinematics.bag.ros1 import Ros1
 from gear_kinematics.bag.sqlite import Sqlite
-from gear_kinematics.bag.storage import (
-    FILE_OPENERS,
-    MESSAGE_DECOMPRESSORS,
-    Message,
-    Storage,
-    decompress_file,
-    decompressed,
-    in_batches,
-)
+from gear_kinematics.bag.storage import Message, Storage, in_batches
 from gear_kinematics.bag.topics import Topic, missing_topic
 
 ReportProgress = Callable[[int, int | None], None]
@@ -31,10 +23,18 @@ ReportProgress = Callable[[int, int | None], None]
 
 _BATCH = 8192  # messages
 _BATCH_SIZE = 2**24  # bytes
+
+
+def _ros1(path: Path, limits: Limits) -> Storage:
+    from gear_kinematics.bag.ros1 import Ros1  # noqa: PLC0415, needs rosbags
+
+    return Ros1(path, limits)
+
+
 _KINDS: Mapping[bytes, Callable[[Path, Limits], Storage]] = {
     MCAP_MAGIC: Mcap,
     b'SQLite format 3\0': Sqlite,
-    b'#ROSBAG V2.0': Ros1,
+    b'#ROSBAG V2.0': _ros1,
 }
 
 
@@ -87,11 +87,7 @@ class Bag:
     def messages(self, topics: Collection[str]) -> Iterator[Message]:
         """Read raw messages in the order in which they were received, those of ROS 1 as CDR.
 
-        Args:
-            topics: names; a topic that is not in the bag has no messages.
-
-        Yields:
-            Topic, time of reception in ns, CDR in the byte order of the recording.
+        A topic that is not in the bag has no messages.
 
         Raises:
             BagError: if no message can be read.
@@ -102,17 +98,9 @@ class Bag:
     def batches(
         self, topics: Collection[str], progress: ReportProgress | None = None
     ) -> Iterator[list[Message]]:
-        """Read raw messages as `messages` does, many at a time, which is faster.
+        """Read raw messages as `messages` does, up to 8192 or 16 MiB at a time, which is faster.
 
-        Args:
-            topics: names.
-            progress: called after each batch; the total counts all topics of the bag.
-
-        Yields:
-            At most 8192 messages, and about 16 MiB.
-
-        Raises:
-            BagError: as `messages` does.
+        The total that `progress` is told after each batch counts all topics of the bag.
         """
         done = 0
         for batch in _joined(self._pieces(topics)):
@@ -201,10 +189,10 @@ def _plain(pieces: Iterator[list[Message]], limits: Limits) -> Iterator[list[Mes
     """Decompress messages, if the first one is compressed."""
     first = next(pieces, [])
     pieces = chain([first], pieces)
-    if not first or not (decompress := MESSAGE_DECOMPRESSORS.get(first[0][2][:4])):
+    if not first or not (codec := codec_of(first[0][2])):
         return pieces
     return in_batches(
-        (topic, received, decompressed(data, decompress, limits, 'a compressed message'))
+        (topic, received, decompressed(data, codec.decompress, limits, 'a compressed message'))
         for topic, received, data in chain.from_iterable(pieces)
     )
 
@@ -235,17 +223,12 @@ def is_bag_file(path: Path) -> bool:
     """
     with path.open('rb') as file:
         start = _start(file, 16)
-    return start.startswith(tuple(_KINDS)) or start[:4] in FILE_OPENERS
+    return bool(start.startswith(tuple(_KINDS)) or codec_of(start))
 
 
 @contextmanager
 def _opened(file: Path, limits: Limits, read: int = 0) -> Iterator[Storage]:
-    """Open a file of a bag, if compressed via a temporary file.
-
-    Args:
-        file: to open.
-        limits: on the files of the bag.
-        read: number of messages already read from other files.
+    """Open a file of a bag, after so many messages of others; if compressed, a temporary copy.
 
     Raises:
         BagError: for any exception about the file, also from the body of the with statement.
@@ -255,9 +238,9 @@ def _opened(file: Path, limits: Limits, read: int = 0) -> Iterator[Storage]:
         with ExitStack() as stack:
             source = stack.enter_context(file.open('rb'))
             content = file
-            if opener := FILE_OPENERS.get(_start(source, 4)):
+            if codec := codec_of(_start(source, 4)):
                 content = Path(stack.enter_context(tempfile.TemporaryDirectory()), 'bag')
-                broken = decompress_file(source, content, opener)
+                broken = decompress_file(source, content, codec)
                 source = stack.enter_context(content.open('rb'))
             start = _start(source, 16)
             kind = next((kind for magic, kind in _KINDS.items() if start.startswith(magic)), None)

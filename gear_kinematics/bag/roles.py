@@ -94,27 +94,12 @@ def find_topics(
 
 
 def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str:
-    """Return the rotor's topic: the given one, or else by type and name.
-
-    Args:
-        bag: an open bag.
-        given: its name, if known.
-        joint: of the rotor, to choose among several topics.
-
-    Raises:
-        BagError: if it is missing or ambiguous.
-    """
+    """Return the rotor's topic: the given one, or else by type and name; see `find_topics`."""
     return find_topics(bag, {'rotor': given}, outputs=False, joint=joint).rotor
 
 
 def only_joint(bag: Bag, topic: str, joint: str) -> str:
-    """Return the joint to read on a topic: the only one there, if the given one is not.
-
-    Args:
-        bag: an open bag.
-        topic: of joint states.
-        joint: the one to look for.
-    """
+    """Return the joint to read on a topic of joint states: the only one, or else the given one."""
     found = set[str]()
     with suppress(BagError):
         for _, _, data in islice(bag.messages([topic]), _JUDGED):
@@ -169,12 +154,7 @@ def corrected_beside(output: str = Topics().output) -> dict[str, str]:
 
 
 def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
-    """Return those of `corrected_beside` that a bag has.
-
-    Args:
-        bag: an open bag.
-        output: the topic of output_state.
-    """
+    """Return those of `corrected_beside` that a bag has."""
     return {
         name: topic
         for name, topic in corrected_beside(output).items()

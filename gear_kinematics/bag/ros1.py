@@ -1,27 +1,22 @@
-"""Reads ROS 1 bags."""
+"""Reads ROS 1 bags, with rosbags."""
 
 import bz2
 from collections.abc import Callable, Collection, Iterator, Mapping
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
-from typing import BinaryIO, cast
+from typing import Any, BinaryIO, cast
 
 import lz4.frame  # type: ignore[import-untyped]
 from rosbags import rosbag1
-from rosbags.interfaces import Connection
+from rosbags.interfaces import Connection, Nodetype
+from rosbags.interfaces.typing import Typesdict
 from rosbags.rosbag1.reader import IndexData
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from rosbags.typesys.store import Typestore
 
+from gear_kinematics.bag.codecs import CODECS, Decompressor, decompressed
 from gear_kinematics.bag.limits import Limits
-from gear_kinematics.bag.ros1_types import MAX_PARTS, ros1_types
-from gear_kinematics.bag.storage import (
-    DECOMPRESSORS,
-    Decompressor,
-    Message,
-    Storage,
-    decompressed,
-    in_batches,
-)
+from gear_kinematics.bag.storage import Message, Storage, in_batches
 from gear_kinematics.bag.topics import Topic
 
 
@@ -32,11 +27,15 @@ def _unbz2(data: bytes, limit: int) -> tuple[bytes, bool]:
 
 _BOUNDED: Mapping[Callable[[bytes], bytes], Decompressor] = {
     bz2.decompress: _unbz2,
-    lz4.frame.decompress: DECOMPRESSORS['lz4'],
+    lz4.frame.decompress: CODECS['lz4'].decompress,
 }
 """Replacements for those of rosbags, which decompress without limit."""
 _MAX_DEFINITIONS = 2**19
 """Largest type definitions together, bytes: rosbags takes 25 µs for each."""
+_MAX_PARTS = 10_000
+"""Most parts of all types together: rosbags takes up to a millisecond to prepare each."""
+_MAX_PARTS_FOR_BYTES = 8
+_TEXTS = {'string', 'wstring'}
 
 
 class _Reader(rosbag1.Reader):
@@ -92,9 +91,9 @@ class Ros1(Storage):
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages in the order of reception, as CDR."""
         wanted = [c for c in self._reader.connections if c.topic in topics]
-        types = {c.msgtype: ros1_types(c.msgtype, c.msgdef.data) for c in wanted}
-        if sum(parts for _, parts in types.values()) > MAX_PARTS:
-            raise ValueError(f'its messages consist of more than {MAX_PARTS} parts')
+        types = {c.msgtype: _types_of(c.msgtype, c.msgdef.data) for c in wanted}
+        if sum(parts for _, parts in types.values()) > _MAX_PARTS:
+            raise ValueError(f'its messages consist of more than {_MAX_PARTS} parts')
         stores = {kind: store for kind, (store, _) in types.items()}
         return in_batches(self._messages(wanted, stores))
 
@@ -115,3 +114,55 @@ class Ros1(Storage):
         return Topic(
             connection.topic, connection.msgtype, 'cdr', 'ros1msg', connection.msgdef.data
         )
+
+
+def ros2_definition(message_type: str, definition: str) -> tuple[str, str]:
+    """Return the definition and the hash that a type of ROS 1 has in ROS 2."""
+    store, _ = _types_of(message_type, definition)
+    converted, _ = store.generate_msgdef(message_type, ros_version=2)
+    return converted, store.hash_rihs01(message_type)
+
+
+@cache
+def _types_of(message_type: str, definition: str) -> tuple[Typestore, int]:
+    """Create a store of the types of a definition, as they are in ROS 2.
+
+    Returns:
+        The store, and the number of parts in which rosbags converts a message.
+
+    Raises:
+        ValueError: if the conversion of a small message could take long.
+    """
+    types = get_types_from_msg(definition, message_type)
+    jazzy = get_typestore(Stores.ROS2_JAZZY).fielddefs
+    types['std_msgs/msg/Header'] = jazzy['std_msgs/msg/Header']  # ROS 1 has a sequence number
+    for name in ('builtin_interfaces/msg/Time', 'builtin_interfaces/msg/Duration'):
+        types.setdefault(name, jazzy[name])  # primitive types in ROS 1
+    parts, _ = _extent((Nodetype.NAME, message_type), types, {})
+    store = get_typestore(Stores.EMPTY)
+    store.register(types)
+    return store, parts
+
+
+def _extent(
+    field: tuple[Nodetype, Any], types: Typesdict, known: dict[str, tuple[int, int]]
+) -> tuple[int, int]:
+    """The parts that rosbags converts one by one, and how many of them are never empty."""
+    kind, detail = field
+    if kind == Nodetype.BASE:
+        return 1, 1
+    if kind == Nodetype.NAME:
+        if detail not in known:
+            extents = [_extent(inner, types, known) for _, inner in types[detail][1]]
+            known[detail] = 1 + sum(parts for parts, _ in extents), sum(n for _, n in extents)
+        return known[detail]
+    element, count = detail
+    parts, filled = _extent(element, types, known)
+    if kind == Nodetype.SEQUENCE:
+        # A message can claim any number of elements that take no bytes.
+        if parts > _MAX_PARTS_FOR_BYTES * filled:
+            raise ValueError('a sequence of nearly empty messages')
+        return 1 + parts, 1
+    if element[0] == Nodetype.BASE and element[1][0] not in _TEXTS:
+        return 1, 1
+    return count * parts, count * filled

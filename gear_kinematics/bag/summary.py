@@ -64,13 +64,7 @@ def summarise(
     joint: str = '',
     progress: ReportProgress | None = None,
 ) -> Summary:
-    """Read a whole recording.
-
-    Args:
-        bag: an open bag.
-        rotor_topic: name of the rotor's topic, if known.
-        joint: of the rotor, to choose among several topics.
-        progress: called after each batch.
+    """Read a whole recording; if the rotor's topic is not given, its joint tells it from others.
 
     Raises:
         BagError: if no message can be read, or the given topic is missing.

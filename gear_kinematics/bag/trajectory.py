@@ -142,14 +142,7 @@ def read_trajectory(
 ) -> Trajectory:
     """Read the rotor's motion from a bag, up to the first stamp that jumps back.
 
-    Args:
-        path: of the bag.
-        parameters: of the node.
-        rotor_topic: its name; None: by type and name.
-        progress: called after each batch; the total counts all topics of the bag.
-
-    Returns:
-        The motion; missing velocities are derived from the positions.
+    Missing velocities are derived from the positions.
 
     Raises:
         BagError: if the bag cannot be read, or has fewer than two rotor states of different times.

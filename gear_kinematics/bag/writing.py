@@ -1,4 +1,4 @@
-"""Writes recordings."""
+"""Writes recordings, with rosbags."""
 
 import secrets
 import shutil
@@ -20,13 +20,15 @@ from rosbags.interfaces import (
 )
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
 from rosbags.rosbag2.metadata import parse_qos
+from rosbags.typesys import Stores, get_typestore
 
 from gear_kinematics.bag.contents import parse_yaml
 from gear_kinematics.bag.errors import BagError, TopicError, bag_errors
 from gear_kinematics.bag.reading import Bag
+from gear_kinematics.bag.ros1 import ros2_definition
 from gear_kinematics.bag.storage import Message
 from gear_kinematics.bag.storage_writers import BulkWriter
-from gear_kinematics.bag.topics import Topic, as_ros2, jazzy_definition
+from gear_kinematics.bag.topics import Topic
 
 _MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
 _FOREVER = QosTime(9223372036, 854775807)
@@ -121,7 +123,7 @@ class BagWriter:
             BagError: if it has been added already, or the type is unknown.
         """
         with bag_errors(self.path):
-            definition = jazzy_definition(message_type)
+            definition = _jazzy_definition(message_type)
             self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [_RELIABLE])
 
     def copy_topic(self, bag: Bag, name: str) -> Topic:
@@ -141,7 +143,7 @@ class BagWriter:
         with bag_errors(f'{bag.path}: {name} cannot be copied', TopicError):
             if topic.encoding != 'cdr':
                 raise ValueError(f'its messages are {topic.encoding!r}, not CDR')
-            topic = as_ros2(topic)
+            topic = _as_ros2(topic)
             qos = parse_yaml(topic.qos) if isinstance(topic.qos, str) else topic.qos
             self._add(topic, parse_qos(qos))
         return topic
@@ -232,3 +234,32 @@ class LiveBagWriter(BagWriter):
         """
         with bag_errors(self.path):
             self._writer.flush()
+
+
+def _jazzy_definition(message_type: str) -> tuple[str, str]:
+    """Return the definition and the hash of a type of ROS 2 Jazzy."""
+    store = get_typestore(Stores.ROS2_JAZZY)
+    if message_type not in store.fielddefs:
+        raise ValueError(f'type {message_type} is not of ROS 2 Jazzy and needs a definition')
+    return store.generate_msgdef(message_type, ros_version=2)[0], store.hash_rihs01(message_type)
+
+
+def _as_ros2(topic: Topic) -> Topic:
+    """Return a topic as ROS 2 records it; with the name of the type alone if it is undefined.
+
+    Raises:
+        ValueError: if the type is defined in a syntax that ROS 2 does not have.
+    """
+    if topic.syntax == 'ros1msg':
+        definition, type_hash = ros2_definition(topic.type, topic.definition)
+    elif not topic.definition and topic.type in get_typestore(Stores.ROS2_JAZZY).fielddefs:
+        definition, type_hash = _jazzy_definition(topic.type)
+    elif topic.syntax in {'ros2msg', 'ros2idl'}:
+        return topic
+    elif topic.definition:
+        raise ValueError(f'its type is defined in unknown {topic.syntax!r}')
+    else:
+        return topic._replace(syntax='')
+    return topic._replace(
+        syntax='ros2msg', definition=definition, type_hash=topic.type_hash or type_hash
+    )

@@ -11,6 +11,7 @@ EXTRAS = {
     'mapbox_earcut': 'mesh',
     'tornado': 'watch',
     'scipy': 'measure',
+    'rosbags': 'rosbags',
 }
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'

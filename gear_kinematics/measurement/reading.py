@@ -33,6 +33,9 @@ from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
 
+_MOST_STATES = 1_800_000
+"""Half an hour at 1 kHz: measuring takes up to 200 bytes for each state of rotor or output."""
+
 
 def read(
     path: Path,
@@ -81,31 +84,34 @@ def _read_bag(
     progress: ReportProgress | None,
 ) -> Recording:
     rotor_input = RotorInput(parameters)
-    inputs: list[Sequence[Array]] = []
-    outputs: list[Sequence[Array]] = []
     start, lacking, damage = None, '', None
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, sources.encoder_topic)
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
         no_encoder = '' if encoder else missing_encoder(bag)
         topics = [topic for topic in (rotor, encoder) if topic]
+        inputs, outputs = _Columns(_MOST_STATES // len(topics)), _Columns(_MOST_STATES // 2)
         try:
             for batch in bag.batches(topics, progress):
                 found = by_topic(batch, topics)
                 if start is None and batch:
                     start = min(of.received[0] for of in found.values() if of.received) / SECOND
                 new = rotor_input.accept_batch(found[rotor].data, found[rotor].received)
-                inputs.append((new.stamp, new.turns, new.angle, new.effort, new.segment))
+                inputs.add((new.stamp, new.turns, new.angle, new.effort, new.segment))
                 if encoder:
                     data, received = found[encoder].data, found[encoder].received
                     states = decode_joint_states(data, parameters.output_encoder_joint)
                     lacking = lacking or states.missing_joint
-                    outputs.append(_measured(states, received, parameters))
+                    outputs.add(_measured(states, received, parameters))
         except DamagedBagError as error:
             damage = str(error)
     remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
-    rotor_columns = _joined(inputs)
-    rows = len(rotor_columns[0])
+    for topic, columns in zip(topics, (inputs, outputs), strict=False):
+        if columns.every > 1:
+            what = f'one state of {columns.every} is used: no more are kept in memory'
+            remarks.append(f'{topic}: {what}')
+    rotor_columns = inputs.joined()
+    rows = len(rotor_columns[0]) if rotor_columns else 0
     if not rows:
         why = f': {rotor_input.why_rejected}' if rotor_input.rejected else ''
         raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
@@ -117,7 +123,7 @@ def _read_bag(
     described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
     encoders = locked = None
     if encoder:
-        stamps, angles = _joined(outputs)
+        stamps, angles = outputs.joined()
         if lacking and not len(stamps):
             raise BagError(f'{path}: {encoder}: {lacking}')
         encoders, left_out = _compared(motion, stamps, angles, parameters, sources)
@@ -151,11 +157,33 @@ def _measured(
     return stamp[usable], angle[usable]
 
 
-def _joined(batches: list[Sequence[Array]]) -> list[Array]:
-    """Columns of all batches; frees those of the batches one by one."""
-    columns = list(zip(*batches, strict=True))
-    batches.clear()
-    return [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
+class _Columns:
+    """What the states of a topic say, batch by batch: of too many, one of every so many."""
+
+    def __init__(self, most: int) -> None:
+        self._most = most
+        self._batches: list[list[Array]] = []
+        self._seen = self._kept = 0
+        self.every = 1
+
+    def add(self, columns: Sequence[Array]) -> None:
+        first = -self._seen % self.every
+        self._seen += len(columns[0])
+        self._keep([column[first :: self.every].copy() for column in columns])
+        while self._kept > self._most:
+            self.every *= 2
+            columns, self._kept = self.joined(), 0
+            self._keep([column[::2].copy() for column in columns])
+
+    def _keep(self, columns: list[Array]) -> None:
+        self._batches.append(columns)
+        self._kept += len(columns[0])
+
+    def joined(self) -> list[Array]:
+        """Columns of all batches; frees those of the batches one by one."""
+        columns = list(zip(*self._batches, strict=True))
+        self._batches.clear()
+        return [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
 
 
 def _compared(

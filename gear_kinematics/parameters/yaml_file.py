@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 
 import yaml
 
-_MAX_BYTES = 2**20
 _MAX_DEPTH = 20  # libyaml has no limit of recursion
 _MAX_NUMBERS = 100  # as keys of a mapping: hashes of numbers can be made to collide
 _TEXT = 'tag:yaml.org,2002:str'
@@ -17,6 +16,7 @@ _TEXT = 'tag:yaml.org,2002:str'
 class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[misc]
     """Reads 15e-4 as a number and 1:30 as a text, as ROS does."""
 
+    max_bytes: ClassVar[int] = 2**20
     max_events: ClassVar[int] = 2**13
     """Values, and begins and ends of lists. They load within 50 ms, and are twice as many as in a
     calibration of 60 coefficients, which is the largest that is ever fitted."""
@@ -57,11 +57,13 @@ def read_yaml(path: Path, error_type: type[ValueError], loader: type[Loader] = L
     """
     try:
         with os.fdopen(os.open(path, os.O_RDONLY | os.O_NONBLOCK), 'rb') as file:  # no folder
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
                 raise error_type(f'{path}: not a regular file')
-            data = file.read(_MAX_BYTES + 1)
-        if len(data) > _MAX_BYTES:
-            raise error_type(f'{path}: longer than {_MAX_BYTES} bytes')
+            # As much is allocated; files of /proc have no size.
+            data = file.read(min(status.st_size or loader.max_bytes, loader.max_bytes) + 1)
+        if len(data) > loader.max_bytes:
+            raise error_type(f'{path}: longer than {loader.max_bytes} bytes')
         text = data.decode()
     except error_type:
         raise

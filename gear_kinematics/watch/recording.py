@@ -13,7 +13,8 @@ from rclpy.node import Node
 from rclpy.qos import ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.bag import BagError, LiveBagWriter, Message
+from gear_kinematics.bag import BagError, Message
+from gear_kinematics.bag.errors import bag_errors
 from gear_kinematics.state.losses import Losses
 from gear_kinematics.watch.polled import PolledSubscription
 from gear_kinematics.wire import topics
@@ -77,10 +78,13 @@ class Recording:
     """A recording in progress.
 
     One thread takes the messages from the middleware and another writes them, so that a slow disk
-    does not make the queues overflow. BagError is raised if the folder cannot be created.
+    does not make the queues overflow. BagError is raised if the folder cannot be created, or
+    rosbags is not installed.
     """
 
     def __init__(self, path: Path) -> None:
+        with bag_errors(path):
+            from gear_kinematics.bag.writing import LiveBagWriter  # noqa: PLC0415, needs rosbags
         self.path = path
         self._bag = LiveBagWriter(path)
         self._bag.__enter__()

@@ -63,12 +63,7 @@ def joint_names(layout: Layout) -> list[bytes]:
 
 
 def joint_index(layout: Layout, joint: bytes) -> int | None:
-    """Index of a joint in the arrays of a JointState; None if it is not in the message.
-
-    Args:
-        layout: of the message.
-        joint: its name, as of `joint_names`; b'' for the only joint.
-    """
+    """Index in the arrays of a joint of `joint_names`, b'' for the only one; None without it."""
     names = joint_names(layout)
     if joint:
         return names.index(joint) if joint in names else None
@@ -165,12 +160,7 @@ class Template:
         self._string(frame_id)
 
     def encode(self, stamp: int, *arrays: Sequence[float]) -> bytes:
-        """Return the bytes of the message.
-
-        Args:
-            stamp: ns.
-            arrays: the numbers of each array that was laid out.
-        """
+        """Return the bytes of the message, from the stamp (ns) and the numbers of each array."""
         values: list[Any] = [_ENCAPSULATION, *divmod(stamp, SECOND)]
         for text, array in zip(self._texts, arrays, strict=True):
             values.append(text)

@@ -50,17 +50,11 @@ class RejectedInputError(ValueError):
 
 
 def describe_missing(joint: str, data: bytes) -> str:
-    """Which joints there are in a message without the wanted one, and which name is nearest.
-
-    Args:
-        joint: the missing one; '' for the only one.
-        data: a serialised sensor_msgs/JointState.
-    """
+    """Which joints there are in a JointState without the wanted one; '' is the only one."""
     names = joints_of(data)
     if not joint:
-        return (
-            f'not a single joint in it; there are: {listed(names)}' if names else 'no joint in it'
-        )
+        there = f'not a single joint in it; there are: {listed(names)}'
+        return there if names else 'no joint in it'
     return f'no joint {joint!r} in it{among(joint, names)}'
 
 
@@ -70,9 +64,8 @@ def joints_of(data: bytes) -> list[str]:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    names = (
-        name.decode(errors='backslashreplace') for name in joint_names(joint_state_layout(data))
-    )
+    raw = joint_names(joint_state_layout(data))
+    names = [name.decode(errors='backslashreplace') for name in raw]
     return [name if name.isprintable() else ascii(name)[1:-1] for name in names]
 
 
@@ -85,11 +78,7 @@ class JointReader:
     """
 
     def __init__(self, joint: str) -> None:
-        """Start without a known layout.
-
-        Args:
-            joint: its name, or its index if no joint has a name; '' for the only joint.
-        """
+        """Read the joint of a name, or an index if no joint has a name; '' for the only one."""
         self._joint = joint.encode()
         self._size = -1  # of the messages whose layout is known
 
@@ -113,10 +102,10 @@ class JointReader:
         if stamp > LATEST:
             raise RejectedInputError(STAMP_OUT_OF_RANGE)
         if position is None:
-            if self._fault == JOINT_MISSING:
-                joint = self._joint.decode(errors='backslashreplace')
-                raise RejectedInputError(JOINT_MISSING, partial(describe_missing, joint, data))
-            raise RejectedInputError(self._fault)
+            if self._fault == POSITION_MISSING:
+                raise RejectedInputError(POSITION_MISSING)
+            joint = self._joint.decode(errors='backslashreplace')
+            raise RejectedInputError(JOINT_MISSING, partial(describe_missing, joint, data))
         if not abs(position) <= LARGEST_ANGLE:  # NaN compares false
             finite = math.isfinite(position)
             raise RejectedInputError(POSITION_TOO_LARGE if finite else POSITION_NOT_FINITE)
@@ -140,7 +129,8 @@ class JointReader:
         if None in offsets:
             # After the stamp, which is two numbers; the None behind all stands for absent ones.
             places = [-1 if offset is None else 2 + present.index(offset) for offset in offsets]
-            self._numbers_of = _with_none(self._numbers_of, itemgetter(0, 1, *places))
+            unpack, pick = self._numbers_of, itemgetter(0, 1, *places)
+            self._numbers_of = lambda data: pick((*unpack(data), None))
         spans = [(start, f'{end - start}s') for start, end in layout.fixed]
         self._fixed_of = _unpacker(layout, spans)
         self._fixed = self._fixed_of(data)
@@ -148,18 +138,12 @@ class JointReader:
         self._size = layout.size if layout.size <= _MAX_KEPT else -1
 
 
-_Unpack = Callable[[bytes], tuple[Any, ...]]
-
-
-def _unpacker(layout: Layout, items: Iterable[tuple[int, str]]) -> _Unpack:
+def _unpacker(
+    layout: Layout, items: Iterable[tuple[int, str]]
+) -> Callable[[bytes], tuple[Any, ...]]:
     """Make a function that takes items, given by offset and format, out of a message."""
     code, end = layout.order, 0
     for offset, item in items:
         code += f'{offset - end}x{item}'
         end = offset + struct.calcsize(layout.order + item)
     return struct.Struct(f'{code}{layout.size - end}x').unpack
-
-
-def _with_none(unpack: _Unpack, pick: Callable[[tuple[Any, ...]], tuple[Any, ...]]) -> _Unpack:
-    """Make a function that picks from what is unpacked, followed by a None."""
-    return lambda data: pick((*unpack(data), None))

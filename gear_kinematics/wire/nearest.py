@@ -19,26 +19,14 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def listed(names: Collection[str], first: Collection[str] = (), most: int = _SHOWN) -> str:
-    """List names in one line, only the first of many.
-
-    Args:
-        names: the names.
-        first: those to list before the others.
-        most: number of names to list.
-    """
+    """List names in one line, those in `first` before the others, and at most so many."""
     shown, more = sorted(names, key=lambda name: (name not in first, name)), len(names) - most
     text = ', '.join(f'{name:.{_LONGEST}}' for name in shown[:most])
     return f'{text} and {more} more' if more > 0 else text
 
 
 def among(name: str, known: Collection[str], most: int = _SHOWN) -> str:
-    """End of a message on an unknown name: the nearest known one, and which there are.
-
-    Args:
-        name: the unknown name.
-        known: the names that there are.
-        most: number of names to list.
-    """
+    """End of a message on an unknown name: the nearest known one, and which there are."""
     there = f'there are: {listed(known, most=most)}' if known else 'there are none'
     hint = nearest(name, sorted(known))
     return f'{hint} {there}' if hint else f'; {there}'

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 import replaying
-from gear_recordings import old_recording
 from live import SECOND, rotor_bytes
 from rosbags.rosbag2 import Reader, StoragePlugin, Writer
 from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
@@ -93,16 +92,7 @@ def test_the_computed_outputs_are_those_that_the_node_published(
     for topic in TYPES:
         assert of_topic(computed, topic) == of_topic(recorded, topic)
     assert (result.rotor_input.received, result.computed, result.copied) == (received, valid, 0)
-
-
-def test_rejected_inputs_are_counted_by_cause(tmp_path):
-    result = run(BAGS / 'driver_faults', tmp_path / 'computed')
-    assert result.rotor_input.rejected == {
-        'out of order': 12,
-        'position not finite': 12,
-        'joint missing': 12,
-        'position missing': 13,
-    }
+    assert sum(result.rotor_input.rejected.values()) == received - valid
 
 
 @pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
@@ -129,60 +119,17 @@ def test_other_topics_survive_with_their_unknown_types(rotor_only, tmp_path):
     assert descriptions[0] == descriptions[1]
 
 
-def test_topics_of_undefined_types_are_copied_and_named(tmp_path):
-    """As in recordings of Humble and older, which have no definitions."""
-    types = [*TYPES.items(), ('/grip', 'acme_msgs/msg/Grip')]
-    stamps = range(SECOND, SECOND + 3)
-    messages = [('/rotor_state', stamp, rotor_bytes(stamp, position=[1.0])) for stamp in stamps]
-    source = old_recording(tmp_path / 'b.db3', types, [*messages, ('/grip', 2 * SECOND, UNKNOWN)])
-    result = run(source, tmp_path / 'computed', config())
-    assert (result.computed, result.copied) == (3, 1)
-    assert (result.left_out, result.undefined) == ((), ('/grip',))
-    assert of_topic(read_bag(tmp_path / 'computed'), '/grip') == [UNKNOWN]
-
-
-def test_topics_are_left_out_and_named(rotor_only, tmp_path):
-    for topics, left_out in (([], ('/grip',)), (['/grip'], ()), (['/rotor_state'], ('/grip',))):
-        target = tmp_path / f'computed {len(left_out)} {len(topics)}'
-        result = run(rotor_only, target, config(), topics=topics)
-        assert result.left_out == left_out
-        assert result.copied == (0 if left_out else 4)
-        assert {topic for topic, *_ in read_bag(target)} == {
-            '/rotor_state',
-            *OUTPUTS,
-            *({'/grip'} - set(left_out)),
-        }
-
-
-def test_topics_have_the_names_that_were_asked_for(rotor_only, tmp_path):
-    renamed = write_bag(
-        tmp_path / 'renamed',
-        [('/motor', *rest) for topic, *rest in read_bag(rotor_only) if topic == '/rotor_state'],
-        {'/motor': TYPES['/rotor_state']},
-    )
-    names = {'rotor_topic': '/motor', 'output_topic': '/shaft', 'poses_topic': '/bodies'}
-    run(renamed, tmp_path / 'computed', config(), **names)
-    counts = Counter(topic for topic, *_ in read_bag(tmp_path / 'computed'))
-    assert counts == {'/motor': 40, '/shaft': 40, '/bodies': 40}
-
-
 def test_an_input_without_a_stamp_gets_the_time_of_its_reception(tmp_path):
-    times = [5 * SECOND, 5 * SECOND + 7]
-    messages = [('/rotor_state', time, rotor_bytes(0, position=[1.0])) for time in times]
-    result = run(write_bag(tmp_path / 'source', messages), tmp_path / 'computed', config())
-    assert result.rotor_input.zero_stamps == 2
-    for topic in OUTPUTS:
-        outputs = of_topic(read_bag(tmp_path / 'computed'), topic)
-        decoded = [replaying.decode(data, TYPES[topic]) for data in outputs]
-        assert [replaying.stamp_of(message) for message in decoded] == times
-
-
-def test_a_time_of_reception_that_no_stamp_can_hold_gives_no_output(tmp_path):
+    """No stamp can hold the last two, which give no output."""
     times = [5 * SECOND, 2**31 * SECOND - 1, 2**31 * SECOND, 2**63 - 1]
     messages = [('/rotor_state', time, rotor_bytes(0, position=[1.0])) for time in times]
     result = run(write_bag(tmp_path / 'source', messages), tmp_path / 'computed', config())
     assert (result.computed, result.rotor_input.rejected) == (2, {'stamp out of range': 2})
-    assert Counter(topic for topic, *_ in read_bag(tmp_path / 'computed'))['/rotor_state'] == 4
+    computed = read_bag(tmp_path / 'computed')
+    assert len(of_topic(computed, '/rotor_state')) == 4
+    for topic in OUTPUTS:
+        decoded = [replaying.decode(data, TYPES[topic]) for data in of_topic(computed, topic)]
+        assert [replaying.stamp_of(message) for message in decoded] == times[:2]
 
 
 def test_computing_a_computed_bag_changes_nothing(tmp_path):
@@ -216,19 +163,6 @@ def test_an_unusable_topic_is_named_and_nothing_is_written(options, words, tmp_p
         run(BAGS / 'servo_point_to_point', tmp_path / 'computed', **options)
     assert all(word in str(caught.value) for word in words)
     assert '\n' not in str(caught.value)
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize(
-    ('changed', 'words'),
-    [
-        ({'satellite_teeth': 80}, 'satellite_teeth'),
-        ({'output_joint': 'rotor'}, 'output_joint'),
-    ],
-)
-def test_a_config_that_fits_no_mechanism_is_refused(changed, words, tmp_path):
-    with pytest.raises(ValueError, match=words):
-        run(BAGS / 'driver_faults', tmp_path / 'computed', config(**changed))
     assert list(tmp_path.iterdir()) == []
 
 

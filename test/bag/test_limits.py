@@ -15,12 +15,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+import zstandard
 from blocked_bags import started
 from gear_recordings import old_recording
 from live import rotor_bytes
 from rosbags import rosbag1, rosbag2
 
-from gear_kinematics.bag.storage import zstd
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 pytestmark = pytest.mark.slow
@@ -113,7 +113,7 @@ def message(number: int, received: int, data: bytes) -> bytes:
 
 def chunk(*pieces: bytes | tuple[bytes, int]) -> bytes:
     """Make a chunk of records and of records that are repeated."""
-    size, compressor, packed = 0, zstd.ZstdCompressor(), []
+    size, compressor, packed = 0, zstandard.ZstdCompressor().compressobj(), []
     for piece in pieces:
         unit, count = piece if isinstance(piece, tuple) else (piece, 1)
         block = max(1, MB // len(unit))
@@ -139,8 +139,10 @@ TOPICS = b''.join((
     schema(2, 'geometry_msgs/msg/PoseArray'),
     channel(3, 2, '/body_poses'),
 ))  # fmt: skip
+STATISTICS = struct.pack('<BQ42xI', 11, 46 + 30 * MB, 30 * MB), (struct.pack('<HQ', 1, 1), 3 * MB)
 STATES = b''.join(message(1, k, rotor_bytes(k, ['rotor'], [0.1])) for k in range(1, 4))
 MAGIC = b'\x89MCAP0\r\n'
+TINY = MAGIC + TOPICS + chunk((message(1, 1, b''), 90_000))
 
 
 def mcap(path: Path, *records: bytes) -> Path:
@@ -152,7 +154,7 @@ def mcap(path: Path, *records: bytes) -> Path:
 
 def compressed(path: Path) -> Path:
     packed = path.with_name(f'{path.name}.zstd')
-    packed.write_bytes(zstd.compress(path.read_bytes()))
+    packed.write_bytes(zstandard.compress(path.read_bytes()))
     path.unlink()
     return packed
 
@@ -273,47 +275,23 @@ EXPANDS = 'compressed data expand to more than a bag of this size can hold'
 RECORDS = 'more records than a bag of this size can hold'
 DESCRIBED = 'the descriptions of its topics exceed'
 BAGS: dict[str, tuple[str, Maker]] = {
-    'chunks of 1 GiB': (
-        'a chunk of 10737\\d+ bytes is too large',
-        lambda p: mcap(p, 60 * chunk(*zeros(2**30))),
-    ),
     'chunks of 32 MiB': (EXPANDS, lambda p: mcap(p, 300 * chunk(*zeros(2**25 - 31)))),
-    'tiny messages': (RECORDS, lambda p: mcap(p, 60 * chunk((message(1, 1, b''), MB)))),
     'tiny records of no use': (RECORDS, lambda p: mcap(p, 60 * chunk((record(0x80), 3 * MB)))),
     'tiny messages in many files': (
         RECORDS,
-        lambda p: folder(
-            p,
-            {
-                f'b_{number}.mcap': MAGIC + TOPICS + chunk((message(1, 1, b''), 90_000))
-                for number in range(1000)
-            },
-        ),
+        lambda p: folder(p, dict.fromkeys((f'b_{k}.mcap' for k in range(1000)), TINY)),
     ),
     'definitions of 16 MB': (
         DESCRIBED,
-        lambda p: mcap(
-            p,
-            *(chunk(schema(number, 'a/msg/A', bytes(16 * MB))) for number in range(3, 9)),
-        ),
+        lambda p: mcap(p, *(chunk(schema(k, 'a/msg/A', bytes(16 * MB))) for k in range(3, 9))),
     ),
     'metadata of channels': (
         DESCRIBED,
-        lambda p: mcap(
-            p,
-            *(chunk(channel(number, 1, f'/{number}', bytes(8 * MB))) for number in range(4, 9)),
-        ),
+        lambda p: mcap(p, *(chunk(channel(k, 1, f'/{k}', bytes(8 * MB))) for k in range(4, 9))),
     ),
     'statistics in chunks': (
         EXPANDS,
-        lambda p: mcap(
-            p,
-            100
-            * chunk(
-                struct.pack('<BQ42xI', 11, 46 + 30 * MB, 30 * MB),
-                (struct.pack('<HQ', 1, 1), 3 * MB),
-            ),
-        ),
+        lambda p: mcap(p, 100 * chunk(*STATISTICS)),
     ),
     'a compressed file of compressed chunks': (
         EXPANDS,
@@ -324,11 +302,11 @@ BAGS: dict[str, tuple[str, Maker]] = {
         wide_mcap,
     ),
     'metadata of 100 000 topics': (
-        'metadata.yaml: YAML has 17388999 bytes, more than 4194304',
+        'metadata.yaml: longer than 4194304 bytes',
         lambda p: metadata(p, (f'/{number}' for number in range(100_000))),
     ),
     'metadata of small values': (
-        'metadata.yaml: more than 400000 values',
+        'metadata.yaml: not YAML: more than 400000 values',
         lambda p: folder(p, {'metadata.yaml': f'a: [{500_000 * "a,"}]'}),
     ),
     'metadata with a number of base 60': (
@@ -336,7 +314,7 @@ BAGS: dict[str, tuple[str, Maker]] = {
         lambda p: folder(p, {'metadata.yaml': f'a: 1{2_000_000 * ":1"}'}),
     ),
     'metadata with numbers of one hash': (
-        'metadata.yaml: a mapping of more than 100 numbers',
+        'metadata.yaml: not YAML: a mapping of more than 100 numbers',
         lambda p: folder(
             p, {'metadata.yaml': ''.join(f'{k * (2**61 - 1)}: a\n' for k in range(1, 150_000))}
         ),
@@ -345,17 +323,13 @@ BAGS: dict[str, tuple[str, Maker]] = {
         'more than 50000 files are listed',
         lambda p: metadata(p, ['/a'], (f'{number}.mcap' for number in range(200_000))),
     ),
-    'parameters of small values': (
-        'actuator.yaml: longer than 1048576 bytes',
-        lambda p: folder(p, {'b_0.mcap': b'', 'actuator.yaml': f'a: [{MB * "a,"}]'}),
-    ),
     'messages of 1 GiB': (
         'a compressed message is cut off or too large',
-        lambda p: database(p, [], 60 * [zstd.compress(bytes(2**30))]),
+        lambda p: database(p, [], 60 * [zstandard.compress(bytes(2**30))]),
     ),
     'messages of 32 MiB': (
         EXPANDS,
-        lambda p: database(p, [], 300 * [zstd.compress(bytes(2**25))]),
+        lambda p: database(p, [], 300 * [zstandard.compress(bytes(2**25))]),
     ),
     '300 000 topics in a database': (
         DESCRIBED,

@@ -6,8 +6,9 @@ import pytest
 from live import rotor_bytes
 from shipped_bags import BAGS, JOINT_STATE
 
-from gear_kinematics.bag import Bag, BagError, BagWriter
+from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.summary import summarise
+from gear_kinematics.bag.writing import BagWriter
 
 
 def write(path, *topics, names=('m1', 'm2'), lost=()) -> Path:
@@ -27,19 +28,6 @@ def write(path, *topics, names=('m1', 'm2'), lost=()) -> Path:
 def summary(path, *arguments):
     with Bag(path) as bag:
         return summarise(bag, *arguments)
-
-
-def test_parts_rates_and_joints_of_a_shipped_bag():
-    found = summary(BAGS / 'constant_speed_3000rpm')
-    assert found.messages == 9000
-    assert found.duration == pytest.approx(2.999, abs=0.01)
-    assert (found.unclear, found.damage) == ('', '')
-    assert [(topic.part, topic.name, topic.joints) for topic in found.topics] == [
-        ('rotor', '/rotor_state', ('rotor',)),
-        ('output', '/output_state', ('output_shaft',)),
-        ('poses', '/body_poses', ()),
-    ]
-    assert all(topic.rate == pytest.approx(1000.0, rel=1e-3) for topic in found.topics)
 
 
 def test_gaps_are_counted(tmp_path):

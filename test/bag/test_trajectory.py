@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 from gear_recordings import Samples, write_recording
 
-from gear_kinematics.bag import BagError, BagWriter
+from gear_kinematics.bag import BagError
 from gear_kinematics.bag.trajectory import MOST_TURNS, Trajectory, read_trajectory
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.kinematics import matrix_method, split_turns
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.share import share_directory
@@ -37,15 +38,10 @@ def test_recorded_positions_are_those_of_the_rotor(tmp_path):
     assert read.velocity == pytest.approx([-100.0, middle, -1900.0])
 
 
-def test_recorded_velocities_are_taken(shared_bag):
-    read = read_trajectory(shared_bag, config())
+def test_recorded_velocities_are_taken():
+    read = read_trajectory(share_directory() / 'bags' / 'constant_speed_3000rpm', config())
     assert read.velocity == pytest.approx(100.0 * math.pi, abs=1.0)
     assert len(set(read.velocity.tolist())) > 100  # the noise of the recording
-
-
-@pytest.fixture
-def shared_bag():
-    return share_directory() / 'bags' / 'constant_speed_3000rpm'
 
 
 def test_a_stamp_counts_once_and_a_jump_back_ends_the_motion(tmp_path):
@@ -96,15 +92,16 @@ def test_constant_speed_turns_from_zero(actuator):
         assert getattr(state, field) == pytest.approx(getattr(expected, field), abs=1e-9)
 
 
-@pytest.mark.parametrize('speed', [0.0, math.nan, math.inf])
-def test_speeds_without_motion_are_refused(speed):
-    with pytest.raises(ValueError, match='finite and not 0'):
-        Trajectory.at_constant_speed(speed)
-
-
-def test_too_many_turns_are_refused():
-    with pytest.raises(ValueError, match=f'2000 turns of the rotor are more than {MOST_TURNS}'):
-        Trajectory.at_constant_speed(TURN, duration=2000.0)
+@pytest.mark.parametrize(
+    ('speed', 'fault'),
+    [
+        *((speed, 'finite and not 0') for speed in (0.0, math.nan, math.inf)),
+        (TURN, f'2000 turns of the rotor are more than {MOST_TURNS}'),
+    ],
+)
+def test_speeds_without_a_motion_to_show_are_refused(speed, fault):
+    with pytest.raises(ValueError, match=fault):
+        Trajectory.at_constant_speed(speed, duration=2000.0)
 
 
 def test_even_intervals_reach_to_the_end():

@@ -15,7 +15,8 @@ from rosbags import rosbag2
 from rosbags.rosbag2.metadata import parse_qos
 from shipped_bags import BAGS, TYPES, read_bag, write_bag
 
-from gear_kinematics.bag import Bag, BagError, BagWriter, LiveBagWriter, TopicError
+from gear_kinematics.bag import Bag, BagError, TopicError
+from gear_kinematics.bag.writing import BagWriter, LiveBagWriter
 
 FORMS = [('mcap', 'none'), ('mcap', 'zstd'), ('sqlite3', 'none'), ('sqlite3', 'zstd')]
 WRITTEN = pytest.mark.parametrize(('storage', 'compression'), FORMS)
@@ -75,7 +76,8 @@ def test_added_topics_are_described(recorded, tmp_path, storage, compression):
 
 WRITE_AGAIN = """
 import sys
-from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.writing import BagWriter
 with Bag(sys.argv[1]) as bag, BagWriter(*sys.argv[2:]) as writer:
     for topic in bag.topics:
         writer.copy_topic(bag, topic)
@@ -281,7 +283,8 @@ def test_topics_of_ros1_are_copied_as_ros2(recorded, tmp_path):
 
 RECORD_AND_DIE = """
 import os, sys
-from gear_kinematics.bag import Bag, LiveBagWriter
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.writing import LiveBagWriter
 with Bag(sys.argv[1]) as source, LiveBagWriter(sys.argv[2]) as bag:
     messages = [m for m in source.messages(list(source.topics))]
     for topic in source.topics:

@@ -7,7 +7,8 @@ import pytest
 import replaying
 from shipped_bags import BAGS, JOINT_STATE, TYPES
 
-from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.writing import BagWriter
 
 SAMPLES = 300
 CHANGED = 100

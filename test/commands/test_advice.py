@@ -9,7 +9,8 @@ from blocked_bags import BAGS, refusal
 from gear_recordings import Samples, write_recording
 from live import rotor_bytes
 
-from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 
 SERVO = BAGS / 'servo_point_to_point'

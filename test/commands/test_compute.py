@@ -20,7 +20,8 @@ from gear_recordings import old_recording
 from live import rotor_bytes
 from shipped_bags import CONFIGS, JOINT_STATE
 
-from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.parameters import NodeParameters
 
 SERVO, SINGLE_TURN = BAGS / 'servo_point_to_point', BAGS / 'single_turn_encoder'

@@ -7,7 +7,8 @@ from blocked_bags import BAGS, gearkin, refusal
 from gear_recordings import Samples, write_recording
 from terminals import ENVIRONMENT, Terminal
 
-from gear_kinematics.bag import Bag, BagWriter
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.commands.cli import main
 
 SINGLE_TURN = BAGS / 'single_turn_encoder'

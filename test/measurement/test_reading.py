@@ -9,7 +9,7 @@ import pytest
 from gear_recordings import Gear, Samples, creep, quantised, ramps, write_csv, write_recording
 
 from gear_kinematics.bag import BagError
-from gear_kinematics.measurement import csv_files
+from gear_kinematics.measurement import csv_files, reading
 from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.encoder_step import Source, Step
 from gear_kinematics.measurement.lost_motion import Request, measure
@@ -261,6 +261,25 @@ def test_long_files_are_read_in_part(tmp_path, config, monkeypatch):
     np.testing.assert_array_equal(recording.locked.angle, rows[::4])
     np.testing.assert_array_equal(recording.locked.time, rows[::4])
     assert recording.remarks == ('one row of 4 is used: no more are kept in memory',)
+
+
+def test_long_bags_are_read_in_part(tmp_path, config, monkeypatch):
+    monkeypatch.setattr(reading, '_MOST_STATES', 6000)
+    rows = np.arange(10_000)
+    samples = Samples(START + MS * rows, 0.1 * rows)
+    recording = read(write_recording(tmp_path / 'bag', samples, samples), config)
+    np.testing.assert_array_equal(recording.encoders.rotor.stamp, samples.stamps[::4])
+    np.testing.assert_array_equal(recording.encoders.measured, samples.positions[::4])
+    assert recording.remarks == tuple(
+        f'{topic}: one state of 4 is used: no more are kept in memory'
+        for topic in ('/rotor_state', '/output_encoder')
+    )
+
+
+def test_a_bag_without_messages_is_refused(tmp_path, config):
+    path = write_recording(tmp_path / 'bag', Samples([], []))
+    with pytest.raises(BagError, match='no usable rotor states on /rotor_state'):
+        read(path, config)
 
 
 # Steps of an encoder

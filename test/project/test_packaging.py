@@ -28,18 +28,16 @@ SHARE = 'share/gear_kinematics'
 # Where rosdep calls a Python package other than Python does.
 ROSDEP_KEYS = {
     'PIL': 'python3-pil',
-    'backports': 'python3-rosbags-pip',  # rosbags brings it, and lz4
-    'lz4': 'python3-rosbags-pip',
     'matplotlib': 'python3-matplotlib',
     'numpy': 'python3-numpy',
     'rich': 'python3-rich',
-    'rosbags': 'python3-rosbags-pip',
     'scipy': 'python3-scipy',
     'tornado': 'python3-tornado',
     'yaml': 'python3-yaml',
 }
-# Extras, which rosdep does not know, and what Python itself has from 3.14 on.
+# Extras, libraries of compressed recordings, and what Python itself has from 3.14 on.
 WITHOUT_KEY = {'compression', 'distributed', 'imageio_ffmpeg', 'mapbox_earcut', 'plotly', 'shtab'}
+WITHOUT_KEY |= {'backports', 'lz4', 'rosbags', 'zstandard'}
 PYPI_NAMES = {'PIL': 'pillow', 'yaml': 'pyyaml', 'backports': 'backports.zstd'}
 
 

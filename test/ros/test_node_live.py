@@ -30,7 +30,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.bag import BagWriter
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.live import running_node
 from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from simulated_gear import GearSet, gears, simulate, strokes
 
-from gear_kinematics.bag import BagWriter
+from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.kinematics.rotor_turns import split_turns
 from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.recording import Encoders, RotorMotion

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from rosbags.rosbag2 import Reader
 
-from gear_kinematics.bag import BagWriter, Message
+from gear_kinematics.bag import Message
+from gear_kinematics.bag.writing import BagWriter
 
 BAGS = Path(__file__).resolve().parents[2] / 'bags'
 CONFIGS = BAGS.parent / 'config'

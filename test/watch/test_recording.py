@@ -9,7 +9,8 @@ from types import MappingProxyType
 import pytest
 from blocked_bags import wait_until
 
-from gear_kinematics.bag import Bag, BagError, LiveBagWriter
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.writing import LiveBagWriter
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.watch import recording, watcher
 from gear_kinematics.watch.polled import Taken

@@ -22,7 +22,8 @@ from watching import (
     node,
 )
 
-from gear_kinematics.bag import Bag, BagError, LiveBagWriter
+from gear_kinematics.bag import Bag, BagError
+from gear_kinematics.bag.writing import LiveBagWriter
 from gear_kinematics.watch.watcher import Answer, Watcher
 
 pytestmark = pytest.mark.live

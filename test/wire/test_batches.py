@@ -14,12 +14,10 @@ from wire import micro_ros_bytes
 
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.wire.batches import decode_joint_states, decode_pose_arrays
+from gear_kinematics.wire.batches import decode_joint_states
 from gear_kinematics.wire.cdr import PoseArrayTemplate
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
-decode_joint_state = harness('messages').decode_joint_state
-decode_pose_array = harness('messages').decode_pose_array
 SECOND = 1_000_000_000
 LARGEST = 2**51 * math.tau  # rad: beyond it a position is too large
 bounds = st.sampled_from([LARGEST, math.nextafter(LARGEST, math.inf), -1e300])
@@ -57,30 +55,20 @@ def same(left: float, right: float) -> bool:
     return left == right or (math.isnan(left) and math.isnan(right))
 
 
-@pytest.mark.slow
-@given(
-    st.lists(
-        st.tuples(st.integers(0, 2**60), st.sampled_from(['stator', 'base']), st.integers(0, 3)),
-        max_size=20,
+pose_arrays = st.builds(
+    lambda stamp, frame, count: PoseArrayTemplate(frame, count).encode(
+        stamp, *([[0.5 * k for k in range(7 * count)]] if count else [])
     ),
-    st.binary(max_size=40),
+    st.integers(0, 2**60),
+    st.sampled_from(['stator', 'base']),
+    st.integers(3, 5),
 )
-def test_pose_arrays_are_decoded_as_one_by_one(specifications, garbage):
-    messages = [
-        PoseArrayTemplate(frame, poses).encode(
-            stamp, *([[0.5 * k for k in range(7 * poses)]] if poses else [])
-        )
-        for stamp, frame, poses in specifications
-    ]
-    messages.append(garbage)
-    batch = decode_pose_arrays(messages, 2)
-    for row, data in enumerate(messages[:-1]):
-        message = decode_pose_array(data)
-        assert batch.malformed[row] == (len(message.numbers) != 14)
-        if not batch.malformed[row]:
-            assert batch.stamp[row] == message.stamp
-            assert batch.frame_ids[batch.frame[row]] == message.frame_id
-            assert tuple(batch.poses[row].ravel()) == message.numbers
+
+
+@pytest.mark.slow
+@given(st.lists(joint_states | pose_arrays | st.binary(max_size=40), max_size=20))
+def test_batches_are_read_as_rclpy_reads_one_by_one(batch):
+    harness('messages').check(harness('messages').SEPARATOR.join(batch))
 
 
 def test_padding_that_is_left_to_chance_makes_no_layout():

@@ -19,15 +19,6 @@ from gear_kinematics.wire.cdr import JointStateTemplate, MalformedMessageError, 
 texts = st.text(st.characters(codec='utf-8', exclude_characters='\0'), max_size=12)
 doubles = st.lists(st.floats(width=64), max_size=6)
 stamps = st.integers(-(2**31) * SECOND, 2**31 * SECOND - 1)
-messages = st.builds(
-    dict,
-    stamp=stamps,
-    names=st.lists(texts, max_size=6),
-    position=doubles,
-    velocity=doubles,
-    effort=doubles,
-    frame_id=texts,
-)
 FULL = rotor_bytes(
     12_000_000_034, ['m1', 'rotor'], [1.0, 2.0], [3.0, 4.0], [5.0, 6.0], frame_id='base'
 )
@@ -45,29 +36,8 @@ def bits(values) -> list[bytes]:
     return [struct.pack('<d', value) for value in values]
 
 
-def assert_decoded(data, message) -> None:
-    decoded = decode_joint_state(data)
-    assert decoded.stamp == message['stamp']
-    assert [name.decode() for name in decoded.names] == message['names']
-    for field in ('position', 'velocity', 'effort'):
-        assert bits(getattr(decoded, field)) == bits(message[field])
-
-
 def template_values(count):
     return st.lists(st.floats(width=64), min_size=count, max_size=count)
-
-
-@given(messages, st.booleans())
-def test_joint_state_of_either_byte_order_is_decoded(message, little_endian):
-    assert_decoded(rotor_bytes(**message, little_endian=little_endian), message)
-
-
-# DDS pads to four bytes; rclpy counts four bytes too many for each of three empty arrays.
-@pytest.mark.parametrize('count', [1, 2, 3, 4, 8, 12, 15, 16, 17, 64, 5000])
-@pytest.mark.parametrize('byte', [b'\0', b'\xff'])
-def test_bytes_behind_the_message_are_passed_over(count, byte):
-    assert decode_joint_state(FULL + count * byte) == decode_joint_state(FULL)
-    assert_as_rclpy(FULL + count * byte)
 
 
 @given(stamps, st.lists(texts, max_size=5), st.booleans(), st.booleans(), st.data())
@@ -86,10 +56,8 @@ def test_joint_state_template_gives_what_others_read_and_write(
     encoded = template.encode(stamp, *given_arrays)
     assert isinstance(encoded, bytes)
     assert encoded == rotor_bytes(stamp, names, **arrays)
-    message, expected = (
-        deserialize_message(encoded, JointState),
-        rotor_state(stamp, names, **arrays),
-    )
+    message = deserialize_message(encoded, JointState)
+    expected = rotor_state(stamp, names, **arrays)
     assert message.header == expected.header
     assert message.name == expected.name
     for field in present:
@@ -123,13 +91,6 @@ def test_pose_array_template_gives_what_others_read_and_write(stamp, frame_id, n
     typestore = get_typestore(Stores.ROS2_JAZZY)
     other = typestore.deserialize_cdr(encoded, 'geometry_msgs/msg/PoseArray')
     assert bytes(typestore.serialize_cdr(other, other.__msgtype__)) == encoded
-
-
-@pytest.mark.parametrize('missing', [-1, 1])
-def test_template_refuses_another_number_of_values(missing):
-    template = JointStateTemplate(['a', 'b'], velocity=False, effort=False)
-    with pytest.raises(struct.error):
-        template.encode(0, [0.0] * (2 + missing))
 
 
 @pytest.mark.parametrize(
@@ -178,22 +139,9 @@ def test_flipped_bits_are_read_as_rclpy_reads_them(offset):
         assert_as_rclpy(bytes(data))
 
 
-raw_strings = st.sampled_from(
-    [
-        b'',
-        b'\0',
-        b'rotor',
-        b'rotor\0',
-        b'ro\0tor\0',
-        b'ro\0tor',
-        b'rotor\0\0\0',
-        b'\xff\xfe',
-        b'm1',
-    ]
-) | st.binary(max_size=9)
-headers = st.tuples(
-    st.integers(-(2**31), 2**31 - 1), st.integers(0, 2**32 - 1), raw_strings
-)  # fmt: skip
+RAW = (b'', b'\0', b'rotor', b'rotor\0', b'ro\0tor\0', b'ro\0tor', b'rotor\0\0\0', b'\xff', b'm1')
+raw_strings = st.sampled_from(RAW) | st.binary(max_size=9)
+headers = st.tuples(st.integers(-(2**31), 2**31 - 1), st.integers(0, 2**32 - 1), raw_strings)
 
 
 def whole(text: bytes) -> str:

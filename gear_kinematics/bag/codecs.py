@@ -1,0 +1,113 @@
+"""Decompression within limits. Its libraries are imported where a bag needs them."""
+
+import os
+import sys
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import IO, Any, NamedTuple, Self
+
+from gear_kinematics.bag.errors import cause
+from gear_kinematics.bag.limits import Limits
+
+Decompressor = Callable[[bytes, int], tuple[bytes, bool]]
+"""From a frame and a limit to at most that many bytes, and whether they are all of it."""
+
+
+@cache
+def _zstd() -> Any:
+    try:
+        if sys.version_info >= (3, 14):
+            from compression import zstd  # noqa: PLC0415
+        else:
+            from backports import zstd  # noqa: PLC0415
+    except ModuleNotFoundError:
+        return _Zstandard()
+    return zstd
+
+
+class _Zstandard:
+    """What is needed of Python's module, by zstandard, which Debian and Ubuntu have packaged."""
+
+    def __init__(self) -> None:
+        import zstandard  # noqa: PLC0415
+
+        self._library = zstandard
+        self.ZstdFile = zstandard.open
+
+    def ZstdDecompressor(self) -> Self:
+        return self
+
+    def decompress(self, data: bytes, limit: int) -> bytes:
+        size = self._library.frame_content_size(data)  # -1 if its writer did not know it
+        reader = self._library.ZstdDecompressor().stream_reader(data)
+        content: bytes = reader.read(min(limit, size) if size >= 0 else limit)
+        self.eof = size in {-1, len(content)}  # nothing else tells a frame that is cut off
+        return content
+
+
+@cache
+def _lz4() -> Any:
+    import lz4.frame  # type: ignore[import-untyped]  # noqa: PLC0415
+
+    return lz4.frame
+
+
+def _decompress_zstd(data: bytes, limit: int) -> tuple[bytes, bool]:
+    decompressor = _zstd().ZstdDecompressor()
+    return decompressor.decompress(data, limit), decompressor.eof
+
+
+def _decompress_lz4(data: bytes, limit: int) -> tuple[bytes, bool]:
+    # The format expands to 255 times the size at most, and lz4 allocates the limit at once.
+    decompressor = _lz4().LZ4FrameDecompressor()
+    return decompressor.decompress(data, min(limit, 256 * len(data))), decompressor.eof
+
+
+class Codec(NamedTuple):
+    """A kind of compression."""
+
+    magic: bytes
+    """First bytes of a frame. CDR differs, as it begins with a zero."""
+    decompress: Decompressor
+    open: Callable[[IO[bytes]], Any]
+    """Opens a compressed file for reading."""
+
+
+CODECS: Mapping[str, Codec] = {
+    'zstd': Codec(b'\x28\xb5\x2f\xfd', _decompress_zstd, lambda file: _zstd().ZstdFile(file)),
+    'lz4': Codec(b'\x04\x22\x4d\x18', _decompress_lz4, lambda file: _lz4().LZ4FrameFile(file)),
+}
+"""Kinds by their names in bags."""
+
+
+def codec_of(data: bytes) -> Codec | None:
+    """Find how data are compressed by their first bytes; None if they are not."""
+    return next((codec for codec in CODECS.values() if data.startswith(codec.magic)), None)
+
+
+def decompressed(data: bytes, decompress: Decompressor, limits: Limits, what: str) -> bytes:
+    """Decompress a chunk or message.
+
+    Raises:
+        ValueError: if it is cut off, or expands too far; `what` it is begins the text.
+    """
+    content, whole = decompress(data, limits.expanded_chunk(len(data)))
+    limits.count(expanded=len(content))
+    if not whole:
+        raise ValueError(f'{what} is cut off or too large')
+    return content
+
+
+def decompress_file(source: IO[bytes], target: Path, codec: Codec) -> str:
+    """Decompress as much as possible; returns the cause of an early end, or an empty text."""
+    limit = left = Limits.expanded_file(os.fstat(source.fileno()).st_size)
+    with target.open('wb') as output, codec.open(source) as expanded:
+        try:
+            while piece := expanded.read1(2**18):  # returns partial data, unlike read()
+                left -= output.write(piece)
+                if left < 0:
+                    raise ValueError(f'it expands to more than {limit} bytes')
+        except Exception as error:  # noqa: BLE001, raised by two libraries
+            return cause(error)
+    return ''
