@@ -8,16 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.calibration import fit, judge, to_calibration
+from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.parameters import NodeParameters
 
 first, second, ratio = Path(sys.argv[1]), Path(sys.argv[2]), GearRatio.parse(sys.argv[3])
 config = replace(NodeParameters.load(), gear_ratio=str(ratio))
 result = fit([read_encoders(first, config)], ratio)
-calibration = to_calibration(result)
-Path('calibration.yaml').write_text(calibration.text(), 'utf-8')  # a parameter of the node
-judged = judge(*read_encoders(second, config), calibration)
+Path('calibration.yaml').write_text(result.calibration.text(), 'utf-8')  # a parameter of the node
+judged = judge(*read_encoders(second, config), result.calibration)
 print(f'rms of the error on {second.name}: {1e3 * judged.rms_before:.2f} mrad before, ', end='')
-print(f'{1e3 * judged.rms_after:.2f} mrad after; interval ± {1e3 * result.half_width:.2f} mrad')
+width = 1e3 * result.calibration.half_width
+print(f'{1e3 * judged.rms_after:.2f} mrad after; interval ± {width:.2f} mrad')
 print('it holds' if judged.holds else 'it does not hold')

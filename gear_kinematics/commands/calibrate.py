@@ -12,7 +12,7 @@ from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.measurement.calibration import fit, judge, to_calibration
+from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.calibration.document import check_document, document
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         estimate_ratio=options.fit_ratio,
     )
     if result.helps:
-        write_text(options.output, to_calibration(result).text())
+        write_text(options.output, result.calibration.text())
     reporter.write(
         document(result, options.output), [arguments.config_path(options, options.recordings[0])]
     )

@@ -3,7 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields, is_dataclass
+from dataclasses import asdict, dataclass, is_dataclass
 from fractions import Fraction
 from pathlib import Path
 from types import NoneType, UnionType
@@ -40,7 +40,7 @@ class CalibrationError(ValueError):
 
 
 @dataclass(frozen=True, slots=True)
-class Recording:
+class UsedRecording:
     """A recording that a calibration was made from."""
 
     name: str
@@ -128,7 +128,7 @@ class Calibration:
     """Program and version."""
     created: str
     """Date and time, ISO 8601."""
-    recordings: tuple[Recording, ...]
+    recordings: tuple[UsedRecording, ...]
     gear_ratio: Fraction
     """i, signed and exact."""
     ring_teeth: int | None
@@ -151,7 +151,7 @@ class Calibration:
 
     def __post_init__(self) -> None:
         """Check the numbers beyond their types."""
-        if faults := self._faults():
+        if faults := [fault for fault, holds in self._bounds().items() if not holds]:
             raise CalibrationError('; '.join(faults))
 
     @classmethod
@@ -167,12 +167,11 @@ class Calibration:
         """
         document = read_yaml(path, CalibrationError)
         try:
-            if not isinstance(document, dict) or document.get('schema') != SCHEMA:
+            if not isinstance(document, dict) or document.pop('schema', '') != SCHEMA:
                 raise CalibrationError(f'no calibration: its `schema` is not {SCHEMA}')
-            if document.get('units') != UNITS:
+            if document.pop('units', '') != UNITS:
                 raise CalibrationError(f'`units` must be {UNITS}')
-            entries = {key: document[key] for key in document if key not in {'schema', 'units'}}
-            calibration: Self = _read(cls, entries, '')
+            calibration: Self = _read(cls, document, '')
             if gear is not None:
                 calibration.check(gear)
         except CalibrationError as error:
@@ -209,39 +208,44 @@ class Calibration:
         """Rotor turns after which all orders repeat."""
         return math.lcm(*(order.cycles.denominator for order in self.orders))
 
-    def _faults(self) -> list[str]:
-        faults = []
-        if not self.gear_ratio:
-            faults.append('gear_ratio must not be 0')
-        if (self.ring_teeth is None) != (self.satellite_teeth is None):
-            faults.append('ring_teeth and satellite_teeth must both be given or both be null')
-        if any(order.cycles <= 0 for order in self.orders):
-            faults.append('the cycles of an order must be greater than 0')
-        elif self.period > _LONGEST_PERIOD:
-            faults.append(f'the orders repeat only after {self.period} rotor turns')
-        if any(stop.radius <= 0.0 for stop in self.hysteresis):
-            faults.append('a radius of the hysteresis must be greater than 0')
-        if self.compliance is not None and self.spans.torque is None:
-            faults.append('a compliance needs the span of the torque')
-        reach, slope = self._bounds()
-        if reach > math.pi:
-            faults.append(f"an error of the output of {reach:g} rad, beyond ±π, is no gear's")
-        if slope > _STEEPEST:
-            faults.append(f"an error of the output with a slope of {slope:g} is no gear's")
-        if not 0.0 < self.half_width <= self.outside_half_width:
-            faults.append('half_width must be greater than 0 and at most outside_half_width')
+    def _bounds(self) -> dict[str, bool]:
+        """Whether each bound of the numbers holds, by the fault where it does not."""
+        reach, slope = self._extremes()
         spans = {name: getattr(self.spans, name) for name in ('speed', 'torque', 'angle')}
-        faults += [
-            f'the span of the {name} must not end before it begins'
-            for name, span in spans.items()
-            if span is not None and span[0] > span[1]
-        ]
         size = 2 * len(self.orders) + len(self.hysteresis) + (self.compliance is not None)
-        if [len(row) for row in self.covariance] != size * [size]:
-            faults.append(f'covariance must have {size} rows of {size} numbers')
-        return faults
+        return {
+            'gear_ratio must not be 0': bool(self.gear_ratio),
+            'ring_teeth and satellite_teeth must both be given or both be null': (
+                (self.ring_teeth is None) == (self.satellite_teeth is None)
+            ),
+            'the cycles of an order must be greater than 0': all(
+                order.cycles > 0 for order in self.orders
+            ),
+            f'the orders repeat only after {self.period} rotor turns': (
+                self.period <= _LONGEST_PERIOD
+            ),
+            'a radius of the hysteresis must be greater than 0': all(
+                stop.radius > 0.0 for stop in self.hysteresis
+            ),
+            'a compliance needs the span of the torque': (
+                self.compliance is None or self.spans.torque is not None
+            ),
+            f"an error of the output of {reach:g} rad, beyond ±π, is no gear's": reach <= math.pi,
+            f"an error of the output with a slope of {slope:g} is no gear's": slope <= _STEEPEST,
+            'half_width must be greater than 0 and at most outside_half_width': (
+                0.0 < self.half_width <= self.outside_half_width
+            ),
+            **{
+                f'the span of the {name} must not end before it begins': span[0] <= span[1]
+                for name, span in spans.items()
+                if span is not None
+            },
+            f'covariance must have {size} rows of {size} numbers': (
+                [len(row) for row in self.covariance] == size * [size]
+            ),
+        }
 
-    def _bounds(self) -> tuple[float, float]:
+    def _extremes(self) -> tuple[float, float]:
         """Bounds of the deviation, rad, and of its derivative along the ideal output angle."""
         ratio, twist = abs(float(self.gear_ratio)), 0.0
         if self.compliance and self.spans.torque:
@@ -286,14 +290,12 @@ def _read(kind: Any, value: Any, where: str) -> Any:
 def _read_fields(kind: Any, value: Any, where: str) -> Any:
     if not isinstance(value, Mapping):
         raise CalibrationError(f'{where} must have named values, not {value!r}')
-    names = [field.name for field in fields(kind)]
-    place = f'{where}.' if where else ''
-    if missing := [place + name for name in names if name not in value]:
+    types, place = get_type_hints(kind), f'{where}.' if where else ''
+    if missing := [place + name for name in types if name not in value]:
         raise CalibrationError(f'{", ".join(missing)} is missing')
-    if unknown := [f'{place}{name}' for name in value if name not in names]:
+    if unknown := [f'{place}{name}' for name in value if name not in types]:
         raise CalibrationError(f'unknown: {", ".join(unknown)}')
-    hints = get_type_hints(kind)
-    return kind(**{name: _read(hints[name], value[name], place + name) for name in names})
+    return kind(**{name: _read(types[name], value[name], place + name) for name in types})
 
 
 def _read_scalar(kind: type, value: Any, where: str) -> Any:

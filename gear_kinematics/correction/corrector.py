@@ -3,12 +3,12 @@
 import math
 from itertools import pairwise
 from types import ModuleType
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.calibration_file import Calibration, Order
+from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.stops import StopOperators
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -55,16 +55,19 @@ class Corrector:
         self._per_rotor = float(1 / calibration.gear_ratio)
         self._period = calibration.period
         self._period_angle = self._period * TURN * abs(self._per_rotor)
-        self._orders = [_Order.of(order, self._ratio) for order in calibration.orders]
-        self._within_turn = [order for order in self._orders if order.denominator == 1]
-        self._beyond_turn = sum(
-            math.hypot(order.cos, order.sin) for order in self._orders if order.denominator > 1
-        )
+        # p of q cycles in a turn, over whole turns p mod q; cycles in a turn of the output.
+        self._orders = [
+            (p % q, q, p / q, self._ratio * (p / q), order.cos, order.sin)
+            for order in calibration.orders
+            for p, q in [order.cycles.as_integer_ratio()]
+        ]
+        self._within_turn = [order for order in self._orders if order[1] == 1]
+        self._beyond_turn = sum(math.hypot(*order[4:]) for order in self._orders if order[1] > 1)
         self._stops = StopOperators(calibration.hysteresis, self._per_rotor)
         self._mean_speed = _MeanSpeed()
-        self._segment = 0
+        self._segment, self._referenced = 0, True
         self._stamps = 4 * (-SECOND,)  # of the last samples
-        self._last = RotorSample(0, RotorPosition(0, 0.0), None, None)
+        self._last = RotorPosition(0, 0.0), math.nan  # and velocity
 
     def reset(self) -> None:
         """Forget the motion so far, as after homing: the plays are unknown."""
@@ -79,18 +82,19 @@ class Corrector:
         Args:
             sample: of the rotor.
             segment: as in `RotorSamples`; the plays are unknown after it has changed.
-            referenced: whether the rotor's turns are known.
+            referenced: whether the rotor's turns are known; the plays are unknown after homing.
         """
         stamp, (turns, angle), velocity, effort = sample
         first, second, third, last = self._stamps
-        gap = stamp - last
-        if segment != self._segment or not 0 <= gap <= MAX_GAP:
+        gap, measured = stamp - last, math.nan if velocity is None else velocity
+        homed = referenced != self._referenced
+        if homed or segment != self._segment or not 0 <= gap <= MAX_GAP:
             self.reset()
-            self._segment = segment
+            self._segment, self._referenced = segment, referenced
         elif gap > _SAMPLING or gap > last - first:
-            self._widen(gap, turns, angle, velocity)
+            self._widen(gap, turns, angle, measured)
         self._stamps = second, third, last, stamp
-        self._last = sample
+        self._last = sample.position, measured
         hysteresis = self._stops.follow(turns, angle)
         if velocity is None:
             velocity = self._mean_speed.update(stamp, turns, angle)
@@ -119,38 +123,39 @@ class Corrector:
             segment: the plays are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
-        gap = np.diff(stamp, prepend=self._stamps[-1])
+        stamps = np.append(self._stamps, stamp)
+        gap, usual = np.diff(stamps[3:]), np.minimum(stamps[3:-1] - stamps[:-4], _SAMPLING)
         anew = (gap < 0) | (gap > MAX_GAP) | (np.diff(segment, prepend=self._segment) != 0)
+        missed = np.flatnonzero(anew | (gap > usual)).tolist()
+        motion = turns, angle, velocity
         speed, hysteresis = velocity.copy(), np.empty((3, len(stamp)))
-        for start, stop in pairwise([0, *np.flatnonzero(anew).tolist(), len(stamp)]):
-            if start < stop and anew[start]:
+        for first, end in pairwise(sorted({0, *missed, len(stamp)})):
+            if anew[first]:
                 self.reset()
-            stamps = np.append(self._stamps, stamp[start:stop])
-            period = np.minimum(stamps[3:-1] - stamps[:-4], _SAMPLING)
-            gaps = start + np.flatnonzero(np.diff(stamps[3:]) > period)
-            for first, end in pairwise([start, *gaps.tolist(), stop]):
-                if first == end:
-                    continue
-                motion = turns[first:end], angle[first:end], velocity[first:end]
-                if first in gaps:
-                    self._widen(int(gap[first]), *(float(column[0]) for column in motion))
-                hysteresis[:, first:end] = self._stops.follow_all(*motion[:2])
-                *position, last_speed = (column[-1].item() for column in motion)
-                self._last = RotorSample(0, RotorPosition(*position), last_speed, None)
-            for row in start + np.flatnonzero(np.isnan(velocity[start:stop])):
+            elif gap[first] > usual[first]:
+                self._widen(int(gap[first]), *(float(column[first]) for column in motion))
+            hysteresis[:, first:end] = self._stops.follow_all(turns[first:end], angle[first:end])
+            for row in first + np.flatnonzero(np.isnan(velocity[first:end])):
                 speed[row] = self._mean_speed.update(
                     int(stamp[row]), int(turns[row]), float(angle[row])
                 )
-            self._stamps = tuple(stamps[-4:].tolist())
-        if len(segment):
-            self._segment = int(segment[-1])
+            *position, measured = (column[end - 1].item() for column in motion)
+            self._last = RotorPosition(*position), measured
+            self._segment = int(segment[end - 1])
+        self._stamps, self._referenced = tuple(stamps[-4:].tolist()), referenced
         torque = self._ratio * effort
         return self._correction(np, turns, angle, speed, torque, hysteresis, referenced)
 
-    def _widen(self, gap: int, turns: float, angle: float, velocity: float | None) -> None:
-        """Let the plays have moved wherever the rotor could have turned within a gap, ns."""
-        _, (turns_before, angle_before), before, _ = self._last
-        before, velocity = (math.nan if v is None else v for v in (before, velocity))
+    def _widen(self, gap: int, turns: float, angle: float, velocity: float) -> None:
+        """Let the plays have moved wherever the rotor could have turned within a gap, ns.
+
+        Args:
+            gap: ns.
+            turns: of the rotor after it.
+            angle: rad.
+            velocity: rad/s; NaN if it is unknown.
+        """
+        (turns_before, angle_before), before = self._last
         travel = (turns - turns_before) * TURN + angle - angle_before
         limits = gap / SECOND, self.max_acceleration
         most = _farthest(travel, before, velocity, *limits)
@@ -240,28 +245,6 @@ def _choose(condition: bool, yes: float, no: float) -> float:  # noqa: FBT001, a
 
 def _contains(span: tuple[float, float], value: Any) -> Any:
     return (span[0] <= value) & (value <= span[1])
-
-
-class _Order(NamedTuple):
-    """An order of the deviation."""
-
-    part: int
-    """Over whole turns of the rotor, its cycles add up to part/denominator."""
-    denominator: int
-    cycles: float
-    rate: float
-    """Cycles per turn of the output, with its sign."""
-    cos: float
-    sin: float
-
-    @classmethod
-    def of(cls, order: Order, ratio: float) -> Self:
-        part, denominator = (
-            order.cycles.numerator % order.cycles.denominator,
-            order.cycles.denominator,
-        )
-        cycles = float(order.cycles)
-        return cls(part, denominator, cycles, ratio * cycles, order.cos, order.sin)
 
 
 class _MeanSpeed:

@@ -44,7 +44,6 @@ class StopOperators:
         # The least and the greatest possible play of each operator, from the reference.
         self._least = len(self._stops) * [-math.inf]
         self._most = len(self._stops) * [math.inf]
-        self._known = False  # whether these are the same; then only the first are moved on
         self._reference: int | None = None  # rotor turns
 
     def widen(self, turns: float, angle: float, least: float, most: float) -> None:
@@ -54,8 +53,7 @@ class StopOperators:
         """
         if self._reference is None:
             return
-        if self._known:
-            self._most, self._known = self._least.copy(), False
+        self._most = self._most.copy()
         x = self._output_angle(turns, angle)
         low, high = x + least * self._per_rotor, x + most * self._per_rotor
         if self._per_rotor < 0.0:
@@ -68,14 +66,24 @@ class StopOperators:
         """Follow the motion to the next sample at the rotor angle 2π turns + angle."""
         self._count_from(turns)
         x = self._output_angle(turns, angle)
-        deviation, slope = self._moved(self._least, x)
-        if self._known:
-            return deviation, slope, 0.0
-        other, other_slope = self._moved(self._most, x)
-        ends = zip(self._stops, self._least, self._most, strict=True)
-        unknown = sum(0.5 * abs(stop[1]) * (most - least) for stop, least, most in ends)
-        self._known = self._least == self._most
-        return 0.5 * (deviation + other), 0.5 * (slope + other_slope), unknown
+        deviation = slope = unknown = 0.0
+        if self._least == self._most:
+            self._most = self._least  # both ends move as one
+        ends = [self._least] if self._most is self._least else [self._least, self._most]
+        for k, (radius, coefficient) in enumerate(self._stops):
+            part, states = coefficient / len(ends), 0.0
+            for plays in ends:
+                play = plays[k]
+                if play < x - radius:
+                    plays[k] = play = x - radius
+                elif play > x + radius:
+                    plays[k] = play = x + radius
+                else:
+                    slope += part
+                states += x - play
+            deviation += part * states
+            unknown += abs(part) * (ends[-1][k] - ends[0][k])
+        return deviation, slope, unknown
 
     def follow_all(self, turns: Array, angle: Array) -> Array:
         """Follow the motion to the next samples, arrays (n,); returns (3, n)."""
@@ -87,18 +95,16 @@ class StopOperators:
             near = np.abs(turns[start : start + _CHUNK] - self._reference) <= _FAR
             rows = slice(start, start + (len(near) if near.all() else int(np.argmin(near))))
             x = self._output_angle(turns[rows], angle[rows])
-            column = x[:, np.newaxis]
-            before = np.array([self._least, self._least if self._known else self._most])
-            least, most = ends = play_bounds(x, radii, *before)
-            self._least, self._most = least[-1].tolist(), most[-1].tolist()
-            plays = np.concatenate([before[:, np.newaxis], ends], axis=1)
-            standing = 0.5 * (np.diff(plays, axis=1) == 0.0).sum(axis=0)
+            before = np.array([self._least, self._most])[:, np.newaxis]
+            least, most = ends = play_bounds(x, radii, before)
+            self._least, self._most = ends[:, -1].tolist()
+            stands = np.diff(ends, axis=1, prepend=before) == 0.0
+            x = x[:, np.newaxis]
             found[:, rows] = (
-                0.5 * ((column - least) + (column - most)) @ coefficients,
-                standing @ coefficients,
+                0.5 * ((x - least) + (x - most)) @ coefficients,
+                0.5 * stands.sum(axis=0) @ coefficients,
                 0.5 * (most - least) @ np.abs(coefficients),
             )
-            self._known = self._least == self._most
             start = rows.stop
         return found
 
@@ -108,48 +114,39 @@ class StopOperators:
             self._reference = turns
         elif abs(turns - self._reference) > _FAR:
             shift = (turns - self._reference) * TURN * self._per_rotor
-            for plays in (self._least, self._most):
-                plays[:] = [play - shift for play in plays]
+            self._least = [play - shift for play in self._least]
+            self._most = [play - shift for play in self._most]
             self._reference = turns
 
     def _output_angle(self, turns: Any, angle: Any) -> Any:
         """The ideal output angle x from the reference."""
         return ((turns - self._reference) * TURN + angle) * self._per_rotor
 
-    def _moved(self, plays: list[float], x: float) -> tuple[float, float]:
-        """Move plays; returns the deviation that they make, and its slope."""
-        deviation = slope = 0.0
-        for k, (radius, coefficient) in enumerate(self._stops):
-            play = plays[k]
-            if play < x - radius:
-                plays[k] = play = x - radius
-            elif play > x + radius:
-                plays[k] = play = x + radius
-            else:
-                slope += coefficient
-            deviation += coefficient * (x - play)
-        return deviation, slope
 
-
-def play_bounds(x: Array, radii: Array, least: Array, most: Array) -> tuple[Array, Array]:
+def play_bounds(x: Array, radii: Array, before: Array) -> Array:
     """Follow play operators along x.
 
     Clipping to one interval and then to another is clipping to one interval again, so that all
     steps are composed in log2 n passes, without rounding.
 
     Args:
-        x: (n,), rad.
+        x: (n,), rad, at least one.
         radii: (stops,), rad.
-        least: (stops,): the least possible plays before; -inf where nothing is known.
-        most: (stops,): the greatest possible plays before; inf where nothing is known.
+        before: (2, 1, stops): the least and the greatest possible plays before; ∓inf where nothing
+            is known.
 
     Returns:
-        The least and the greatest possible plays at each x, (n, stops).
+        The least and the greatest possible plays at each x, (2, n, stops).
     """
-    low, high = x[:, np.newaxis] - radii, x[:, np.newaxis] + radii
-    step = 1
-    while step < len(x):
-        bounds = low[step:].copy(), high[step:].copy()
-        low[step:], high[step:] = np.clip(low[:-step], *bounds), np.clip(high[:-step], *bounds)
-        step *= 2
-    return np.clip(least, low, high), np.clip(most, low, high)
+    parts = []
+    for start in range(0, len(x), _CHUNK):
+        part = x[start : start + _CHUNK, np.newaxis]
+        low, high = part - radii, part + radii
+        step = 1
+        while step < len(part):
+            bounds = low[step:].copy(), high[step:].copy()
+            low[step:], high[step:] = np.clip(low[:-step], *bounds), np.clip(high[:-step], *bounds)
+            step *= 2
+        parts.append(np.clip(before, low, high))
+        before = parts[-1][:, -1:]
+    return np.concatenate(parts, axis=1)

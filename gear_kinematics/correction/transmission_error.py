@@ -8,21 +8,12 @@ import math
 from collections import Counter, deque
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from gear_kinematics.correction.reversals import Pair, Reversals, separate
-from gear_kinematics.correction.window import SlidingWindow
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN, split_turns
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
-Array = NDArray[np.float64]
-
 _DEPTH = 8192
 """Samples of each kind that are kept."""
-_BINS = 720
-"""Bins of output angles in a turn, in which both directions are compared."""
 
 
 class ErrorSample(NamedTuple):
@@ -39,6 +30,10 @@ class ErrorSample(NamedTuple):
     """Of the output: 1, -1, or 0 until it has moved far enough after a reversal."""
     speed: float
     """Of the ideal output angle, rad/s."""
+    deviation: float = 0.0
+    """Of the calibrated from the ideal output angle, rad."""
+    half_width: float = math.nan
+    """Of the calibration's interval, rad; NaN without a calibration."""
 
 
 class Direction:
@@ -75,6 +70,8 @@ class _Ideal(NamedTuple):
     turns: int
     angle: float
     direction: int
+    deviation: float
+    half_width: float
 
 
 class TransmissionError:
@@ -108,8 +105,15 @@ class TransmissionError:
         self._last_measured: int | None = None
         self._first_error: float | None = None
 
-    def add_ideal(self, stamp: int, turns: int, angle: float) -> list[ErrorSample]:
-        """Add the ideal output angle 2π `turns` + `angle` at a stamp, ns.
+    def add_ideal(
+        self,
+        stamp: int,
+        turns: int,
+        angle: float,
+        deviation: float = 0.0,
+        half_width: float = math.nan,
+    ) -> list[ErrorSample]:
+        """Add the ideal output angle 2π `turns` + `angle` at a stamp, ns, and its correction, rad.
 
         A stamp that is not newer than the last is ignored; one that is older by more than a second
         resets the comparison.
@@ -128,7 +132,7 @@ class TransmissionError:
                 self._direction.reset()
             else:
                 direction = self._direction.move((turns - last.turns) * TURN + angle - last.angle)
-        self._ideal.append(_Ideal(stamp, turns, angle, direction))
+        self._ideal.append(_Ideal(stamp, turns, angle, direction, deviation, half_width))
         return self._match()
 
     def add_measured(self, stamp: int, angle: float) -> list[ErrorSample]:
@@ -181,62 +185,13 @@ class TransmissionError:
             self._first_error = error
         error = self._first_error + math.remainder(error - self._first_error, TURN)
         self.matched += 1
-        known = before.direction == after.direction
-        direction = after.direction if known else 0
-        speed = step / interval * SECOND
-        return ErrorSample(stamp, error, before.turns, ideal, direction, speed)
-
-
-class ErrorStatistics(NamedTuple):
-    """Statistics of the transmission error; None where there are no samples."""
-
-    samples: int = 0
-    mean: float | None = None
-    """rad."""
-    peak_to_peak: float | None = None
-    """rad."""
-    mean_forward: float | None = None
-    """rad."""
-    mean_backward: float | None = None
-    """rad."""
-    reversals: Reversals | None = None
-    """Lost motion and delay; None unless both directions cover the same angles."""
-
-
-class ErrorWindow:
-    """The transmission errors of a sliding window."""
-
-    def __init__(self, length: int) -> None:
-        """Start empty; `length` is in ns."""
-        self._length = length
-        self._samples = SlidingWindow(5)
-
-    def add(self, sample: ErrorSample) -> None:
-        """Add the next error; one that is older than the last begins anew."""
-        self._samples.add(*sample)
-
-    def statistics(self) -> ErrorStatistics:
-        """Evaluate the window, in 0.6 ms for 10 000 samples."""
-        error, turns, ideal, direction, speed = self._samples.columns(self._length)
-        if not len(error):
-            return ErrorStatistics()
-        bins = (turns - turns[0]) * _BINS + np.floor(ideal / TURN * _BINS)
-        ways = direction > 0, direction < 0
-        forward, backward = (_means(bins[rows], error[rows], speed[rows]) for rows in ways)
-        _, there, back = np.intersect1d(forward[0], backward[0], return_indices=True)
-        _, difference, speed_difference = backward[:, back] - forward[:, there]
-        means = [float(error[rows].mean()) if rows.any() else None for rows in ways]
-        return ErrorStatistics(
-            len(error),
-            float(error.mean()),
-            float(np.ptp(error)),
-            means[0],
-            means[1],
-            separate([Pair(difference, -speed_difference)]),
+        return ErrorSample(
+            stamp,
+            error,
+            before.turns,
+            ideal,
+            after.direction if before.direction == after.direction else 0,
+            step / interval * SECOND,
+            before.deviation + share * (after.deviation - before.deviation),
+            max(before.half_width, after.half_width),
         )
-
-
-def _means(bins: Array, *columns: Array) -> Array:
-    """The bins that occur, in order, and the means of columns in each, (1 + columns, bins)."""
-    found, place, counts = np.unique(bins, return_inverse=True, return_counts=True)
-    return np.array([found, *(np.bincount(place, column) / counts for column in columns)])

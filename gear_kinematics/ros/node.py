@@ -19,8 +19,8 @@ from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
 from std_srvs.srv import Trigger
 
-from gear_kinematics.correction.calibrated_output import CalibratedOutput
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
@@ -70,7 +70,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._gear = parameters.gear
         self._input = RotorInput(parameters)
         self._encoder = OutputEncoder(parameters)
-        self._calibrated: CalibratedOutput | None = None
+        self._corrector: Corrector | None = None
         self._display: Display | None = None
         self._prepare([('calibration', parameters.calibration)])
         self._configure()
@@ -150,34 +150,36 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _prepare(self, changed: Iterable[tuple[str, Any]]) -> None:
         """Make what the changed parameters affect and can be refused for, also one set twice."""
-        settings, calibrated = self._settings, self._calibrated
+        settings, corrector = self._settings, self._corrector
         messages = state_messages(settings)
         for name, value in changed:
             if name in PARAMETERS:
                 settings = replace(settings, **{name: value})
                 messages = state_messages(settings)
             if name == 'calibration':
-                calibrated = self._calibrated_output(value)
-        self._prepared = settings, messages, calibrated
+                corrector = self._corrector_of(value)
+        self._prepared = settings, messages, corrector
 
-    def _calibrated_output(self, value: str) -> CalibratedOutput | None:
+    def _corrector_of(self, value: str) -> Corrector | None:
         """Load the calibration that a value of the parameter names, if any."""
         if not value:
             return None
         path = self._calibrations.get(value, Path(value))
-        return CalibratedOutput(Calibration.load(path, self._gear))
+        return Corrector(Calibration.load(path, self._gear))
 
     def _configure(self, _changed: Collection[Parameter] = ()) -> None:
         """Apply what was prepared, at the start and after every change."""
-        self._settings, self._messages, self._calibrated = self._prepared
+        before = self._corrector
+        self._settings, self._messages, self._corrector = self._prepared
         self._input.parameters = self._settings
         if not self._encoder.fits(self._settings):
             self._encoder = OutputEncoder(self._settings)  # discards earlier errors
-            if self._calibrated:
-                self._calibrated.reset()
-        if self._calibrated:
-            limit = self._settings.max_rotor_acceleration
-            self._calibrated.corrector.max_acceleration = limit
+            if self._corrector:
+                self._corrector.reset()
+        elif self._corrector is not before:
+            self._encoder.window.clear()
+        if self._corrector:
+            self._corrector.max_acceleration = self._settings.max_rotor_acceleration
         if self._display:
             self._display.update(self._settings)
 
@@ -189,15 +191,16 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
         self._outputs.send(self._messages.encode(sample, self._subscribed_states))
-        if self._calibrated:  # also without a listener, to follow the motion
-            correction = self._calibrated.correct(
+        correction = None
+        if self._corrector:  # also without a listener, to follow the motion
+            correction = self._corrector.correct(
                 sample, segment=self._input.segment, referenced=self._input.referenced
             )
             wanted = self._subscribed_corrections
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
         self._monitor.published += 1
         if self._encoder.received and self._input.referenced:
-            self._publish_errors(self._encoder.follow(sample))
+            self._publish_errors(self._encoder.follow(sample, correction))
 
     def _on_output_encoder(self, data: bytes) -> None:
         self._encoder_monitor.last_input = time.monotonic()
@@ -207,8 +210,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._warn_of(topics.OUTPUT_ENCODER, rejection)
 
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
-        if self._calibrated:
-            self._calibrated.compare(samples)
         for topic in self._subscribed_errors:
             self._outputs.send((topic, self._messages.transmission_error(s)) for s in samples)
 
@@ -256,13 +257,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             driver.count_losses()
         self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
-        now, window = time.monotonic(), self._settings.transmission_error_window
-        fit = self._calibrated.fit(window) if self._calibrated else None
+        now = time.monotonic()
         reports = {
             'rotor input': self._monitor.report(self._input, now),
-            'transmission error': self._encoder_monitor.report(
-                self._encoder, self._settings, now, fit
-            ),
+            'transmission error': self._encoder_monitor.report(self._encoder, self._settings, now),
         }
         for driver in self._drivers:
             driver.log_silence()

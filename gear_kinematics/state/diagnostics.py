@@ -5,9 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Self
 
-from gear_kinematics.correction.calibrated_output import CalibrationFit
+from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.correction.reversals import Reversals
-from gear_kinematics.correction.transmission_error import ErrorStatistics
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import Mechanism, loop_closure, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -159,16 +158,11 @@ class EncoderMonitor(DriverMonitor):
     _compared: int = 0
 
     def report(
-        self,
-        encoder: OutputEncoder,
-        parameters: NodeParameters,
-        now: float,
-        fit: CalibrationFit | None = None,
+        self, encoder: OutputEncoder, parameters: NodeParameters, now: float
     ) -> Report | None:
         """Report on an encoder in the time since the last report, until now.
 
-        None until it has sent a message. `parameters` have the limits, and `fit` says how well the
-        calibration, if any, fits the transmission error.
+        None until it has sent a message. `parameters` have the limits.
         """
         if self.last_input is None:
             return None
@@ -204,7 +198,7 @@ class EncoderMonitor(DriverMonitor):
             'mean backward (rad)': _number(error.mean_backward),
             **_reversals(error.reversals),
         }
-        if fit and error.samples:
+        if fit := error.calibration:
             if not fit.fits:
                 warnings.append(Fault('calibration no longer fits', 'Calibrate the gear again.'))
             values['explained by the calibration (%)'] = _percent(fit.explained)

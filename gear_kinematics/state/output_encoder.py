@@ -5,11 +5,9 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from gear_kinematics.correction.transmission_error import (
-    ErrorSample,
-    ErrorWindow,
-    TransmissionError,
-)
+from gear_kinematics.correction.corrector import Correction
+from gear_kinematics.correction.error_window import ErrorWindow
+from gear_kinematics.correction.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.cdr import SECOND
@@ -72,10 +70,13 @@ class OutputEncoder:
         angle = measured_angle(self._parameters, position)
         return self._note(self.comparison.add_measured(stamp or now(), angle))
 
-    def follow(self, sample: RotorSample) -> Sequence[ErrorSample]:
+    def follow(
+        self, sample: RotorSample, correction: Correction | None = None
+    ) -> Sequence[ErrorSample]:
         """Process the rotor's next sample, with known turns; returns the same as `accept`."""
-        turns, angle = self._ratio.output_angle(*sample.position, math)
-        return self._note(self.comparison.add_ideal(sample.stamp, turns, angle))
+        ideal = self._ratio.output_angle(*sample.position, math)
+        corrected = (correction.deviation, correction.half_width) if correction else ()
+        return self._note(self.comparison.add_ideal(sample.stamp, *ideal, *corrected))
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
         for sample in samples:

@@ -123,19 +123,6 @@ def test_slope_is_the_derivative_along_the_output_angle():
         assert corrections[3].slope == pytest.approx(change / (-2 * step / -19), rel=1e-5)
 
 
-def test_interval_is_wide_until_the_output_has_travelled_twice_the_radii():
-    made = calibration(compliance=None)
-    unknown = 0.6 * 4e-4 + 0.2 * 2e-3
-    corrector = Corrector(made)
-    travels = (0.0, 8e-4, 2e-3, 4e-3 - 1e-9, 4e-3 + 1e-9, 3e-3, 0.0)
-    widths = [c.half_width for c in correct_all(corrector, at_angles(*(19 * x for x in travels)))]
-    assert widths[0] == pytest.approx(1e-4 + unknown)
-    assert widths[1] == pytest.approx(1e-4 + 0.2 * (2e-3 - 4e-4))
-    assert widths[2] == pytest.approx(1e-4 + 0.2 * 1e-3)
-    assert widths[3] > 1e-4
-    assert widths[4:] == [1e-4, 1e-4, 1e-4]
-
-
 @pytest.mark.parametrize('cause', ['gap', 'clock', 'segment', 'reset'])
 def test_plays_are_unknown_again_after_motion_was_missed(cause):
     corrector = Corrector(calibration(compliance=None))
@@ -177,6 +164,16 @@ def test_interval_stays_where_a_gap_hides_no_reversal(most, width):
     )
     if width > 1e-4:  # histories meet again
         assert correct_all(corrector, motion[61:])[-1].half_width == 1e-4
+
+
+def test_homing_makes_the_play_unknown():
+    corrector = Corrector(calibration(orders=(), compliance=None))
+    widths = [
+        corrector.correct(sample, referenced=k > 1).half_width
+        for k, sample in enumerate(at_angles(0.0, 1.0, 2.0, 3.0))
+    ]
+    unknown = 0.6 * 4e-4 + 0.2 * 2e-3
+    assert widths == pytest.approx([1e-4 + unknown, 1e-4, 1e-4 + unknown, 1e-4])
 
 
 def half_width(sample: RotorSample, *, angle_span=(-4.0, 4.0), **options) -> float:
@@ -253,14 +250,6 @@ def test_missing_velocity_is_that_of_the_travel(speed, inside):
     widths = [correction.half_width for correction in correct_all(corrector, motion)]
     assert widths[199] == 2e-3  # unknown up to here: the first of two tenths may be incomplete
     assert set(widths[200:]) == {1e-4 if inside else 2e-3}
-
-
-def test_correction_keeps_its_precision_after_many_turns():
-    made = calibration()
-    motion = [(0, angle) for angle in np.cumsum(np.tile([0.01, 0.02, -0.025], 20)).tolist()]
-    near = correct_all(Corrector(made), samples(motion, effort=0.0))
-    far = [(19 * 10**12 + turns, angle) for turns, angle in motion]
-    assert correct_all(Corrector(made), samples(far, effort=0.0)) == near
 
 
 def test_calibration_without_terms_adds_its_constant():

@@ -9,14 +9,13 @@ from simulated_encoders import (
     MS,
     TURN,
     Drive,
-    even_strokes,
-    ramped_strokes,
     sine_strokes,
     stamps,
 )
 
+from gear_kinematics.correction.error_window import ErrorWindow
 from gear_kinematics.correction.reversals import Pair, separate
-from gear_kinematics.correction.transmission_error import ErrorWindow, TransmissionError
+from gear_kinematics.correction.transmission_error import TransmissionError
 
 PLAY = 3.0 * ARC_MINUTE
 DELAY = 2e-3  # s
@@ -58,41 +57,6 @@ def test_lost_motion_is_the_play_at_any_time(delay):
     np.testing.assert_allclose(delays, delay, rtol=0, atol=2e-4)
 
 
-@pytest.mark.slow
-def test_at_an_even_speed_a_delay_is_not_called_play():
-    drive = Drive(PLAY, ERRORS, DELAY, noise=0.1 * ARC_MINUTE, **STEPS)
-    found = live(drive, even_strokes(1.0, 8.0), 31.0)
-    known = [reversals for reversals in found if reversals]
-    assert len(known) >= 15
-    for reversals in known:
-        assert reversals.lost_motion is None
-        assert reversals.delay is None
-        expected = PLAY + DELAY * 2.0 / 8.0
-        assert reversals.difference.value == pytest.approx(expected, abs=0.1 * ARC_MINUTE)
-        assert reversals.speed == pytest.approx(2.0 / 8.0, rel=1e-2)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ('profile', 'delay'),
-    [
-        (sine_strokes(1.0, 8.0), DELAY),
-        (ramped_strokes(1.0, 4.0, 1.0), DELAY),
-        (sine_strokes(0.3, 2.0), 1e-3),
-    ],
-    ids=['long', 'ramped', 'short'],
-)
-def test_intervals_of_the_live_values_hold_for_any_seed(profile, delay):
-    inside, seeds = 0, 20
-    for seed in range(seeds):
-        drive = Drive(PLAY, ERRORS | {1520: 0.1 * ARC_MINUTE}, delay, noise=1e-5 * seed, **STEPS)
-        reversals = live(drive, profile, 16.0 + seed / seeds, rate=250.0, seed=seed)[-1]
-        estimates = (reversals.lost_motion, PLAY), (reversals.delay, delay)
-        inside += sum(abs(e.value - true) <= e.uncertainty for e, true in estimates)
-    # 95 % of 40: fewer than 34 have a probability of less than 1 %.
-    assert inside >= 34
-
-
 # Pairs of runs
 
 
@@ -114,15 +78,6 @@ def test_noise_of_the_speed_is_no_variation_of_it():
     noisy = 0.5 + 0.3 * np.random.default_rng(3).standard_normal(400)
     true = Pair(1e-3 + 2e-3 * np.full(400, 0.5), noisy)
     assert separate([true]).lost_motion is None
-
-
-def test_known_delay_is_taken_out_at_any_speed():
-    pairs = [pair(np.full(50, 0.5), 1e-3, 2e-3, 1e-6, seed) for seed in range(5)]
-    found = separate(pairs, delay=2e-3)
-    assert abs(found.lost_motion.value - 1e-3) <= 2.0 * found.lost_motion.uncertainty
-    assert found.lost_motion.uncertainty < 1e-6
-    assert found.lost_motion.degrees_of_freedom == 4
-    assert (found.delay.value, found.delay.uncertainty) == (2e-3, 0.0)
 
 
 def test_nothing_in_common_is_nothing_found():

@@ -8,11 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gear_kinematics.correction.error_window import ErrorStatistics, ErrorWindow
 from gear_kinematics.correction.transmission_error import (
     Direction,
     ErrorSample,
-    ErrorStatistics,
-    ErrorWindow,
     TransmissionError,
 )
 
@@ -99,15 +98,6 @@ def test_last_bits_survive_any_number_of_turns():
     assert (sample.turns, sample.ideal) == (10**12, pytest.approx(3.05))
 
 
-@pytest.mark.parametrize('turns', [0, -3, 1000])
-def test_single_and_multi_turn_encoders_give_the_same(turns):
-    comparison = make()
-    comparison.add_ideal(START, 5, 1.0)
-    comparison.add_ideal(START + MS, 5, 1.0)
-    (sample,) = comparison.add_measured(START + MS, 1.25 + turns * 2 * math.pi)
-    assert sample.error == pytest.approx(0.25, abs=1e-12)
-
-
 def test_errors_are_continuous_at_an_offset_of_half_a_turn():
     comparison = make()
     comparison.add_ideal(START, 0, 0.0)
@@ -129,6 +119,14 @@ def test_nothing_is_known_before_there_are_ideal_samples_on_both_sides():
     assert sample == ErrorSample(
         START + 4 * MS, pytest.approx(0.06), 0, pytest.approx(0.04), 1, pytest.approx(10.0)
     )
+
+
+def test_correction_is_interpolated_with_the_wider_interval():
+    comparison = make()
+    comparison.add_ideal(START, 0, 0.0, 1e-3, 2e-4)
+    comparison.add_measured(START + 1 * MS, 0.0)
+    (sample,) = comparison.add_ideal(START + 4 * MS, 0, 0.0, 5e-3, 1e-4)
+    assert (sample.deviation, sample.half_width) == (pytest.approx(2e-3), 2e-4)
 
 
 def test_nothing_is_compared_across_a_gap():

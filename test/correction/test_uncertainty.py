@@ -90,15 +90,6 @@ def test_relative_uncertainty_of_the_inverse_is_the_same():
     assert inverse.degrees_of_freedom == estimate.degrees_of_freedom
 
 
-def test_intervals_hold_the_mean_as_often_as_they_say():
-    generator, hits, trials = np.random.default_rng(5), 0, 2000
-    for _ in range(trials):
-        estimate = Estimate.of_mean(generator.normal(3.0, 0.7, 4).tolist())
-        hits += abs(estimate.value - 3.0) <= estimate.uncertainty
-    # Within four standard deviations of a binomial count.
-    assert abs(hits - 0.95 * trials) < 4 * math.sqrt(trials * 0.95 * 0.05)
-
-
 def test_jackknife_of_a_mean_is_its_standard_error():
     values = np.random.default_rng(1).standard_normal(24)
     without = [np.delete(values, k).mean() for k in range(24)]

@@ -11,9 +11,6 @@ from gear_kinematics.measurement.calibration.selection import (
     widening,
 )
 
-T_975 = {5: 2.5706, 23: 2.0687}
-"""Student's t from tables; for infinitely many degrees of freedom it is 1.9600."""
-
 
 def test_standard_error_is_that_of_the_mean_of_independent_blocks():
     values = np.array([1.0, 3.0] * 12)
@@ -76,24 +73,13 @@ def test_blocks_cover_all_samples_once():
         assert [k for part in rows for k in range(part.start, part.stop)] == list(range(count))
 
 
-def test_own_unknowns_of_each_recording_are_found_beside_the_common_one(line):
-    products, blocks = line
-    equations = NormalEquations(products, blocks, np.arange(len(blocks)), 1, (0, 1), (0,))
-    assert equations.solve([0])[0] == pytest.approx([2.0])
-    for recording, zero in enumerate((5.0, -3.0)):
-        own, *without = equations.own(recording, [0])
-        assert own == pytest.approx([zero, 0.5])
-        assert without == pytest.approx(np.tile(own, (len(blocks), 1)))
-
-
 def test_prediction_has_the_zero_of_what_was_left_out_only_if_it_is_to_be_a_check(line):
     products, blocks = line
     halves = np.array([k % 12 >= 6 for k in range(len(blocks))], int)
+    own = halves + 2 * np.array([block.recording for block in blocks])
     errors = {
-        checked: NormalEquations(
-            products, blocks, halves, 1, (0, 1), (0,), own_of_fold=checked
-        ).errors([0])
-        for checked in (False, True)
+        checked: NormalEquations(products, blocks, halves, 1, (0, 1), (0,), groups).errors([0])
+        for checked, groups in ((False, None), (True, own))
     }
     # The drift of ±0.5 over a recording remains: its variance is 1/12, in a half of it 1/48.
     assert errors[False].mean() == pytest.approx(1.0 / 12.0, rel=0.01)

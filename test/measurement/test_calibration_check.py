@@ -11,8 +11,8 @@ from calibrations import calibration
 from gear_recordings import encoders
 from simulated_gear import GearSet, gears, simulate, strokes, wandering
 
-from gear_kinematics.correction.calibrated_output import CalibrationFit
-from gear_kinematics.measurement.calibration import fit, judge, to_calibration
+from gear_kinematics.correction.calibration_fit import CalibrationFit
+from gear_kinematics.measurement.calibration import fit, judge
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import RecordingError
 
@@ -31,7 +31,7 @@ def test_interval_holds_on_the_other_half_whatever_the_delay(delay):
     for seed in range(3):
         first, second = two_halves(setting, seed)
         for used, other in ((first, second), (second, first)):
-            judged = judge(*other, to_calibration(fit([used], Fraction(100))))
+            judged = judge(*other, fit([used], Fraction(100)).calibration)
             assert judged.holds
             assert judged.rms_after < judged.rms_before / 4.0
             coverage.append(1.0 - judged.fit.outside)
@@ -44,7 +44,7 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
     for delay in (0.0, 2e-3):
         first, second = two_halves(replace(GearSet(1), delay=delay), 3, strokes, 40.0)
         calibrated = fit([first], Fraction(-19), MECHANISM)
-        delays[delay] = judge(*second, to_calibration(calibrated))
+        delays[delay] = judge(*second, calibrated.calibration)
         assert calibrated.recordings[0].delay.value == pytest.approx(delay, abs=1.5e-4)
     found = delays[2e-3]
     difference = found.delay.value - delays[0.0].delay.value
@@ -63,7 +63,7 @@ def test_without_times_there_is_no_delay():
     first, second = two_halves(GearSet(1), 3, strokes, 30.0, timed=False)
     result = fit([first], Fraction(-19), MECHANISM)
     assert result.recordings[0].delay is None
-    judged = judge(*second, to_calibration(result))
+    judged = judge(*second, result.calibration)
     assert judged.delay is None
     assert judged.with_delay == (judged.rms_before, judged.rms_after)
     assert judged.rms_after < 0.3 * judged.rms_before

@@ -1,6 +1,8 @@
 """Stop operators along a motion, against a loop over its samples."""
 
 from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -8,7 +10,8 @@ from gear_recordings import encoders
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gear_kinematics.measurement.calibration.terms import TurningPoints
+from gear_kinematics.measurement.calibration.terms import Samples
+from gear_kinematics.measurement.recording import Encoders, Recording
 
 RADIUS = 0.25
 
@@ -25,6 +28,12 @@ def states(x, starts, radius=RADIUS):
     return np.array(found).T
 
 
+def followed(both: Encoders):
+    """What is said of them of a gear with a ratio of 1."""
+    recording = Recording(Path(), '', (), len(both.measured), None, both)
+    return Samples(recording, both, Fraction(1)).stop_states(RADIUS)
+
+
 step = st.sampled_from([0.0, 0.01, -0.02, 0.1, -0.1, 0.3, -0.7])
 steps = st.lists(step, min_size=1, max_size=60)
 
@@ -34,16 +43,11 @@ def test_states_are_those_of_the_definition(moves, unknown):
     x = np.cumsum(moves)
     starts = sorted({0, *(k for k in unknown if k < len(x))})
     low, high = states(x, starts)
-    middle, known = TurningPoints(encoders(x, x), x, np.array(starts)).stop_states(RADIUS)
+    both = encoders(x, x)
+    segment = np.cumsum(np.isin(np.arange(len(x)), starts))
+    middle, known = followed(replace(both, rotor=both.rotor._replace(segment=segment)))
     assert middle == pytest.approx(0.5 * (low + high), abs=1e-12)
     assert np.array_equal(known, high - low < 1e-9)
-
-
-def test_long_motions_are_followed_in_parts():
-    x = np.cumsum(np.random.default_rng(1).choice([-0.01, 0.01], 10_000))
-    low, high = states(x, [0, 7000])
-    middle, _ = TurningPoints(encoders(x, x), x, np.array([0, 7000])).stop_states(RADIUS)
-    assert middle == pytest.approx(0.5 * (low + high), abs=1e-9)
 
 
 def test_state_between_two_samples_of_the_rotor():
@@ -51,7 +55,7 @@ def test_state_between_two_samples_of_the_rotor():
     between = replace(
         encoders(x, x), before=np.array([1, 2]), share=np.array([0.5, 0.25]), measured=x[:2]
     )
-    middle, known = TurningPoints(between, x, np.array([0])).stop_states(RADIUS)
+    middle, known = followed(between)
     # From the bound 0.25 at 1.0, back by 0.05, and by 0.1 + 0.1.
     assert middle == pytest.approx([0.2, 0.05])
     assert known.all()

@@ -516,7 +516,9 @@ def test_log_names_gear_joint_and_topic(make, capfd, values, text):
 
 def test_nothing_is_compared_before_there_is_an_encoder_or_a_reference(make, monkeypatch):
     node, followed = make('compared', rotor_encoder='single_turn'), []
-    monkeypatch.setattr(OutputEncoder, 'follow', lambda _, sample: followed.append(sample) or [])
+    monkeypatch.setattr(
+        OutputEncoder, 'follow', lambda _, sample, __: followed.append(sample) or []
+    )
     node._on_rotor_state(rotor_bytes(1, position=[1.0]))
     node._on_output_encoder(rotor_bytes(1, position=[1.0]))
     node._on_rotor_state(rotor_bytes(2, position=[1.0]))

@@ -11,7 +11,7 @@ from simulated_gear import GearSet, Simulated, gears, simulate, slow_strokes, st
 
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.measurement.calibration import Fit, fit, to_calibration
+from gear_kinematics.measurement.calibration import Fit, fit
 from gear_kinematics.measurement.recording import Encoders, Recording
 
 LIMITED = GearSet(
@@ -84,11 +84,11 @@ def judge(result: Fit, simulated: Simulated, gear: int) -> Judged:
     """Correct another recording as the node does."""
     rotor = recorded(simulated, gear)[1].rotor
     count = len(rotor.stamp)
-    correction = Corrector(to_calibration(result)).correct_batch(
+    correction = Corrector(result.calibration).correct_batch(
         rotor.stamp, rotor.turns, rotor.angle, np.full(count, np.nan), rotor.effort,
         np.zeros(count, int),
     )  # fmt: skip
-    ideal = simulated.rotor[:, gear] / float(result.ratio)
+    ideal = simulated.rotor[:, gear] / float(result.calibration.gear_ratio)
     error = simulated.undelayed[:, gear] - ideal - correction.deviation
     error -= error.mean()
     return Judged(

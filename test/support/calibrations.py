@@ -9,9 +9,9 @@ from gear_kinematics.correction.calibration_file import (
     Compliance,
     Order,
     Prediction,
-    Recording,
     Spans,
     Stop,
+    UsedRecording,
 )
 
 MP = mpmath.mp.clone()
@@ -27,7 +27,7 @@ def calibration(**changes) -> Calibration:
     fields = {
         'made_by': 'gearkin calibrate 0.2.0',
         'created': '2026-11-22T10:00:00Z',
-        'recordings': (Recording('bench.mcap', 64 * 'a', 120_000, 120.0, 0.0123),),
+        'recordings': (UsedRecording('bench.mcap', 64 * 'a', 120_000, 120.0, 0.0123),),
         'gear_ratio': Fraction(-19),
         'ring_teeth': 80,
         'satellite_teeth': 76,

@@ -5,6 +5,6 @@ The method and its sources are in docs/calibration.md.
 
 from gear_kinematics.measurement.calibration.check import Judgement, judge
 from gear_kinematics.measurement.calibration.fit import fit
-from gear_kinematics.measurement.calibration.result import Fit, to_calibration
+from gear_kinematics.measurement.calibration.result import Fit
 
-__all__ = ['Fit', 'Judgement', 'fit', 'judge', 'to_calibration']
+__all__ = ['Fit', 'Judgement', 'fit', 'judge']

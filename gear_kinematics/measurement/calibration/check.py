@@ -1,24 +1,24 @@
 """Checks a calibration by recordings that it was not made from."""
 
 from dataclasses import replace
-from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
 
-from gear_kinematics.correction.calibrated_output import CalibrationFit
 from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.calibration.selection import jackknife
+from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.wire.cdr import SECOND
 
 _BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left
-_MULTIPLES = (1, 2, 3, 4)  # of the turns of output and rotor that are told
+_OFTEN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
 _MOST = 0.5  # share of the variance that makes an order what is left of the error
 _VARIES = 0.05  # scatter of the speed over the greatest one that tells a delay from a zero
 
@@ -26,12 +26,8 @@ _VARIES = 0.05  # scatter of the speed over the greatest one that tells a delay 
 class Judgement(NamedTuple):
     """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
-    recording: Recording
-    ratio: Fraction
-    encoders: Encoders
+    samples: Samples
     """Less the delay, if that is clear."""
-    output: Array
-    """Ideal output angle."""
     before: Array
     """Measured minus ideal output angle less its mean, without the delay."""
     after: Array
@@ -83,52 +79,39 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
         stamp, rotor.turns, rotor.angle, unknown, effort, segment
     )
 
-    def errors(of: Encoders) -> tuple[Array, Array]:
-        error = of.error(ratio)
-        left = error - of.at_measured(correction.deviation)
-        return error - error.mean(), left - left.mean()
+    def errors(of: Encoders) -> tuple[Samples, Array, Array]:
+        samples = Samples(recording, of, ratio)
+        left = samples.error - of.at_measured(correction.deviation)
+        return samples, samples.error - samples.error.mean(), left - left.mean()
 
-    before, after = errors(encoders)
+    samples, before, after = errors(encoders)
     with_delay = float(np.std(before)), float(np.std(after))
-    shifted, delay = encoders, None
+    delay = None
     for _ in range(_ROUNDS if encoders.timed else 0):
-        delay = _delay(shifted.speed(ratio), after, delay.value if delay else 0.0)
-        shifted = encoders.earlier(delay.value) if delay and delay.clear else encoders
-        before, after = errors(shifted)
-        if shifted is encoders:
+        delay = _delay(samples.speed, after, delay.value if delay else 0.0)
+        shift = delay.value if delay and delay.clear else 0.0
+        samples, before, after = errors(encoders.earlier(shift) if shift else encoders)
+        if not shift:
             break
-    half_width = shifted.at_measured(correction.half_width)
-    return Judgement(
-        recording=recording,
-        ratio=ratio,
-        encoders=shifted,
-        output=shifted.at_measured(shifted.ideal(ratio)),
-        before=before,
-        after=after,
-        with_delay=with_delay,
-        half_width=half_width,
-        uncalibrated=float(np.mean(half_width > calibration.half_width)),
-        delay=delay,
-        fit=CalibrationFit.of(before, after, half_width, once=True),
-    )
+    half_width = samples.encoders.at_measured(correction.half_width)
+    uncalibrated = float(np.mean(half_width > calibration.half_width))
+    fit = CalibrationFit.of(before, after, half_width, once=True)
+    return Judgement(samples, before, after, with_delay, half_width, uncalibrated, delay, fit)
 
 
-def left_order(judgement: Judgement) -> tuple[float, str] | None:
+def left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
     """What is left of the error if it is mostly one order: its amplitude, rad, and how often."""
-    output, left = judgement.output, judgement.after
-    found = []
-    for body, rate in (('output', 1.0), ('rotor', abs(float(judgement.ratio)))):
-        for multiple in _MULTIPLES:
-            phase = multiple * rate * output
-            if np.ptp(phase) < TURN:
-                continue
-            design = np.stack([np.ones(len(phase)), np.cos(phase), np.sin(phase)], axis=1)
-            fit = np.linalg.lstsq(design, left, rcond=None)[0]
-            often = {1: 'once', 2: 'twice'}.get(multiple, f'{multiple} times')
-            amplitude = float(np.hypot(*fit[1:]))
-            found.append((float(np.var(design @ fit)), amplitude, f'{often} per {body} turn'))
-    variance, amplitude, words = max(found, default=(0.0, 0.0, ''))
-    return (amplitude, words) if variance > _MOST * np.var(left) else None
+    found = [(_MOST * np.var(left), 0.0, '')]
+    for body, angle in (('output', samples.output), ('rotor', TURN * samples.rotor_turns)):
+        for multiple, often in enumerate(_OFTEN, start=1):
+            phase = multiple * angle
+            if np.ptp(phase) >= TURN:
+                design = np.stack([np.ones(len(phase)), np.cos(phase), np.sin(phase)], axis=1)
+                fit = np.linalg.lstsq(design, left, rcond=None)[0]
+                amplitude = float(np.hypot(*fit[1:]))
+                found.append((np.var(design @ fit), amplitude, f'{often} per {body} turn'))
+    _, amplitude, words = max(found)
+    return (amplitude, words) if words else None
 
 
 def _delay(speed: Array, residual: Array, shift: float) -> Estimate | None:

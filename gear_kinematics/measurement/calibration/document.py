@@ -41,8 +41,9 @@ _PENS = {'before': Pen.FAINT, 'after': Pen.FIRST}
 
 def document(fit: Fit, target: str) -> Document:
     """Return the document on a calibration, whose file is the target."""
+    made = fit.calibration
     verdict = Verdict.PASS if fit.helps else Verdict.FAIL
-    before, after = _arc_minutes(fit.rms_before), _arc_minutes(fit.rms_after)
+    before, after = map(_arc_minutes, (made.validation.rms_before, made.validation.rms_after))
     finding = (
         f'The error falls from {before} to {after} arcmin rms in what was left out of the fit.'
         if fit.helps
@@ -59,24 +60,24 @@ def document(fit: Fit, target: str) -> Document:
         Figure(tuple(_panels(fit)), columns=2),
         picture_first=True,
     )
-    left_out = ('rms_before', 'rms_after', 'half_width', 'outside_half_width', 'coverage')
+    widths = {'half_width': made.half_width, 'outside_half_width': made.outside_half_width}
     data = {
         'schema': 'gear_kinematics/calibration_report',
         'version': 1,
         'coverage': COVERAGE,
         'helps': fit.helps,
-        'gear_ratio': str(fit.ratio),
+        'gear_ratio': str(made.gear_ratio),
         'fitted_ratio': plain(fit.fitted_ratio),
-        'left_out': {name: getattr(fit, name) for name in left_out},
+        'left_out': plain(made.validation) | widths,
         'terms': [
             {
                 'name': term.name,
-                'cycles': plain(term.cycles),
-                'radius': term.radius,
+                'cycles': plain(term.cycles or None),
+                'radius': getattr(entry, 'radius', None),
                 'amplitude': plain(amplitude),
                 'cause': term.cause,
             }
-            for term, _, amplitude in fit.terms
+            for term, entry, amplitude in fit.terms
         ],
         'not_fitted': fit.refused,
         'recordings': [
@@ -97,6 +98,7 @@ def document(fit: Fit, target: str) -> Document:
 
 def remarks(fit: Fit) -> Iterator[str]:
     """Yield the basis and the limits of the calibration, in sentences."""
+    timed = fit.calibration.spans.speed is not None
     for r in fit.recordings:
         recording = r.samples.recording
         yield from (f'{recording.name}: {text}' for text in recording.sentences)
@@ -112,21 +114,21 @@ def remarks(fit: Fit) -> Iterator[str]:
                 f'{plus_minus(r.delay, _MILLI)} ms, or the gear winds up in proportion to its '
                 'speed. This part of the error is left out, and not corrected.'
             )
-        elif r.delay is None and fit.timed:
+        elif r.delay is None and timed:
             yield (
                 f'{name}: a delay of the output angles is not told from hysteresis; this takes '
                 'three strokes or more.'
             )
-    if not fit.timed:
+    if not timed:
         yield (
             'Time was not recorded: the interval does not depend on the speed, and a delay '
             'between the encoders is not told from hysteresis.'
         )
     yield (
-        f'The interval of ± {_arc_minutes(fit.half_width)} arcmin contains {PERCENT} of the '
-        'measured angles of another recording, relative to its zero and less its delay. Each ± '
-        f'contains the value with a probability of {PERCENT}, by leaving out one part of the '
-        'recordings after the other.'
+        f'The interval of ± {_arc_minutes(fit.calibration.half_width)} arcmin contains {PERCENT} '
+        'of the measured angles of another recording, relative to its zero and less its delay. '
+        f'Each ± contains the value with a probability of {PERCENT}, by leaving out one part of '
+        'the recordings after the other.'
     )
 
 
@@ -135,23 +137,24 @@ def _arc_minutes(angle: float) -> str:
 
 
 def _tables(fit: Fit) -> Iterator[Table]:
-    teeth = f'{fit.mechanism.ring_teeth}/{fit.mechanism.satellite_teeth}' if fit.mechanism else ''
+    made, errors = fit.calibration, fit.calibration.validation
+    teeth = f'{made.ring_teeth}/{made.satellite_teeth}' if made.ring_teeth else ''
     samples = str(sum(len(r.after) for r in fit.recordings))
-    head = ('gear ratio', str(fit.ratio)), ('teeth', teeth), ('samples', samples)
+    head = ('gear ratio', str(made.gear_ratio)), ('teeth', teeth), ('samples', samples)
     yield Table.of_values(Layout.INLINE, *head)
-    outside = _arc_minutes(fit.outside_half_width)
     rows = (
-        ('rms before', _arc_minutes(fit.rms_before), 'arcmin'),
-        ('rms after', _arc_minutes(fit.rms_after), 'arcmin'),
-        ('half width of the interval', _arc_minutes(fit.half_width), 'arcmin'),
-        ('half width outside the calibrated range', outside, 'arcmin'),
-        ('coverage of the interval', number(100.0 * fit.coverage), '%'),
+        ('rms before', errors.rms_before),
+        ('rms after', errors.rms_after),
+        ('half width of the interval', made.half_width),
+        ('half width outside the calibrated range', made.outside_half_width),
     )
+    shown = [(name, _arc_minutes(value), 'arcmin') for name, value in rows]
+    shown.append(('coverage of the interval', number(100.0 * errors.coverage), '%'))
     yield Table(
         ('left out of the fit', 'value'),
-        tuple((Cell(name, unit=unit), Cell(value, unit=unit)) for name, value, unit in rows),
+        tuple((Cell(name, unit=unit), Cell(value, unit=unit)) for name, value, unit in shown),
     )
-    output = output_cycles(fit.ratio)
+    output = output_cycles(made.gear_ratio)
     yield Table.of_items(
         {
             'term': lambda f: f.term.name,
@@ -177,30 +180,27 @@ def _tables(fit: Fit) -> Iterator[Table]:
 
 def _panels(fit: Fit) -> Iterator[Panel]:
     """Yield the error before and after the correction, over time, output angle and orders."""
-    samples = [r.samples for r in fit.recordings]
-    ends = np.cumsum([0.0, *(s.seconds[-1] for s in samples[:-1])])
-    time = [s.seconds[s.used] + end for s, end in zip(samples, ends, strict=True)]
-    angle = [s.output[s.used] for s in samples]
-    errors = [r.before for r in fit.recordings], [r.after for r in fit.recordings]
-    yield from _error_panels(fit.half_width, time, angle, *errors, timed=fit.timed)
-    spectra = []
-    for spectrum, (name, pen) in zip(fit.spectra, _PENS.items(), strict=True):
-        if spectrum:
-            shown = spectrum.cycles >= spectrum.resolution
-            spectra.append((name, pen, spectrum.cycles[shown], spectrum.amplitude[shown]))
+    end, parts = 0.0, []
+    for s, before, after, *_ in fit.recordings:
+        parts.append((end + s.seconds[s.used], s.output[s.used], before, after))
+        end += s.seconds[-1]
+    columns = map(np.concatenate, zip(*parts, strict=True))
+    made = fit.calibration
+    yield from _error_panels(made.half_width, *columns, timed=made.spans.speed is not None)
+    spectra = [
+        (name, pen, spectrum.cycles[shown], spectrum.amplitude[shown])
+        for (name, pen), spectrum in zip(_PENS.items(), fit.spectra, strict=True)
+        if spectrum
+        for shown in [spectrum.cycles >= spectrum.resolution]
+    ]
     orders = [(float(f.term.cycles), f.term.name) for f in fit.terms if f.term.cycles]
     yield from spectrum_panel('rotor', spectra, orders, decades=3)
 
 
-def _error_panels(half_width: float, *columns: Sequence[Array], timed: bool) -> Iterator[Panel]:
-    """Draw errors over time and output angle, with the interval.
-
-    Args:
-        half_width: of the interval, rad.
-        columns: time, output angle, error before and after, rad, each in parts.
-        timed: whether time was recorded.
-    """
-    time, angle, *errors = map(np.concatenate, columns)
+def _error_panels(
+    half_width: float, time: Array, angle: Array, *errors: Array, timed: bool
+) -> Iterator[Panel]:
+    """Draw errors before and after, rad, over time and output angle, with the interval."""
     width = half_width * ARC_MINUTES
     for title, label, at in (
         ('error of samples left out', 'time [s]' if timed else 'sample', time),
@@ -226,7 +226,7 @@ def check_document(path: Path, judgements: Sequence[Judgement]) -> Document:
         'calibration': str(path),
         'recordings': [
             {
-                'name': j.recording.name,
+                'name': j.samples.recording.name,
                 'holds': j.holds,
                 'rms_before': j.rms_before,
                 'rms_after': j.rms_after,
@@ -248,7 +248,7 @@ def check_document(path: Path, judgements: Sequence[Judgement]) -> Document:
         Verdict.PASS if all(j.holds for j in judgements) else Verdict.FAIL,
         Table.of_items(
             {
-                'recording': lambda j: printable(j.recording.name),
+                'recording': lambda j: printable(j.samples.recording.name),
                 'rms before [arcmin]': lambda j: _arc_minutes(j.rms_before),
                 'rms after [arcmin]': lambda j: _arc_minutes(j.rms_after),
                 'within the interval [%]': lambda j: number(100.0 * (1.0 - j.fit.outside)),
@@ -264,7 +264,7 @@ def _section(j: Judgement) -> Section:
     shown = f'{inside:.1f} ± {spread:.1f} %'
     if not j.fit.fits:
         left = f'{after}′ rms'
-        if found := left_order(j):
+        if found := left_order(j.samples, j.after):
             left = f'{_arc_minutes(found[0])}′ {found[1]}'
         finding = (
             f'The calibration no longer holds: {inside:.1f} % instead of {PERCENT} lie within the '
@@ -290,13 +290,15 @@ def _section(j: Judgement) -> Section:
         ('samples', str(j.fit.samples), ''),
     )
     cells = [(name, Cell(value, unit=unit)) for name, value, unit in values]
-    columns = [[column] for column in (j.encoders.seconds, j.output, j.before, j.after)]
-    panels = _error_panels(width, *columns, timed=j.encoders.timed)
+    of = j.samples
+    panels = _error_panels(
+        width, of.seconds, of.output, j.before, j.after, timed=of.encoders.timed
+    )
     return Section(
-        printable(j.recording.name),
+        printable(j.samples.recording.name),
         (Table.of_values(Layout.LINES, *cells),),
         Verdict.PASS if j.holds else Verdict.FAIL,
         (Finding('finding', finding),),
-        tuple(map(printable, j.recording.sentences)),
+        tuple(map(printable, j.samples.recording.sentences)),
         Figure(tuple(panels)),
     )

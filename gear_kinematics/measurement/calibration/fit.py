@@ -8,11 +8,22 @@ jackknife over the blocks. Neither needs white noise.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from datetime import UTC, datetime
 from fractions import Fraction
+from typing import Any
 
 import numpy as np
 
+from gear_kinematics.correction.calibration_file import (
+    Calibration,
+    Compliance,
+    Order,
+    Prediction,
+    Spans,
+    Stop,
+    UsedRecording,
+)
 from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.measurement.calibration import terms as candidates
@@ -31,6 +42,7 @@ from gear_kinematics.measurement.calibration.spectrum import Spectrum, as_fracti
 from gear_kinematics.measurement.calibration.terms import MOST_DRIFT, Recorded, Samples, thinned
 from gear_kinematics.measurement.ratio import RatioEstimate, fit_ratio, wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, RecordingError
+from gear_kinematics.share import version
 
 _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
@@ -46,6 +58,7 @@ _LONGEST_PERIOD = 2**20  # rotor turns after which all orders repeat, at most
 _SEVERAL = 3  # recordings from which on terms are selected by leaving out a whole one, not a block
 _TURNS = 2.0  # turns of the output that tell a ratio from an eccentricity
 _COVERED = 0.5  # share of a half at angles that the other half contains, to be judged by it
+_MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 _OWN = (0, 1)  # a recording's own unknowns that a check determines as well: zero and delay
 
 
@@ -97,6 +110,8 @@ class _Fitting:
         self._ratio, self._mechanism = ratio, mechanism
         self._refused: dict[str, str] = {}
         self._samples = [Samples(*recording, ratio) for recording in recordings]
+        if not any(np.ptp(s.error) > 0.0 for s in self._samples):
+            raise RecordingError('the output angles are exactly those of the ratio: nothing to do')
         self._orders = candidates.known_orders(self._samples, ratio, mechanism, self._refused)
         self._delays: list[Estimate | None] = [None] * len(recordings)
         self._undelay([encoders for _, encoders in recordings])
@@ -139,7 +154,7 @@ class _Fitting:
         self._own = _OWN if with_delays else _OWN[:1]
         wind_up = candidates.wind_up(self._samples, self._refused)
         stops = candidates.stops(self._samples, self._refused)
-        self._terms: list[candidates.Term] = [*self._orders, *wind_up, *stops]
+        self._terms = [*self._orders, *wind_up, *stops]
         self._blocks = blocks_of([len(s.used) for s in self._samples])
         of = np.array([block.recording for block in self._blocks])
         self._by_block = np.arange(len(of))
@@ -147,10 +162,11 @@ class _Fitting:
         self._folds = of if len(self._samples) >= _SEVERAL else self._by_block
         self._products = np.array([c.T @ c for c in map(self._columns, self._blocks)])
         self._choose(_DELAY_DRIFT if with_delays else self._drift)
-        if not self._drift and (drift := self._needed_drift()):
-            self._choose(drift)
-        for name, other in self._selection.inseparable.items():
-            self._refused[name] = f'it cannot be told apart from {other}'
+        if not self._drift:
+            every = [self._normal_equations(self._folds, drift) for drift in _DRIFTS]
+            errors = [equations.errors(self._selection.columns) for equations in every]
+            if drift := _DRIFTS[first_as_good(errors)]:  # it improves the prediction
+                self._choose(drift)
 
     def _columns(self, block: Block) -> Array:
         """Columns of the terms, of the recording's own unknowns, and the error."""
@@ -170,18 +186,13 @@ class _Fitting:
     def _normal_equations(
         self, folds: Array, drift: int, *, as_checked: bool = False
     ) -> NormalEquations:
-        common = sum(term.columns for term in self._terms)
+        common = sum(len(term.coefficients) for term in self._terms)
         fitted = (*self._own, *range(len(_OWN), len(_OWN) + drift))
-        predicted = _OWN if as_checked else self._own
+        # What is checked is like another recording, with unknowns of its own.
+        predicted, groups = (_OWN, folds) if as_checked else (self._own, None)
         return NormalEquations(
-            self._products, self._blocks, folds, common, fitted, predicted, own_of_fold=as_checked
+            self._products, self._blocks, folds, common, fitted, predicted, groups
         )
-
-    def _needed_drift(self) -> int:
-        """As much drift of the zeros as improves the prediction."""
-        columns = self._selection.columns
-        equations = (self._normal_equations(self._folds, drift) for drift in _DRIFTS)
-        return _DRIFTS[first_as_good([each.errors(columns) for each in equations])]
 
     def _find_orders(self) -> bool:
         """Add further orders in the residuals; whether there are any."""
@@ -192,10 +203,8 @@ class _Fitting:
         for cycles in found.peaks(_PEAKS, min(float(output), 1.0)):
             exact = as_fraction(cycles, found.resolution, output)
             taken = {term.cycles for term in self._orders}
-            if exact is None or exact in taken:
-                continue
-            period = math.lcm(exact.denominator, *(other.denominator for other in taken))
-            if period <= _LONGEST_PERIOD:
+            period = math.lcm(*(of.denominator for of in (*taken, exact)))
+            if exact and exact not in taken and period <= _LONGEST_PERIOD:
                 self._orders.append(candidates.order_of(exact, self._ratio, self._mechanism))
         return len(self._orders) > count
 
@@ -235,7 +244,7 @@ class _Fitting:
 
     def result(self, fitted_ratio: RatioEstimate | None) -> Fit:
         """Everything about the calibration with the selected terms."""
-        columns = self._selection.columns
+        columns, samples, mechanism = self._selection.columns, self._samples, self._mechanism
         coefficients = self._equations.solve(columns)
         equations, fold, covered = self._left_out()
         before, after = (self._residuals(equations, chosen) for chosen in ([], columns))
@@ -245,43 +254,84 @@ class _Fitting:
         constant = -float(deviation.mean())
         zeros = [
             s.offset + float(self._equations.own(k, columns)[0, 0]) - constant
-            for k, s in enumerate(self._samples)
+            for k, s in enumerate(samples)
         ]
         residuals = map(self._by_recording, (before, after))
-        recordings = zip(self._samples, *residuals, zeros, self._delays, strict=True)
+        recordings = zip(samples, *residuals, zeros, self._delays, strict=True)
         errors = equations.errors(columns)
         half_width = widening(errors) * _half_width(after[covered])
-        terms = tuple(self._fitted_terms(coefficients))
+        inside = [np.abs(after[fold == k]) <= _half_width(after[fold != k]) for k in set(fold)]
+        terms = self._fitted_terms(coefficients)
         # Beyond the calibrated angles, a trend can be as wrong as it becomes large.
         trends = sum(t.amplitude.value for t in terms if t.term.is_trend)
         outside = _half_width(before) + _half_width(deviation + constant) + trends
-        inside = [np.abs(after[fold == k]) <= _half_width(after[fold != k]) for k in set(fold)]
+        kinds: list[type] = [Order, Stop, Compliance]  # in the order of the file
+        kind_of = [kinds.index(type(f.entry)) for f in terms for _ in f.term.coefficients]
+        places = np.argsort(kind_of, kind='stable')
+        of_kind: list[list[Any]] = [[f.entry for f in terms if type(f.entry) is k] for k in kinds]
         folds, size = len(coefficients) - 1, len(columns)
-        return Fit(
-            ratio=self._ratio,
-            mechanism=self._mechanism,
-            terms=terms,
-            covariance=(folds - 1) * np.cov(coefficients[1:].T, ddof=0).reshape(size, size),
+        covariance = (folds - 1) * np.cov(coefficients[1:, places].T, ddof=0).reshape(size, size)
+        calibration = Calibration(
+            made_by=f'gearkin calibrate {version()}',
+            created=datetime.now(UTC).isoformat(timespec='seconds'),
+            recordings=tuple(
+                UsedRecording(
+                    s.recording.name, s.recording.sha256, len(s.error), s.encoders.duration, zero
+                )
+                for s, zero in zip(samples, zeros, strict=True)
+            ),
+            gear_ratio=self._ratio,
+            ring_teeth=mechanism.ring_teeth if mechanism else None,
+            satellite_teeth=mechanism.satellite_teeth if mechanism else None,
             constant=constant,
+            orders=tuple(of_kind[0]),
+            hysteresis=tuple(of_kind[1]),
+            compliance=of_kind[2][0] if of_kind[2] else None,
+            covariance=tuple(map(tuple, covariance.tolist())),
             half_width=half_width,
             outside_half_width=max(half_width, outside),
-            coverage=float(np.mean(np.concatenate(inside))),
-            rms_before=float(np.sqrt(np.mean(before**2))),
-            rms_after=float(np.sqrt(np.mean(after**2))),
+            spans=Spans(
+                _span([s.speed if s.encoders.timed else None for s in samples], _MARGIN),
+                _span([s.torque for s in samples], _MARGIN),
+                _span([s.output for s in samples], 0.0) or (0.0, 0.0),
+                sum(s.encoders.duration for s in samples),
+            ),
+            validation=Prediction(
+                float(np.sqrt(np.mean(before**2))),
+                float(np.sqrt(np.mean(after**2))),
+                float(np.mean(np.concatenate(inside))),
+            ),
+        )
+        return Fit(
+            calibration,
             helps=bool(columns) and not is_as_good(equations.errors([]), errors),
+            terms=terms,
             recordings=tuple(FittedRecording(*recording) for recording in recordings),
             spectra=(self._spectrum(before), self._spectrum(after)),
             refused=self._refused,
             fitted_ratio=fitted_ratio,
         )
 
-    def _fitted_terms(self, coefficients: Array) -> Iterator[FittedTerm]:
-        chosen = self._selection.chosen
-        parts = np.split(coefficients, np.cumsum([term.columns for term in chosen]), axis=1)
-        for term, mine in zip(chosen, parts, strict=False):
-            sizes = np.hypot(*mine.T) if term.columns > 1 else mine[:, 0]
-            yield FittedTerm(term, mine[0], jackknife(term.unit * sizes))
+    def _fitted_terms(self, coefficients: Array) -> tuple[FittedTerm, ...]:
+        found, first = [], 0
+        for term in self._selection.chosen:
+            mine = coefficients[:, first : first + len(term.coefficients)]
+            first += len(term.coefficients)
+            sizes = np.hypot(*mine.T) if len(term.coefficients) > 1 else mine[:, 0]
+            amplitude = jackknife(term.unit * sizes)
+            found.append(FittedTerm(term, term.fitted(mine[0].tolist()), amplitude))
+        return tuple(found)
 
 
 def _half_width(residuals: Array) -> float:
     return float(np.quantile(np.abs(residuals), COVERAGE))
+
+
+def _span(columns: Sequence[Array | None], margin: float) -> tuple[float, float] | None:
+    """From the least to the greatest value, and a share of that beyond; None if one lacks."""
+    known = [column for column in columns if column is not None]
+    if len(known) < len(columns):
+        return None
+    low = min(float(np.min(column)) for column in known)
+    high = max(float(np.max(column)) for column in known)
+    return low - margin * (high - low), high + margin * (high - low)

@@ -18,8 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gear_kinematics.correction.calibration_file import Stop
 from gear_kinematics.correction.uncertainty import Estimate, pseudo_values, student_t
-from gear_kinematics.measurement.calibration.terms import OrderTerm, StopTerm, Term
+from gear_kinematics.measurement.calibration.terms import Term
 from gear_kinematics.measurement.recording import Array
 
 _BLOCKS = 24  # blocks of all recordings together
@@ -31,7 +32,6 @@ _TOGETHER = (1, 2, 4)
 _FEWEST = 3  # groups of blocks from which a standard error is estimated
 _MANY = 10**9
 _MOST = 30  # terms of a model
-_APART = 0.1  # share of an order's columns that the other orders must leave unexplained
 
 
 class Block(NamedTuple):
@@ -66,8 +66,7 @@ class NormalEquations:
         common: int,
         fitted: Sequence[int],
         predicted: Sequence[int],
-        *,
-        own_of_fold: bool = False,
+        groups: Array | None = None,
     ) -> None:
         """Eliminate the recordings' own unknowns.
 
@@ -78,8 +77,8 @@ class NormalEquations:
             common: number of columns with coefficients common to all recordings; the first ones.
             fitted: columns of a recording's own unknowns in a fit, counted from the first own one.
             predicted: those of which a prediction may use the values.
-            own_of_fold: whether a prediction's own unknowns are those of what was left out, as of
-                another recording, not of the whole recording.
+            groups: (blocks,): blocks of the same group have own unknowns in common when they are
+                predicted; None: those of the same recording.
         """
         self.counts = np.array([block.rows.stop - block.rows.start for block in blocks])
         """Samples of each block."""
@@ -93,14 +92,13 @@ class NormalEquations:
         training = np.tensordot(1.0 * (kept[:, None] & mine), products, axes=1)
         self._fitted = _elimination(training, common, fitted)
         units = np.append(self._scale, 1.0)
-        self.products = _transformed(training, self._fitted).sum(axis=1) / np.outer(units, units)
+        left = np.swapaxes(self._fitted, -1, -2) @ training @ self._fitted
+        self.products = left.sum(axis=1) / np.outer(units, units)
         """Of the columns (common, error), each over its size, (fits, common + 1, common + 1)."""
-        same = of[:, None] == of
-        if own_of_fold:
-            same &= folds[:, None] == folds
-        whole = np.tensordot(1.0 * same, products, axes=1)
+        groups = of if groups is None else groups
+        whole = np.tensordot(1.0 * (groups[:, None] == groups), products, axes=1)
         self._predicted = _elimination(whole, common, predicted)
-        self._left = _transformed(products, self._predicted)
+        self._left = np.swapaxes(self._predicted, -1, -2) @ products @ self._predicted
 
     def solve(self, chosen: Sequence[int]) -> Array:
         """Coefficients of the chosen columns, (fits, chosen)."""
@@ -128,12 +126,9 @@ class NormalEquations:
         return errors
 
     def residuals(self, block: int, columns: Array, chosen: Sequence[int]) -> Array:
-        """Residuals of a block predicted without its fold, (samples,), rad.
+        """Residuals of a block predicted without its fold by chosen columns, (samples,), rad.
 
-        Args:
-            block: its place among the blocks.
-            columns: (common, own, error) of the block, (samples, size).
-            chosen: columns with coefficients.
+        Its columns (common, own, error) are (samples, size).
         """
         factors = self._factors(chosen)[1 + self._fold[block]]
         residuals: Array = columns @ (self._predicted[block][:, [*chosen, -1]] @ factors)
@@ -164,12 +159,6 @@ def _elimination(products: Array, common: int, own: Sequence[int]) -> Array:
     place[..., others, range(common + 1)] = 1.0
     place[..., mine, :] = -(inverse @ (rows[..., others] / size)) / size
     return place
-
-
-def _transformed(products: Array, place: Array) -> Array:
-    """Products of the columns that a map makes of those of the products."""
-    transformed: Array = np.swapaxes(place, -1, -2) @ products @ place
-    return transformed
 
 
 def standard_error(values: Array) -> tuple[float, int]:
@@ -222,13 +211,10 @@ class Selection:
 
         The first `fixed` terms are always in the model.
         """
-        self.inseparable: dict[str, str] = {}
-        """Orders that cannot be told apart from another one that was chosen, with its name."""
         self._equations, self._terms = equations, terms
-        places = iter(range(sum(term.columns for term in terms)))
-        self._places = [list(islice(places, term.columns)) for term in terms]
-        self._fixed = set(range(fixed))
-        chosen = sorted(self._pruned(self._grown(list(range(fixed)))))
+        places = iter(range(sum(len(term.coefficients) for term in terms)))
+        self._places = [list(islice(places, len(term.coefficients))) for term in terms]
+        chosen = sorted(self._pruned(self._grown(list(range(fixed))), fixed))
         self.chosen = [terms[k] for k in chosen]
         """The terms."""
         self.columns = self._columns(chosen)
@@ -242,51 +228,27 @@ class Selection:
 
     def _score(self, chosen: Sequence[int]) -> float:
         """Mean square of the prediction, infinite if stop operators cancel each other."""
-        columns = self._columns(chosen)
-        stops = [isinstance(self._terms[k], StopTerm) for k in chosen for _ in self._places[k]]
-        if sum(stops) > 1 and np.ptp(np.sign(self._equations.solve(columns)[0, stops])):
-            return np.inf
-        return float(self._equations.errors(columns).mean())
+        stops = [isinstance(self._terms[k].entry, Stop) for k in chosen for _ in self._places[k]]
+        if sum(stops) > 1:
+            coefficients = self._equations.solve(self._columns(chosen))[0, stops]
+            if np.ptp(np.sign(coefficients)):
+                return np.inf
+        return float(self._errors(chosen).mean())
 
     def _grown(self, chosen: list[int]) -> list[int]:
         """Add terms one by one, each the one that improves the prediction most."""
         best = self._score(chosen)
-        while len(chosen) < _MOST:
-            others = set(range(len(self._terms))) - set(chosen)
-            scores = {
-                k: self._score([*chosen, k]) for k in others if not self._is_inseparable(k, chosen)
-            }
-            k = min(scores, key=lambda k: scores[k], default=None)
-            if k is None or not scores[k] < best:
+        while len(chosen) < _MOST and (others := set(range(len(self._terms))) - set(chosen)):
+            score, k = min((self._score([*chosen, k]), k) for k in others)
+            if not score < best:
                 break
-            chosen, best = [*chosen, k], scores[k]
+            chosen, best = [*chosen, k], score
         return chosen
 
-    def _pruned(self, chosen: list[int]) -> list[int]:
+    def _pruned(self, chosen: list[int], fixed: int) -> list[int]:
         """Remove terms that do not improve the prediction by more than a standard error."""
         path = [chosen]
-        while gone := set(path[-1]) - self._fixed:
-            smaller = [[k for k in path[-1] if k != left_out] for left_out in gone]
-            path.append(min(smaller, key=lambda chosen: float(self._errors(chosen).mean())))
-        path.reverse()
+        while len(path[0]) > fixed:
+            smaller = [[k for k in path[0] if k != gone] for gone in path[0] if gone >= fixed]
+            path.insert(0, min(smaller, key=lambda chosen: float(self._errors(chosen).mean())))
         return path[first_as_good([self._errors(chosen) for chosen in path])]
-
-    def _is_inseparable(self, k: int, chosen: Sequence[int]) -> bool:
-        """Whether the chosen orders already explain an order."""
-        if not isinstance(self._terms[k], OrderTerm):
-            return False
-        others = [c for c in chosen if isinstance(self._terms[c], OrderTerm)]
-        for group in [*([c] for c in others), others] if others else []:
-            if self._unexplained(k, group) < _APART:
-                self.inseparable[self._terms[k].name] = self._terms[group[0]].name
-                return True
-        return False
-
-    def _unexplained(self, k: int, others: Sequence[int]) -> float:
-        """Share of the variance of a term's columns that others leave, at the least."""
-        total, mine, theirs = self._equations.products[0], self._places[k], self._columns(others)
-        cross = total[np.ix_(theirs, mine)]
-        explained = cross.T @ np.linalg.lstsq(total[np.ix_(theirs, theirs)], cross, rcond=1e-10)[0]
-        own = total[np.ix_(mine, mine)]
-        left = np.linalg.pinv(own, rcond=1e-12, hermitian=True) @ (own - explained)
-        return float(np.linalg.eigvals(left).real.min())

@@ -94,8 +94,8 @@ def spectrum(angles: Sequence[Array], errors: Sequence[Array]) -> Spectrum | Non
     return Spectrum(cycles[shown], np.sqrt(power[shown]), 1.0 / travel)
 
 
-def as_fraction(cycles: float, resolution: float, output: Fraction) -> Fraction | None:
-    """The simplest exact order near one from a spectrum, None if there is no simple one.
+def as_fraction(cycles: float, resolution: float, output: Fraction) -> Fraction:
+    """The simplest exact order near one from a spectrum, 0 if there is no simple one.
 
     Multiples of the rotor come first, then those of the output, then simple fractions; all are in
     cycles per turn of the rotor.
@@ -107,4 +107,4 @@ def as_fraction(cycles: float, resolution: float, output: Fraction) -> Fraction 
             return multiple
     exact, around = Fraction(cycles), Fraction(0.5 * near)
     simplest = simplest_fraction(exact - around, exact + around)
-    return simplest if 0 < simplest.denominator <= _LARGEST_DENOMINATOR else None
+    return simplest if simplest.denominator <= _LARGEST_DENOMINATOR else Fraction(0)

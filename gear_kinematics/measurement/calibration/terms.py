@@ -6,12 +6,13 @@ contains.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
-from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from gear_kinematics.correction.calibration_file import Compliance, Order, Stop
 from gear_kinematics.correction.corrector import MAX_GAP
 from gear_kinematics.correction.stops import play_bounds
 from gear_kinematics.kinematics import Mechanism
@@ -28,7 +29,6 @@ _SEED = 13
 MOST_DRIFT = 16  # half waves of the drift of a recording's zero over its time
 _MOVING = 0.05  # share of the greatest speed above which the output moves
 _STROKES = 3  # strokes that tell a delay from hysteresis
-_CHUNK = 4096  # turning points that are followed at a time
 _SAME = 1e-9  # share of the radius by which states differ in rounding alone
 _BODIES: Mapping[str, tuple[int, tuple[str, str]]] = {
     'teeth': (2, ('tooth spacing and tooth form', 'tooth form')),
@@ -46,6 +46,7 @@ _BODIES: Mapping[str, tuple[int, tuple[str, str]]] = {
     )),
 }  # fmt: skip
 """Multiples that are tried, and likely causes of the first and of the higher ones."""
+_HYSTERESIS = 'play, or friction that winds up the gear'
 _TREND = 'not told by so short a travel; known over the calibrated output angles only'
 CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
@@ -84,11 +85,18 @@ class Samples:
         ideal = encoders.ideal(ratio)
         first_output = TURN * float(encoders.rotor.turns[0]) / float(ratio)
         # Outputs of recordings count from different whole turns otherwise.
-        self.output = encoders.at_measured(ideal) + first_output
+        self._travel = encoders.at_measured(ideal)
+        self.output = self._travel + first_output
         self.rotor_turns: Array = self.turns - self.turns[0] + self.angle / TURN
         self.used = np.arange(len(self.error))
         """Indices of the samples at which all stop operators are known."""
-        self._points = TurningPoints(encoders, ideal, encoders.starts(MAX_GAP))
+        # The play depends on the motion at the points alone where that begins or turns back.
+        steps, starts = np.diff(ideal), encoders.starts(MAX_GAP)
+        changing = np.flatnonzero(steps)
+        back = changing[1:][np.diff(np.sign(steps[changing])) != 0.0]
+        points = np.union1d(starts, back)
+        self._motions = np.split(ideal[points], np.searchsorted(points, starts[1:]))
+        self._last_point = np.searchsorted(points, encoders.before, side='right') - 1
         self._stops: dict[float, tuple[Array, Array]] = {}
         moving = self.speed[np.abs(self.speed) > _MOVING * np.max(np.abs(self.speed))]
         reversals = int(np.count_nonzero(np.diff(np.sign(moving))))
@@ -98,10 +106,19 @@ class Samples:
         """Whether an error in proportion to the speed can be told from one by hysteresis."""
 
     def stop_states(self, radius: float) -> tuple[Array, Array]:
-        """States of the stop operator of a radius, rad, and whether they are known."""
+        """Follow a stop operator of a radius, rad.
+
+        Returns:
+            The middle between its least and greatest possible state, rad, and whether both are the
+            same.
+        """
         if radius not in self._stops:
-            states, known = self._points.stop_states(radius)
-            self._stops[radius] = states.astype(np.float32), known
+            unknown = np.array([[[-np.inf]], [[np.inf]]])
+            parts = [play_bounds(points, np.array([radius]), unknown) for points in self._motions]
+            plays = np.concatenate(parts, axis=1)[:, self._last_point, 0]
+            least, most = np.clip(plays, self._travel - radius, self._travel + radius)
+            states = self._travel - 0.5 * (least + most)
+            self._stops[radius] = states, most - least <= _SAME * radius
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
@@ -112,107 +129,49 @@ class Samples:
         return np.column_stack([np.ones(len(at)), -speed, waves])
 
 
-class TurningPoints:
-    """Where the rotor turns back; the play in between depends on that at the last such point."""
-
-    def __init__(self, encoders: Encoders, ideal: Array, starts: Array) -> None:
-        """Find them.
-
-        Args:
-            encoders: whose measured angles the states are for.
-            ideal: output angle of the rotor's samples, rad.
-            starts: indices of the rotor's samples before which the motion is unknown.
-        """
-        steps = np.diff(ideal)
-        moving = np.flatnonzero(steps)
-        back = np.diff(np.sign(steps[moving])) != 0.0
-        points = np.union1d(starts, moving[1:][back])
-        self._angles = ideal[points]
-        self._begins = np.searchsorted(points, starts)
-        self._last = np.searchsorted(points, encoders.before, side='right') - 1
-        self._output = encoders.at_measured(ideal)
-
-    def stop_states(self, radius: float) -> tuple[Array, Array]:
-        """Follow a stop operator of a radius, rad.
-
-        Returns:
-            The middle between its least and greatest possible state at the measured angles, (n,),
-            rad, and whether both are the same.
-        """
-        parts = []
-        for begin, end in pairwise([*self._begins.tolist(), len(self._angles)]):
-            ends = np.array([-np.inf]), np.array([np.inf])
-            for first in range(begin, end, _CHUNK):
-                angles = self._angles[first : min(first + _CHUNK, end)]
-                parts.append(np.hstack(play_bounds(angles, np.array([radius]), *ends)))
-                ends = parts[-1][-1, :1], parts[-1][-1, 1:]
-        output = self._output[:, np.newaxis]
-        plays = np.concatenate(parts)[self._last]
-        least, most = np.clip(plays, output - radius, output + radius).T
-        return self._output - 0.5 * (least + most), most - least <= _SAME * radius
-
-
-@dataclass(frozen=True, slots=True)
-class OrderTerm:
-    """A cosine and a sine of the rotor's angle."""
+class Term(NamedTuple):
+    """A term of the model."""
 
     name: str
-    cycles: Fraction
-    """Per turn of the rotor."""
     cause: str
     """The likely one, in words; empty where none is."""
+    entry: Order | Stop | Compliance
+    """In a calibration file; the coefficients are 0 until they are fitted."""
+    unit: float = 1.0
+    """The greatest value of its columns, or their standard deviation."""
     is_trend: bool = False
     """Whether it is known over the recorded output angles only."""
-    columns, unit, radius = 2, 1.0, None
-
-    def values(self, samples: Samples, at: Array) -> Array:
-        """Cosine and sine at some samples, (at, 2); exact after many turns."""
-        p, q = self.cycles.numerator, self.cycles.denominator
-        turns = np.fmod(p % q * np.fmod(samples.turns[at], q), q) / q
-        phase = TURN * turns + float(self.cycles) * samples.angle[at]
-        return np.stack([np.cos(phase), np.sin(phase)], axis=1)
-
-
-@dataclass(frozen=True, slots=True)
-class StopTerm:
-    """The state of a stop operator of a radius, rad."""
-
-    radius: float
-    columns, cycles, is_trend = 1, None, False
-    cause = 'play, or friction that winds up the gear'
 
     @property
-    def name(self) -> str:
-        """The name in reports."""
-        return f'hysteresis ±{number(self.radius * ARC_MINUTES)} arcmin'
+    def cycles(self) -> Fraction:
+        """Of an order: per turn of the rotor; 0 of another term."""
+        return self.entry.cycles if isinstance(self.entry, Order) else Fraction(0)
 
     @property
-    def unit(self) -> float:
-        """The greatest value of the column."""
-        return self.radius
+    def coefficients(self) -> tuple[str, ...]:
+        """Names of its coefficients, one for each column."""
+        return ('cos', 'sin') if isinstance(self.entry, Order) else ('coefficient',)
+
+    def fitted(self, coefficients: Sequence[float]) -> Order | Stop | Compliance:
+        """Its entry with coefficients."""
+        entry: Any = self.entry
+        fitted: Order | Stop | Compliance = replace(
+            entry, **dict(zip(self.coefficients, coefficients, strict=True))
+        )
+        return fitted
 
     def values(self, samples: Samples, at: Array) -> Array:
-        """The states at some samples, (at, 1)."""
-        return samples.stop_states(self.radius)[0][at, None]
-
-
-@dataclass(frozen=True, slots=True)
-class TorqueTerm:
-    """The torque at the output less its mean, N·m."""
-
-    mean: float
-    unit: float
-    """N·m: the standard deviation of the torque."""
-    name = 'wind-up'
-    columns, cycles, radius, is_trend = 1, None, None, False
-    cause = 'torsional compliance under the torque'
-
-    def values(self, samples: Samples, at: Array) -> Array:
-        """The torques at some samples, (at, 1)."""
-        return np.asarray(samples.torque)[at, None] - self.mean
-
-
-Term = OrderTerm | StopTerm | TorqueTerm
+        """Its columns at some samples, (at, columns); of orders exact after many turns."""
+        match self.entry:
+            case Order(cycles=cycles):
+                p, q = cycles.as_integer_ratio()
+                turns = np.fmod(p % q * np.fmod(samples.turns[at], q), q) / q
+                phase = TURN * turns + float(cycles) * samples.angle[at]
+                return np.stack([np.cos(phase), np.sin(phase)], axis=1)
+            case Stop(radius=radius):
+                return samples.stop_states(radius)[0][at, None]
+            case Compliance(torque=mean):
+                return np.asarray(samples.torque)[at, None] - mean
 
 
 def output_cycles(ratio: Fraction) -> Fraction:
@@ -220,18 +179,22 @@ def output_cycles(ratio: Fraction) -> Fraction:
     return (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
 
 
-def _order(body: str, multiple: int, unit: Fraction) -> OrderTerm:
+def _order(body: str, multiple: int, unit: Fraction) -> Term:
     most, causes = _BODIES[body]
     cause = causes[multiple > 1] if multiple <= most else ''
-    return OrderTerm(f'{body} × {multiple}', multiple * unit, cause)
+    return _named(f'{body} × {multiple}', multiple * unit, cause)
 
 
-def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> OrderTerm:
+def _named(name: str, cycles: Fraction, cause: str, *, is_trend: bool = False) -> Term:
+    return Term(name, cause, Order(name, cycles, 0.0, 0.0), is_trend=is_trend)
+
+
+def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> Term:
     """Name an order."""
     for body, unit in bodies(output_cycles(ratio), mechanism).items():
         if (multiple := cycles / unit).denominator == 1:
             return _order(body, int(multiple), unit)
-    return OrderTerm(f'rotor × {cycles}', cycles, 'another shaft, or a bearing')
+    return _named(f'rotor × {cycles}', cycles, 'another shaft, or a bearing')
 
 
 def known_orders(
@@ -239,32 +202,31 @@ def known_orders(
     ratio: Fraction,
     mechanism: Mechanism | None,
     refused: dict[str, str],
-) -> list[OrderTerm]:
+) -> list[Term]:
     """The orders of which a recording contains two cycles, after trends instead of others.
 
     Trends are of the output. Other orders repeat within the calibrated span of the output, so that
     they would be used where they are not known.
     """
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
-    found: dict[Fraction, OrderTerm] = {}
+    found: dict[Fraction, Term] = {}
     for body, unit in bodies(output_cycles(ratio), mechanism).items():
         for multiple in range(1, _BODIES[body][0] + 1):
-            order = _order(body, multiple, unit)
-            held = travel * float(order.cycles)
+            order, cycles = _order(body, multiple, unit), multiple * unit
+            held = travel * float(cycles)
             if held >= CYCLES:
-                found.setdefault(order.cycles, order)
+                found.setdefault(cycles, order)
                 continue
             refused[order.name] = f'the longest travel holds {held:.2g} cycles, less than 2'
             # Higher multiples do not differ from the first over a part of its cycle, and a whole
             # number of cycles in a turn of the rotor is not tied to the output's angle.
             few = body == 'output' and multiple <= 1.0 + travel * float(unit)
-            if few and order.cycles.denominator > 1:
-                trend = OrderTerm(f'trend × {multiple}', order.cycles, _TREND, is_trend=True)
-                found[order.cycles] = trend
+            if few and cycles.denominator > 1:
+                found[cycles] = _named(f'trend × {multiple}', cycles, _TREND, is_trend=True)
     return sorted(found.values(), key=lambda term: not term.is_trend)
 
 
-def wind_up(samples: Sequence[Samples], refused: dict[str, str]) -> list[TorqueTerm]:
+def wind_up(samples: Sequence[Samples], refused: dict[str, str]) -> list[Term]:
     """The wind-up, if torque was recorded and varies."""
     torques = [s.torque for s in samples if s.torque is not None]
     if len(torques) < len(samples):
@@ -276,23 +238,24 @@ def wind_up(samples: Sequence[Samples], refused: dict[str, str]) -> list[TorqueT
     if deviation <= 1e-9 * abs(mean) or deviation == 0.0:
         refused['wind-up'] = 'the torque does not vary'
         return []
-    return [TorqueTerm(mean, deviation)]
+    cause = 'torsional compliance under the torque'
+    return [Term('wind-up', cause, Compliance(0.0, mean), deviation)]
 
 
-def stops(samples: Sequence[Samples], refused: dict[str, str]) -> list[StopTerm]:
+def stops(samples: Sequence[Samples], refused: dict[str, str]) -> list[Term]:
     """Stop operators over the width of the error, which is at least that of its hysteresis.
 
     Those are left out whose travel was made too seldom to know the state.
     """
     width = max(float(np.ptp(np.quantile(s.error, (0.005, 0.995)))) for s in samples)
     kept = []
-    for term in map(StopTerm, (width * _RADII).tolist() if width > 0.0 else []):
-        known = np.concatenate([s.stop_states(term.radius)[1] for s in samples])
-        if known.mean() >= _KNOWN:
-            kept.append(term)
+    for radius in (width * _RADII).tolist() if width > 0.0 else []:
+        name = f'hysteresis ±{number(radius * ARC_MINUTES)} arcmin'
+        known = [s.stop_states(radius)[1] for s in samples]
+        if (share := np.concatenate(known).mean()) >= _KNOWN:
+            kept.append(Term(name, _HYSTERESIS, Stop(radius, 0.0), radius))
+            for s, states in zip(samples, known, strict=True):
+                s.used = np.flatnonzero(states)  # where all smaller ones are known, too
         else:
-            refused[term.name] = f'its state is known at {100 * known.mean():.0f} % of the samples'
-    for s in samples:
-        all_known = [s.stop_states(term.radius)[1] for term in kept]
-        s.used = np.flatnonzero(np.all([np.ones(len(s.error), bool), *all_known], axis=0))
+            refused[name] = f'its state is known at {100 * share:.0f} % of the samples'
     return kept

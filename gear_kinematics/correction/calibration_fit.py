@@ -1,0 +1,82 @@
+"""How well a calibration fits a measured transmission error."""
+
+import math
+from typing import Any, NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+
+_SHARE = 0.05  # of samples that may be outside of a 95 % interval
+_TOLERATED = 0.07  # since the width of an interval is known to a few percent (docs/calibration.md)
+# Standard deviations that chance exceeds with 1 % in a single judgement, and with 0.1 % where one
+# follows the other, as in the node.
+_UNLIKELY_ONCE, _UNLIKELY = 2.326, 3.090
+
+
+class CalibrationFit(NamedTuple):
+    """How the measured transmission error compares with the calibration."""
+
+    samples: int
+    explained: float | None
+    """Share of the variance of the error; None if the error is constant."""
+    outside: float
+    """Share of samples outside of the 95 % interval, apart from the encoder's zero."""
+    fits: bool
+    """Whether that many would be outside of a true interval by chance, or hardly more are."""
+    independent: float
+    """Number of independent samples, of whether they are outside."""
+
+    @property
+    def outside_uncertainty(self) -> float:
+        """Expanded uncertainty (95 %) of the share that would be outside in the long run."""
+        # Agresti and Coull's estimate, which is not 0 where no sample is outside.
+        share = (self.outside * self.independent + 2.0) / (self.independent + 4.0)
+        return 2.0 * math.sqrt(share * (1.0 - share) / (self.independent + 4.0))
+
+    @classmethod
+    def of(cls, error: Array, residual: Array, half_width: Array, *, once: bool = False) -> Self:
+        """Judge samples, (n,) each, rad; the zero of the encoder, the mean, is taken out.
+
+        Args:
+            error: measured minus ideal output angle.
+            residual: measured minus corrected output angle.
+            half_width: of the interval.
+            once: whether this is the only judgement, not one of many.
+        """
+        error, residual = (column - column[0] for column in (error, residual))  # rounds less
+        error, residual = error - error.mean(), residual - residual.mean()
+        variance = float(error @ error)
+        explained = 1.0 - float(residual @ residual) / variance if variance else None
+        is_outside = np.abs(residual) > half_width
+        outside = float(np.mean(is_outside))
+        independent = independent_samples(is_outside - outside)
+        # The arc sine of the root of a binomial share is about normal, with the variance 1/(4 n)
+        # (M. S. Bartlett, Journal of the Royal Statistical Society, Supplement 3 (1936) 68).
+        excess = math.asin(math.sqrt(outside)) - math.asin(math.sqrt(_SHARE))
+        deviations = 2.0 * math.sqrt(independent) * excess
+        by_chance = deviations <= (_UNLIKELY_ONCE if once else _UNLIKELY)
+        fits = outside <= _TOLERATED or by_chance
+        return cls(len(error), explained, outside, fits, independent)
+
+
+def independent_samples(residual: Array) -> float:
+    """The number of independent samples that a series is worth, at least 1.
+
+    Args:
+        residual: (n,), with a mean of 0.
+
+    Returns:
+        n/τ, with the autocorrelation time τ from the initial positive autocorrelations (Geyer).
+    """
+    count = len(residual)
+    size = 1 << (2 * count - 1).bit_length()
+    spectrum = np.fft.rfft(residual, size)
+    correlation = np.fft.irfft(spectrum * spectrum.conj(), size)[:count]
+    if not correlation[0] > 0.0:
+        return float(count)
+    correlation /= correlation[0]
+    ends = np.flatnonzero(correlation <= 0.0)
+    positive = correlation[1 : ends[0] if len(ends) else count]
+    return max(1.0, count / (1.0 + 2.0 * float(positive.sum())))
