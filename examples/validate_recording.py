@@ -6,16 +6,15 @@ python validate_recording.py [BAG [PARAMETERS]]
 import sys
 from pathlib import Path
 
-from gear_kinematics.parameters import NodeParameters, default_config
-from gear_kinematics.validation.task import Task
-from gear_kinematics.validation.validate_bag import validate_bag
+from gear_kinematics.parameters import default_config
+from gear_kinematics.validation import explain, validate
 
 ROOT = Path(__file__).parents[1]
 
 
-def test_recording(bag: Path, config: Path) -> None:
-    report = validate_bag(Task(bag, NodeParameters.load(config), str(config)))
-    assert report.passed, report.error or '; '.join(finding.text for finding in report.findings)
+def test_recording(bag: Path, parameters: Path) -> None:
+    report = validate(bag, parameters)
+    assert report.passed, explain(report)
 
 
 if __name__ == '__main__':

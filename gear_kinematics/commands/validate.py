@@ -14,6 +14,7 @@ from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.task import QUANTITIES, Task, Tolerances
 from gear_kinematics.validation.validate_bag import WORK, unusable, validate_bag
+from gear_kinematics.wire.joint_reader import JOINT_MISSING
 
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
@@ -103,10 +104,12 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Task:
     config = arguments.load_config(options, bag)
+    file = arguments.config_path(options, bag)
+    calibration = bags.calibration_path(options, config, bag)
     return Task(
         bag,
-        config,
-        config=str(arguments.config_path(options, bag)),
+        replace(config, calibration=str(calibration or '')),
+        config=str(file),
         tolerances=tolerances,
         allow_offset=options.allow_offset,
         strict=options.strict,
@@ -115,7 +118,6 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
         output_topic=options.output_topic,
         poses_topic=options.poses_topic,
         calibration=bags.load_calibration(options, config, bag),
-        calibration_file=str(bags.calibration_path(options, config, bag) or ''),
         debug=options.debug,
     )
 
@@ -132,6 +134,14 @@ def _validated(options: argparse.Namespace, tasks: Sequence[Task]) -> dict[Path,
             return validate_bag(task, report_progress, play)
 
     return {
-        task.bag: replace(report, bag=str(task.bag))  # as it was given
+        task.bag: _with_option(replace(report, bag=str(task.bag)))  # as it was given
         for task, report in bags.results(options, WORK, tasks, 'bags', validate)
     }
+
+
+def _with_option(report: BagReport) -> BagReport:
+    """Name the option for another joint, if no message has that of the rotor."""
+    rotor = report.rotor
+    if report.error and rotor and not rotor.valid and JOINT_MISSING in rotor.rejected:
+        return replace(report, error=f'{report.error}; name it with --joint')
+    return report

@@ -57,7 +57,6 @@ def run(console: Console, calibration_file: Path | None = None) -> BagReport:
         tolerances=Tolerances(TOLERANCE, TOLERANCE * config.eccentricity, TOLERANCE, TOLERANCE),
         strict=True,
         calibration=calibration,
-        calibration_file=config.calibration,
     )
     corrected = corrected_beside() if calibration else {}
     # Not the node's own formulas.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.state.rotor_input import RotorSamples
-from gear_kinematics.validation.output_topics import STATE_UNITS, JointStateTopic
+from gear_kinematics.validation.output_topics import STATE_UNITS, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
 
@@ -45,7 +45,7 @@ class CorrectedState(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = STATE_UNITS
 
-    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:
+    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:
         position = self._ideal_angle(turns, samples['angle']) + samples['deviation']
         history = samples['unknown_history']
         ratio = self._gear.gear_ratio
@@ -64,7 +64,7 @@ class CorrectedInterval(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = {'half width': 'rad'}
 
-    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:  # noqa: ARG002
+    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:  # noqa: ARG002
         half_width = samples['half_width']
         return ((half_width - samples['unknown_history'], half_width),)
 

@@ -1,18 +1,20 @@
 """Causes of deviations: an offset, another mechanism, unit or shaft, another order of poses."""
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.uncertainty import student_t
+from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_values
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
@@ -20,32 +22,15 @@ Stamps = NDArray[np.int64]
 
 _MAX_TEETH = 1000
 _MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
-_MAX_BLOCKS, _MIN_BLOCKS = 32, 4
-"""Numbers of blocks; with many samples there are at least half of the greatest number."""
-_ROUNDING = 1e-9
-"""Relative rounding of the sums."""
+_BLOCKS, _MIN_BLOCKS = 32, 4
+_ROUNDING = 5.1e-10
+"""Standard uncertainty by the rounding of the sums, relative."""
 _CLEAR_DEVIATION = 2.0
 """In expanded uncertainties."""
 _MAX_BODIES = 6
 """Number of bodies up to which all orders are tried."""
 _MAX_SCATTER = 1e-5
 """Greatest deviation of all values together from a constant factor, relative to them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """A value with its uncertainty."""
-
-    value: float
-    uncertainty: float
-    """Expanded, with a coverage of 95 %."""
-
-    def __str__(self) -> str:
-        return f'{self.value:.9g} ± {self.uncertainty:.2g}'
-
-    def is_near(self, other: float) -> bool:
-        """Whether another value is no clear deviation."""
-        return abs(self.value - other) <= _CLEAR_DEVIATION * self.uncertainty
 
 
 class AngleFit:
@@ -59,9 +44,8 @@ class AngleFit:
         self.count = 0
         self.lowest_error, self.highest_error = math.inf, -math.inf
         self._origin = (0.0, 0.0)
-        self._blocks = np.zeros((0, 6))
-        """Sums of 1, x, y, x², xy and the error."""
-        self._size = 1
+        self._sums: list[Array] = []
+        """Of 1, x, y, x², xy and the error, of parts of the batches."""
 
     def update(self, rotor_angle: Array, recorded: Array, error: Array) -> None:
         """Add samples (n,), rad; `error` is recorded minus recomputed."""
@@ -69,24 +53,12 @@ class AngleFit:
             return
         if not self.count:
             self._origin = (float(rotor_angle[0]), float(recorded[0]))
+        self.count += len(recorded)
         self.lowest_error = min(self.lowest_error, float(error.min()))
         self.highest_error = max(self.highest_error, float(error.max()))
         with np.errstate(over='ignore', invalid='ignore'):  # of garbage, which has no slope
             x, y = rotor_angle - self._origin[0], recorded - self._origin[1]
-            self._add(np.stack([np.ones(len(x)), x, y, x * x, x * y, error], axis=1))
-        self.count += len(recorded)
-
-    def _add(self, products: Array) -> None:
-        """Add products of samples to the sums of their blocks, and merge blocks in pairs."""
-        numbers = (self.count + np.arange(len(products))) // self._size
-        blocks, starts = np.unique(numbers, return_index=True)
-        sums = np.add.reduceat(products, starts)
-        if blocks[0] < len(self._blocks):
-            sums[0] += self._blocks[-1]
-        self._blocks = np.concatenate([self._blocks[: blocks[0]], sums])
-        while len(self._blocks) > _MAX_BLOCKS:
-            self._blocks = np.add.reduceat(self._blocks, np.arange(0, len(self._blocks), 2))
-            self._size *= 2
+            self._sums.append(_in_blocks(np.stack([np.ones(len(x)), x, y, x * x, x * y, error])))
 
     def offset(self, tolerance: float) -> float | None:
         """Return the constant offset of all errors, rad, or None if they are not constant."""
@@ -95,73 +67,83 @@ class AngleFit:
         offset = 0.5 * (self.lowest_error + self.highest_error)
         return offset if abs(offset) > tolerance else None
 
-    def mean_error(self) -> Measured | None:
+    def mean_error(self) -> Estimate | None:
         """Return the mean error, rad; None of too few samples."""
-        return _ratio_of_sums(self._blocks[:, 5], self._blocks[:, 0])
+        count, *_, error = self._blocks()
+        return _ratio_of_sums(error, count)
 
-    def slope(self) -> Measured | None:
+    def slope(self) -> Estimate | None:
         """Return output angle / rotor angle; None without motion, or of garbage."""
         with np.errstate(over='ignore', invalid='ignore'):
-            n, x, y, xx, xy, _ = self._blocks.T
+            n, x, y, xx, xy, _ = self._blocks()
             within = xx - x * x / n
-            if not within.sum() >= self.count * (_MIN_TURNING / _MAX_BLOCKS) ** 2:
+            if not within.sum() >= self.count * (_MIN_TURNING / _BLOCKS) ** 2:
                 return None
             found = _ratio_of_sums(xy - x * y / n, within)
-        return None if found is None or found.is_near(0.0) else found
+        return None if found is None or _is_near(found, 0.0) else found
+
+    def _blocks(self) -> Array:
+        return _in_blocks(np.concatenate(self._sums or [np.zeros((6, 0))], axis=1))
 
 
-def _ratio_of_sums(above: Array, below: Array) -> Measured | None:
+def _in_blocks(values: Array) -> Array:
+    """Sum values, (m, n), over blocks of successive ones."""
+    starts = np.linspace(0, values.shape[1], _BLOCKS, endpoint=False).astype(int)
+    return np.add.reduceat(values, np.unique(starts), axis=1) if values.size else values
+
+
+def _ratio_of_sums(above: Array, below: Array) -> Estimate | None:
     """Return the quotient of two sums over blocks."""
-    blocks = len(above)
-    if blocks < _MIN_BLOCKS:
+    if len(above) < _MIN_BLOCKS:
         return None
     with np.errstate(over='ignore', invalid='ignore', divide='ignore'):
-        value = float(above.sum() / below.sum())
-        without = (above.sum() - above) / (below.sum() - below)
-        scatter = float(np.sum((without - without.mean()) ** 2)) * (blocks - 1) / blocks
-    if not math.isfinite(value + scatter):
+        whole = float(above.sum() / below.sum())
+        values = pseudo_values([whole, *(above.sum() - above) / (below.sum() - below)])
+    if not np.isfinite(values).all():
         return None
-    spread = student_t(blocks - 1) * math.sqrt(scatter)
-    return Measured(value, spread + _ROUNDING * abs(value))
+    rounding = Component(_ROUNDING * abs(whole))
+    return replace(Estimate.of_mean(values.tolist(), rounding), value=whole)
+
+
+def _is_near(found: Estimate, other: float) -> bool:
+    """Whether another value is no clear deviation."""
+    return abs(found.value - other) <= _CLEAR_DEVIATION * (found.uncertainty or 0.0)
+
+
+def _written(found: Estimate) -> str:
+    return f'{found.value:.9g} ± {found.uncertainty:.2g}'
 
 
 def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
-    """Describe a systematic deviation of the recorded output angles, or return None.
-
-    Args:
-        gear: the assumed gear.
-        fit: of the recorded output angles.
-        tolerance: of the output angles, rad.
-    """
+    """Describe a systematic deviation of the output angles from a gear's, beyond a tolerance."""
     offset = fit.offset(tolerance)
     if offset is not None:
         return (
             f'the recorded output angle is off by a constant {offset:.12g} rad; '
-            '--allow-offset accepts it'
+            'allow_offset accepts it'
         )
     slope = fit.slope()
     if slope is None:
         return None
-    if not slope.is_near(float(1 / gear.gear_ratio)):
+    if not _is_near(slope, float(1 / gear.gear_ratio)):
         return _another_ratio(gear, slope)
     mean = fit.mean_error()
-    if mean and abs(mean.value) > tolerance and not mean.is_near(0.0):
+    if mean and abs(mean.value) > tolerance and not _is_near(mean, 0.0):
         return (
-            f'the recorded output angle is off by {mean} rad on average, and scatters from '
-            f'{fit.lowest_error:.3g} to {fit.highest_error:.3g} rad'
+            f'the recorded output angle is off by {_written(mean)} rad on average, and scatters '
+            f'from {fit.lowest_error:.3g} to {fit.highest_error:.3g} rad'
         )
     return None
 
 
-def _another_ratio(gear: Gear, slope: Measured) -> str:
-    relative = slope.uncertainty / abs(slope.value)
-    ratio = Measured(1.0 / slope.value, relative / abs(slope.value))
-    if slope.is_near(-float(1 / gear.gear_ratio)):
+def _another_ratio(gear: Gear, slope: Estimate) -> str:
+    ratio = _written(slope.inverse())
+    if _is_near(slope, -float(1 / gear.gear_ratio)):
         return (
             'the sign is flipped: the recorded output turns the other way (rotor_direction?), '
             f'with a ratio of {ratio}'
         )
-    spread = _CLEAR_DEVIATION * slope.uncertainty
+    spread = _CLEAR_DEVIATION * (slope.uncertainty or 0.0)
     if isinstance(gear, Mechanism) and (pair := _tooth_pair(gear, abs(slope.value), spread)):
         ring, satellite = pair
         flipped = ' with the sign flipped' if slope.value > 0.0 else ''
@@ -200,24 +182,17 @@ class FactorFit:
             self._sums += (x @ x, x @ y, y @ y)
 
     def factor(self) -> float | None:
-        """Return recorded / expected; None if it is not constant, or 1."""
-        with np.errstate(all='ignore'):  # garbage has no factor
+        """Return recorded / expected; None if it is not constant, or 1, or of garbage."""
+        with np.errstate(all='ignore'):
             xx, xy, yy = self._sums
             factor = float(xy / xx)
-            scatter = yy - factor * xy
-        if not (abs(factor - 1.0) > _MAX_SCATTER and scatter <= _MAX_SCATTER**2 * yy):
-            return None
-        return factor if math.isfinite(factor) else None
+            scatter = float(yy - factor * xy)
+        constant = math.isfinite(factor + scatter) and scatter <= _MAX_SCATTER**2 * yy
+        return factor if constant and abs(factor - 1.0) > _MAX_SCATTER else None
 
 
 def describe_factor(field: str, factor: float, ratio: GearRatio) -> str:
-    """Say by which factor the velocity or the effort is wrong, and why.
-
-    Args:
-        field: `velocity` or `effort`.
-        factor: recorded / expected.
-        ratio: of the gear.
-    """
+    """Say by which factor, recorded / expected, velocity or effort are wrong, and why."""
     of_rotor = float(ratio) if field == 'velocity' else 1.0 / float(ratio)
     reasons = {
         -1.0: 'the sign is flipped',
@@ -239,15 +214,10 @@ class PoseOrder:
     """Detects recorded poses that are the expected ones in another order."""
 
     def __init__(self, bodies: list[str], tolerance: float) -> None:
-        """Start with no poses.
-
-        Args:
-            bodies: names of the bodies in the expected order.
-            tolerance: m.
-        """
+        """Start with no poses of bodies, in the expected order, with a tolerance, m."""
         self._bodies = bodies
         self._tolerance = tolerance
-        self._found: dict[tuple[int, ...], tuple[int, int]] = {}  # number of messages, first stamp
+        self._found: defaultdict[tuple[int, ...], Occurrences] = defaultdict(Occurrences)
 
     def update(self, recorded: Array, expected: Array, error: Array, stamp: Stamps) -> None:
         """Add positions (n, bodies, 3) and the greatest error of each message (n,), m."""
@@ -258,20 +228,18 @@ class PoseOrder:
         for order in permutations(range(len(self._bodies))):
             if self._fits(recorded[worst], expected[worst, order]):
                 fits = self._fits(recorded[wrong], expected[wrong][:, order])
-                count, first = self._found.get(order, (0, int(stamp[worst])))
-                self._found[order] = count + int(np.count_nonzero(fits)), first
+                self._found[order].add(stamp[wrong[fits]])
                 return
 
     def causes(self, messages: int) -> Iterator[Finding]:
         """Describe the orders found in a number of messages."""
-        for order, (count, first) in self._found.items():
-            names = ', '.join(self._bodies[k] for k in order)
-            text = f'the poses are in another order: {names}'
-            if count == messages:
+        for order, found in self._found.items():
+            text = f'the poses are in another order: {", ".join(self._bodies[k] for k in order)}'
+            if found.count == messages:
                 yield Finding(text, cause=True)
             else:
-                text = f'in {count} of {messages} messages {text}'
-                yield Finding(text, cause=True, stamp=first, when='one at')
+                text = f'in {found.count} of {messages} messages {text}'
+                yield Finding(text, cause=True, stamp=found.first, when='the first at')
 
     def _fits(self, recorded: Array, expected: Array) -> NDArray[np.bool_]:
         return np.asarray(np.abs(recorded - expected).max(axis=(-2, -1)) <= self._tolerance)

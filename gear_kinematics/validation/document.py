@@ -76,12 +76,10 @@ def _bag(report: BagReport) -> dict[str, Any]:
 
 def _cases(report: BagReport) -> Iterator[Case]:
     """Yield the test cases of JUnit: the bag, its input, and each topic and field."""
-    texts = tuple(one.text for one in findings(report))
-    if report.verdict == Verdict.UNUSABLE:
-        # Even without an error, the suite must not look as if it passed.
-        yield Case('bag', texts or ('the bag is unusable',), 'error')
-    else:
-        yield Case('bag', () if report.passed else texts or ('the bag fails',))
+    # Even without a finding, the suite must not look as if it passed.
+    texts = tuple(one.text for one in findings(report)) or (f'the bag {OUTCOME[report.verdict]}',)
+    unusable = report.verdict == Verdict.UNUSABLE
+    yield Case('bag', () if report.passed else texts, 'error' if unusable else 'failure')
     if report.rotor:
         # Never fails by itself: its faults appear as wrong or missing outputs.
         yield Case(printable(f'input {report.rotor.topic}'))

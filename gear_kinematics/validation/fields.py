@@ -3,6 +3,7 @@
 import math
 import sys
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,70 +15,8 @@ from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
 
-_NONE = np.zeros(0, np.int64)
 _MAX_SAMPLES = 2000
 """Samples of the record, which is halved when there are more."""
-
-
-class FieldErrors:
-    """Statistics of the errors of one field, collected batch by batch."""
-
-    def __init__(
-        self, name: str, unit: str, tolerance: float, parts: Sequence[str] = ('',)
-    ) -> None:
-        """Start without samples.
-
-        Args:
-            name: of the field.
-            unit: of its errors.
-            tolerance: the greatest accepted error.
-            parts: names of the parts that are plotted.
-        """
-        self.name, self.unit, self.tolerance, self.parts = name, unit, tolerance, parts
-        self.non_finite = Occurrences()
-        self.absent = Occurrences()
-        self.max_error = 0.0
-        self._compared = 0
-        self._squares = 0.0
-        self._worst_stamp: int | None = None
-        self._worst_rotor_angle: float | None = None
-
-    def update(
-        self, error: Array, stamp: Array, rotor_angle: Array, absent: Array = _NONE
-    ) -> None:
-        """Add absolute errors (n,), and the stamps of samples that lack the field, (m,)."""
-        self._compared += len(error)
-        self.absent.add(absent)
-        finite = np.isfinite(error)
-        if not finite.all():
-            self.non_finite.add(stamp[~finite])
-            error, stamp, rotor_angle = error[finite], stamp[finite], rotor_angle[finite]
-        if not len(error):
-            return
-        self._squares += float(error @ error)
-        worst = int(np.argmax(error))
-        if error[worst] > self.max_error:
-            self.max_error = float(error[worst])
-            self._worst_stamp = int(stamp[worst])
-            self._worst_rotor_angle = float(rotor_angle[worst])
-
-    def report(self) -> FieldReport:
-        """Report on everything so far."""
-        finite = self._compared - self.non_finite.count
-        return FieldReport(
-            name=self.name,
-            unit=self.unit,
-            tolerance=self.tolerance,
-            compared=self._compared,
-            non_finite=self.non_finite.count,
-            absent=self.absent.count,
-            max_error=self.max_error,
-            rms_error=math.sqrt(self._squares / finite) if finite else 0.0,
-            worst_stamp=self._worst_stamp,
-            worst_rotor_angle=self._worst_rotor_angle,
-            first_non_finite=self.non_finite.first,
-            first_absent=self.absent.first,
-        )
 
 
 class FieldSamples(NamedTuple):
@@ -90,9 +29,64 @@ class FieldSamples(NamedTuple):
     error: Array
     """(n,): recorded minus expected, or its magnitude; infinite where the recorded value is not
     finite, NaN where the field is absent."""
+    one_sided: Array = np.zeros(0, np.intp)
+    """(m,): indices of the messages with the field in input or output only."""
 
 
-_SAMPLES = FieldSamples._fields
+class FieldErrors:
+    """Statistics of the errors of one field, collected batch by batch."""
+
+    def __init__(
+        self, name: str, unit: str, tolerance: float, parts: Sequence[str] = ('',)
+    ) -> None:
+        """Start without samples; the parts are plotted, and have names if there are several."""
+        self.name, self.tolerance, self.parts = name, tolerance, parts
+        self.non_finite = Occurrences()
+        self.absent = Occurrences()
+        self._worst = FieldReport(name, unit, tolerance)
+        self._compared = 0
+        self._squares = 0.0
+
+    def update(self, samples: FieldSamples, stamp: Array, rotor_angle: Array) -> None:
+        """Add samples of messages, with their stamps, ns, and rotor angles, rad, (n,)."""
+        error = np.abs(samples.error)
+        self.absent.add(stamp[samples.one_sided])
+        self.non_finite.add(stamp[error == np.inf])
+        finite = np.isfinite(error)
+        if not finite.all():
+            error, stamp, rotor_angle = error[finite], stamp[finite], rotor_angle[finite]
+        if not len(error):
+            return
+        self._compared += len(error)
+        self._squares += float(error @ error)
+        worst = int(np.argmax(error))
+        if error[worst] > self._worst.max_error:
+            self._worst = replace(
+                self._worst,
+                max_error=float(error[worst]),
+                worst_stamp=int(stamp[worst]),
+                worst_rotor_angle=float(rotor_angle[worst]),
+            )
+
+    def report(self) -> FieldReport:
+        """Report on everything so far."""
+        return replace(
+            self._worst,
+            compared=self._compared + self.non_finite.count,
+            non_finite=self.non_finite.count,
+            absent=self.absent.count,
+            rms_error=math.sqrt(self._squares / self._compared) if self._compared else 0.0,
+            first_non_finite=self.non_finite.first,
+            first_absent=self.absent.first,
+        )
+
+
+class _Rows(NamedTuple):
+    """Samples of all fields of compared messages."""
+
+    stamp: Array
+    rotor_angle: Array
+    fields: Sequence[FieldSamples]
 
 
 class SeriesRecorder:
@@ -101,81 +95,71 @@ class SeriesRecorder:
     def __init__(self, fields: Sequence[FieldErrors]) -> None:
         """Start without samples of these fields."""
         self._fields = fields
-        columns = [('stamp', np.int64), ('rotor_angle', np.float64)]
-        self._row = np.dtype(columns + [(field.name, _samples_type(field)) for field in fields])
-        self._kept: list[Array] = []
+        self._kept: list[_Rows] = []
         self._interval = 1
 
     def update(self, stamp: NDArray[np.int64], rotor_angle: Array, *fields: FieldSamples) -> None:
         """Add compared messages (n,): stamps, ns, rotor angles, rad, and their fields."""
         if not len(stamp):
             return
-        self._kept.append(self._thinned(stamp, rotor_angle, fields, self._interval))
-        while sum(map(len, self._kept)) > _MAX_SAMPLES:
-            rows = np.concatenate(self._kept)
-            samples = [
-                FieldSamples(*(rows[field.name][name] for name in _SAMPLES))
-                for field in self._fields
-            ]
-            self._kept = [self._thinned(rows['stamp'], rows['rotor_angle'], samples, 2)]
+        self._kept.append(self._thinned(_Rows(stamp, rotor_angle, fields), self._interval))
+        while sum(len(rows.stamp) for rows in self._kept) > _MAX_SAMPLES:
+            self._kept = [self._thinned(_joined(self._kept), 2)]
             self._interval *= 2
 
     def series(self, topic: str, start: int) -> Series | None:
-        """Return the record, or None if nothing was compared.
-
-        Args:
-            topic: name of the topic.
-            start: stamp at the time 0, ns.
-        """
+        """Return the record, with the time 0 at a stamp, ns; None if nothing was compared."""
         if not self._kept:
             return None
-        rows = np.concatenate(self._kept)
-        time = (rows['stamp'] - start) / SECOND
+        rows = _joined(self._kept)
         curves = [
-            _curve(field, rows[field.name])
-            for field in self._fields
-            if not all(np.isnan(rows[field.name][name]).all() for name in ('recorded', 'expected'))
+            _curve(field, samples)
+            for field, samples in zip(self._fields, rows.fields, strict=True)
+            if not (np.isnan(samples.recorded).all() and np.isnan(samples.expected).all())
         ]
-        return Series(topic, time.tolist(), rows['rotor_angle'].tolist(), tuple(curves))
+        time = (rows.stamp - start) / SECOND
+        return Series(topic, time.tolist(), rows.rotor_angle.tolist(), tuple(curves))
 
-    def _thinned(
-        self, stamp: Array, rotor_angle: Array, fields: Sequence[FieldSamples], interval: int
-    ) -> Array:
+    def _thinned(self, rows: _Rows, interval: int) -> _Rows:
         """Keep one sample of each interval, of a field beyond its tolerance the worst one."""
-        count = -(-len(stamp) // interval)
-        missing = count * interval - len(stamp)  # of the last interval
-        sizes = [
-            np.pad(_size(samples.error), (0, missing), constant_values=-1.0).reshape(count, -1)
-            for samples in fields
-        ]
-        excess = np.zeros((count, interval))
-        for size, field in zip(sizes, self._fields, strict=True):
+        excess = np.zeros(len(rows.stamp))
+        for field, samples in zip(self._fields, rows.fields, strict=True):
+            size = _size(samples.error)
             share = size / max(field.tolerance, sys.float_info.min)
             excess = np.maximum(excess, np.where(size > field.tolerance, share, 0.0))
-        first = np.arange(0, len(stamp), interval)
-        middle = np.minimum(first + interval // 2, len(stamp) - 1)
-        chosen = np.where(excess.any(axis=1), first + np.argmax(excess, axis=1), middle)
-        kept = np.empty(count, self._row)
-        kept['stamp'], kept['rotor_angle'] = stamp[chosen], rotor_angle[chosen]
-        for size, field, samples in zip(sizes, self._fields, fields, strict=True):
+        worst = _greatest(excess, interval)
+        middle = np.minimum(np.arange(0, len(excess), interval) + interval // 2, len(excess) - 1)
+        chosen = np.where(excess[worst] > 0.0, worst, middle)
+        fields = []
+        for field, samples in zip(self._fields, rows.fields, strict=True):
             # The worst error always, the values of another sample if they agree anyway.
-            worst = first + np.argmax(size, axis=1)
-            shown = np.where(size.max(axis=1) > field.tolerance, worst, chosen)
-            rows = kept[field.name]
-            rows['recorded'], rows['expected'] = samples.recorded[shown], samples.expected[shown]
-            rows['error'] = samples.error[worst]
-        return kept
+            size = _size(samples.error)
+            worst = _greatest(size, interval)
+            shown = np.where(size[worst] > field.tolerance, worst, chosen)
+            values = samples.recorded[shown], samples.expected[shown]
+            fields.append(FieldSamples(*values, samples.error[worst]))
+        return _Rows(rows.stamp[chosen], rows.rotor_angle[chosen], fields)
 
 
-def _samples_type(field: FieldErrors) -> np.dtype[Any]:
-    """Type of the `FieldSamples` of one message."""
-    parts = (np.float64, (len(field.parts),))
-    return np.dtype([('recorded', *parts), ('expected', *parts), ('error', np.float64)])
+def _joined(kept: Sequence[_Rows]) -> _Rows:
+    stamps, angles, fields = zip(*kept, strict=True)
+    samples = (
+        FieldSamples(*map(np.concatenate, zip(*of, strict=True)))
+        for of in zip(*fields, strict=True)
+    )
+    return _Rows(np.concatenate(stamps), np.concatenate(angles), list(samples))
 
 
-def _curve(field: FieldErrors, samples: Array) -> Curve:
+def _greatest(size: Array, interval: int) -> Array:
+    """Index of the greatest of each interval of sizes, (n,), none of which is below -1."""
+    padded = np.pad(size, (0, -len(size) % interval), constant_values=-1.0)
+    found: Array = np.arange(0, len(size), interval) + padded.reshape(-1, interval).argmax(axis=1)
+    return found
+
+
+def _curve(field: FieldErrors, samples: FieldSamples) -> Curve:
     """Return the curve of the part that is farthest off where the field is worst."""
-    recorded, expected, error = (samples[name] for name in _SAMPLES)
+    recorded, expected, error, _ = samples
     worst = int(np.argmax(_size(error)))
     off = np.abs(recorded[worst] - expected[worst])
     part = int(np.argmax(np.nan_to_num(off, nan=np.inf)))

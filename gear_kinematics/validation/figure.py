@@ -1,23 +1,17 @@
 """The curves of a validation, and the mechanism that moves with them."""
 
 from collections.abc import Sequence
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
 from gear_kinematics.kinematics import solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.report.document import (
-    Array,
-    Figure,
-    Line,
-    Panel,
-    Pen,
-    printable,
-)
+from gear_kinematics.report.document import Array, Figure, Line, Panel, Pen, printable
 from gear_kinematics.report.mechanism import MovingMechanism
 from gear_kinematics.validation.findings import field_name
-from gear_kinematics.validation.report import BagReport, Curve, FieldReport, Lane, Series
+from gear_kinematics.validation.report import BagReport, Curve, FieldReport, Lane
 
 _TIME = 'time [s]'
 _MARGIN = 0.02
@@ -29,62 +23,59 @@ class _Compared(NamedTuple):
 
     name: str
     field: FieldReport
-    series: Series
+    time: Sequence[float]
     curve: Curve
 
     def value_panel(self) -> Panel:
         """Draw what was recorded over what was expected."""
         lines = (
-            _line(self.series, 'expected', Pen.MODEL, self.curve.expected),
-            _line(self.series, 'recorded', Pen.FIRST, self.curve.recorded),
+            _line(self.time, 'expected', Pen.MODEL, self.curve.expected),
+            _line(self.time, 'recorded', Pen.FIRST, self.curve.recorded),
         )
         title = f'{self.name}: {printable(self.curve.part)}' if self.curve.part else self.name
         return Panel(title, _TIME, printable(f'{self.field.name} [{self.field.unit}]'), lines)
 
-    def error_panel(self, title: str) -> Panel:
+    def error_panel(self, title: str = '') -> Panel:
         """Draw the error within its tolerance."""
-        line = _line(self.series, 'error', Pen.SECOND, self.curve.error)
-        tolerance, levels = self.field.tolerance, []
-        if tolerance:
-            levels.append((tolerance, 'tolerance'))
-            if (line.y < 0.0).any():
-                levels.append((-tolerance, ''))
+        line, levels = _line(self.time, 'error', Pen.SECOND, self.curve.error), []
+        if tolerance := self.field.tolerance:
+            levels = [(tolerance, 'tolerance'), (-tolerance, '')]
+        shown = tuple(levels if (line.y < 0.0).any() else levels[:1])
         label = printable(f'error [{self.field.unit}]')
-        return Panel(title, _TIME, label, (line,), levels=tuple(levels), scale='symlog')
+        return Panel(title, _TIME, label, (line,), levels=shown, scale='symlog')
 
 
 def figure(report: BagReport) -> Figure | None:
     """Return the panels of a bag over time, with what failed first; None if there is nothing."""
+    series = {one.topic: one for one in report.series if one.time}
     compared = [
-        _Compared(field_name(topic, field), field, series, curve)
+        _Compared(field_name(topic, field), field, series[topic.topic].time, curve)
         for topic in report.topics
-        for series in report.series
-        if series.topic == topic.topic and series.time
+        if topic.topic in series
         for field in topic.fields
-        for curve in series.curves
+        for curve in series[topic.topic].curves
         if curve.field == field.name
     ]
     if not compared and not report.lanes:
         return None
     failed = [one for one in compared if not one.field.passed]
     passed = [one for one in compared if one.field.passed]
-    panels = []
-    for one in (*failed, *passed[:1]):
-        panels += [one.value_panel(), one.error_panel('')]
+    shown = ((one.value_panel(), one.error_panel()) for one in (*failed, *passed[:1]))
+    panels = list(chain.from_iterable(shown))
     if report.lanes:
         place = 0 if not failed and any(lane.fails for lane in report.lanes) else 2
-        panels.insert(place, _lanes(report.lanes, compared[0].series.time if compared else ()))
+        panels.insert(place, _lanes(report.lanes, compared[0].time if compared else ()))
     if not failed:
         panels += [one.error_panel(one.name) for one in passed[1:] if one.field.unit == 'm']
     if compared:
-        series = report.series[0]
-        line = _line(series, 'rotor angle', Pen.FAINT, series.rotor_angle)
+        first = report.series[0]
+        line = _line(first.time, 'rotor angle', Pen.FAINT, first.rotor_angle)
         panels.append(Panel('', _TIME, 'rotor angle [rad]', (line,)))
     return Figure(tuple(panels), stacked=True)
 
 
-def _line(series: Series, name: str, pen: Pen, values: Sequence[float]) -> Line:
-    return Line(name, pen, np.asarray(series.time, float), np.asarray(values, float))
+def _line(time: Sequence[float], name: str, pen: Pen, values: Sequence[float]) -> Line:
+    return Line(name, pen, np.asarray(time, float), np.asarray(values, float))
 
 
 def _lanes(lanes: Sequence[Lane], time: Sequence[float]) -> Panel:
@@ -99,9 +90,8 @@ def _lanes(lanes: Sequence[Lane], time: Sequence[float]) -> Panel:
         spans = np.clip(np.reshape(lane.spans, (-1, 2)), first - margin, last + margin)
         # A gap in the line after each span.
         x = np.insert(spans, 2, np.nan, axis=1).ravel()
-        lines.append(
-            Line(name, Pen.FIFTH if lane.fails else Pen.SECOND, x, np.full(len(x), -float(k)))
-        )
+        pen = Pen.FIFTH if lane.fails else Pen.SECOND
+        lines.append(Line(name, pen, x, np.full(len(x), -float(k))))
         levels.append((-float(k), f'{name}: {lane.count}'))
     return Panel('', _TIME, '', tuple(lines), levels=tuple(levels), lanes=True)
 

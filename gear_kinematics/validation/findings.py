@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from gear_kinematics.report import document
-from gear_kinematics.report.document import Cell, counted, number, printable
+from gear_kinematics.report.document import counted, number, printable
 from gear_kinematics.validation.report import BagReport, FieldReport, Finding, TopicReport
 from gear_kinematics.validation.task import QUANTITIES
 
@@ -28,6 +28,11 @@ def findings(report: BagReport) -> list[document.Finding]:
         )
         for found in (*wrong, *notes, *_left_out(report))
     ]
+
+
+def explain(report: BagReport) -> str:
+    """Return all that is wrong with a bag, a line each."""
+    return '\n'.join(found.text for found in findings(report))
 
 
 def told(found: Finding, report: BagReport) -> str:
@@ -65,47 +70,37 @@ def worst_field(report: BagReport) -> FieldReport | None:
 def faults(report: BagReport) -> Iterator[Finding]:
     """Yield why topics and their fields fail."""
     for topic in report.topics:
-        yield from _topic_faults(topic)
+        if not topic.compared:
+            yield Finding('no message could be compared', topic=topic.topic, missing=True)
+        for count, fault, stamp in (
+            (topic.missing, 'missing', topic.first_missing),
+            (topic.extra, 'too many', topic.first_extra),
+            (topic.out_of_order, 'out of order', topic.first_out_of_order),
+        ):
+            if count:
+                text = f'{counted(count, "message")} {fault}'
+                yield Finding(text, topic=topic.topic, stamp=stamp, when=_FIRST, missing=True)
+        yield from (replace(fault, topic=topic.topic) for fault in topic.faults)
         for field in topic.fields:
             yield from _field_faults(field_name(topic, field), field)
 
 
-def _topic_faults(topic: TopicReport) -> Iterator[Finding]:
-    """Yield why a topic fails, apart from its fields."""
-    if not topic.compared:
-        yield Finding('no message could be compared', topic=topic.topic, missing=True)
-    for count, fault, stamp in (
-        (topic.missing, 'missing', topic.first_missing),
-        (topic.extra, 'too many', topic.first_extra),
-        (topic.out_of_order, 'out of order', topic.first_out_of_order),
-    ):
-        if count:
-            text = f'{counted(count, "message")} {fault}'
-            yield Finding(text, topic=topic.topic, stamp=stamp, when=_FIRST, missing=True)
-    for found in topic.faults:
-        yield replace(found, topic=topic.topic)
-
-
 def _field_faults(name: str, field: FieldReport) -> Iterator[Finding]:
-    """Yield why a field fails."""
     if field.is_beyond:
-        quantity = QUANTITIES.get(field.unit)
-        option = f' (--tolerance-{quantity})' if quantity else ''
+        quantity = f' of the {QUANTITIES[field.unit]}' if field.unit in QUANTITIES else ''
         rotor_angle = angle(field.worst_rotor_angle)
         where = f' at rotor angle {rotor_angle} rad' if rotor_angle else ''
         text = (
-            f'error {number(field.max_error)} {field.unit}{where} exceeds the tolerance '
-            f'{number(field.tolerance)} {field.unit}{option}'
+            f'error {number(field.max_error)} {field.unit}{where} exceeds the tolerance'
+            f'{quantity}, {number(field.tolerance)} {field.unit}'
         )
         yield Finding(text, topic=name, stamp=field.worst_stamp, when='at')
-    absent = 'with the field in input or output only'
-    for count, noun, fault, stamp in (
-        (field.non_finite, 'value', 'not finite', field.first_non_finite),
-        (field.absent, 'sample', absent, field.first_absent),
-    ):
-        if count:
-            text = f'{counted(count, noun)} {fault}'
-            yield Finding(text, topic=name, stamp=stamp, when=_FIRST)
+    if field.non_finite:
+        text = f'{counted(field.non_finite, "value")} not finite'
+        yield Finding(text, topic=name, stamp=field.first_non_finite, when=_FIRST)
+    if field.absent:
+        text = f'{counted(field.absent, "sample")} with the field in input or output only'
+        yield Finding(text, topic=name, stamp=field.first_absent, when=_FIRST)
 
 
 def _left_out(report: BagReport) -> Iterator[Finding]:
@@ -117,13 +112,6 @@ def _left_out(report: BagReport) -> Iterator[Finding]:
     ]
     if left_out:
         yield Finding(f'not judged, as caused by the recorder: {", ".join(left_out)}')
-
-
-def moment(stamp: int | None, report: BagReport) -> tuple[Cell, Cell]:
-    """Write a stamp in ns, and its distance from the first stamp of the input in s."""
-    time = None if stamp is None else report.seconds(stamp)
-    offset = '' if time is None else f'{time:+.6f}'
-    return Cell('' if stamp is None else str(stamp), unit='ns'), Cell(offset, unit='s')
 
 
 def angle(value: float | None) -> str:

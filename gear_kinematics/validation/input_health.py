@@ -1,11 +1,13 @@
-"""Rate, gaps and speed of the rotor topic."""
+"""Rate, gaps and speed of the rotor topic, and the checks of its contents."""
+
+from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation.occurrences import Occurrences
-from gear_kinematics.validation.report import Gap, InputReport
+from gear_kinematics.validation.report import Finding, Gap, InputReport
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[np.float64]
@@ -19,11 +21,7 @@ class InputHealth:
     """Collects statistics of the samples, batch by batch, in bounded memory."""
 
     def __init__(self, max_speed: float) -> None:
-        """Start without samples.
-
-        Args:
-            max_speed: greatest possible speed of the rotor, rad/s.
-        """
+        """Start without samples; the rotor can turn at `max_speed`, rad/s."""
         self.gaps = Occurrences()
         self._max_speed = max_speed
         self._first_stamp: int | None = None
@@ -99,3 +97,38 @@ class InputHealth:
         self._longest += [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in longest]
         self._longest.sort(key=lambda gap: -gap.seconds)
         del self._longest[_MAX_LISTED:]
+
+
+def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:
+    """Fail a bag of which the node rejects most inputs."""
+    rejected = sum(rotor.rejected.values())
+    if 2 * rejected > rotor.messages:
+        causes = ', '.join(f'{cause} {count}' for cause, count in rotor.rejected.items())
+        yield Finding(
+            f'{rejected} of {rotor.messages} messages of {rotor.topic} were rejected '
+            f'({causes}): too few are left to pass',
+            fails=True,
+        )
+
+
+def _counted(rotor: InputReport) -> Iterator[Finding]:
+    """Explain the counts that are not 0."""
+    for count, sentence in _SENTENCES.items():
+        if getattr(rotor, count):
+            yield Finding(sentence.format(rotor=rotor))
+
+
+_SENTENCES = {
+    'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the single-turn encoder: '
+    'after each, its turns are taken from the outputs',
+    'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
+    'most {rotor.max_speed:.4g} rad/s',
+    'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '
+    'their outputs itself, and they cannot be matched',
+    'unnormalised_stamps': '{rotor.unnormalised_stamps} stamps of {rotor.topic} have a second or '
+    'more of nanoseconds: the node stamps outputs with the same time, normalised',
+}
+"""Sentences by the names of the counts in `InputReport`."""
+
+CHECKS: Sequence[Callable[[InputReport], Iterator[Finding]]] = (_mostly_rejected, _counted)
+"""What judges the contents of the rotor topic, each by findings."""

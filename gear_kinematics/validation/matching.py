@@ -4,8 +4,8 @@ A node publishes in the order of its inputs, so nearly all messages match in lon
 message is looked up only where a run ends. Memory is bounded by a window of samples.
 """
 
-from collections import Counter
-from collections.abc import Callable, Iterator
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, MotionState
 from gear_kinematics.report.document import counted
-from gear_kinematics.validation.fields import FieldErrors, SeriesRecorder
+from gear_kinematics.validation.fields import FieldErrors, FieldSamples, SeriesRecorder
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
-from gear_kinematics.validation.report import Finding, Lane, TopicReport
+from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances
 from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.wire.cdr import Layout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[Any]
@@ -26,17 +27,10 @@ Solver = Callable[..., MotionState]
 
 WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
-MALFORMED = 'malformed'
-"""The fault of messages that cannot be decoded, and have no stamp."""
 
 SAMPLES = [
-    ('stamp', np.int64),
-    ('received', np.int64),
-    ('turns', np.float64),
-    ('angle', np.float64),
-    ('velocity', np.float64),
-    ('effort', np.float64),
-    ('segment', np.int64),
+    *((name, np.int64) for name in ('stamp', 'received', 'segment')),
+    *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]
 """Columns of the samples with which outputs are compared; see `RotorSamples`."""
 
@@ -82,21 +76,19 @@ class Matcher:
         self._last_stamp = int(stamps[-1])
 
     def match(self, stamps: Array, received: Array, window: Array) -> Array:
-        """Find the sample of each message, as its index in the window or -1, and mark it.
-
-        Args:
-            stamps: of messages, (n,), ns.
-            received: when they were received, (n,), ns.
-            window: the samples, with the columns of `SAMPLES`.
-        """
+        """Find the sample of each message, (n,), as its index in the window or -1, and mark it."""
         index = np.full(len(stamps), -1, np.intp)
         k = 0
         while k < len(stamps):
-            length = self._run(stamps[k:], received[k:], window)
-            index[k : k + length] = np.arange(self._next, self._next + length)
-            self.matched[self._next : self._next + length] = True
-            self._next += length
-            k += length
+            longest = min(len(stamps) - k, len(window) - self._next)
+            ahead = slice(self._next, self._next + longest)
+            alike = _alike(stamps[k : k + longest], received[k : k + longest], window[ahead])
+            alike &= ~self.matched[ahead]
+            run = longest if alike.all() else int(np.argmin(alike))
+            index[k : k + run] = np.arange(self._next, self._next + run)
+            self.matched[self._next : self._next + run] = True
+            self._next += run
+            k += run
             if k < len(stamps):
                 index[k] = self._look_up(stamps[k], received[k], window)
                 k += 1
@@ -107,13 +99,6 @@ class Matcher:
         """Drop the oldest samples of the window."""
         self.matched = self.matched[count:]
         self._next = max(self._next - count, 0)
-
-    def _run(self, stamps: Array, received: Array, window: Array) -> int:
-        """Number of messages that match the next samples in order."""
-        longest = min(len(stamps), len(window) - self._next)
-        part = slice(self._next, self._next + longest)
-        alike = _alike(stamps[:longest], received[:longest], window[part]) & ~self.matched[part]
-        return longest if alike.all() else int(np.argmin(alike))
 
     def _look_up(self, stamp: int, received: int, window: Array) -> int:
         found = np.flatnonzero(_alike(stamp, received, window) & ~self.matched)
@@ -132,69 +117,39 @@ def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
     return np.asarray((stamp == window['stamp']) & (window['received'] - CLOCK_RESET <= received))
 
 
-class Faults:
-    """Counts messages by their fault, and keeps the first of each."""
-
-    def __init__(self) -> None:
-        self._found: dict[str, tuple[int, int]] = {}  # number, first stamp
-
-    def add(self, fault: str, stamps: Array) -> None:
-        """Add the stamps of messages with a fault, or for `MALFORMED` when they were received."""
-        if len(stamps):
-            count, first = self._found.get(fault, (0, int(stamps[0])))
-            self._found[fault] = count + len(stamps), first
-
-    def findings(self) -> Iterator[Finding]:
-        """Describe each fault."""
-        for fault, (count, first) in self._found.items():
-            stamp = None if fault == MALFORMED else first
-            received = f', the first received at {first}' if stamp is None else ''
-            text = f'{fault}: {counted(count, "message")}{received}'
-            yield Finding(text, stamp=stamp, when='the first at')
-
-
 class OutputTopic:
     """One output topic: matches its messages, keeps late ones for a batch, collects faults."""
 
     missing: Missing
     """Its missing messages, which the `Completeness` of the topics finds."""
+    _layout: Callable[[bytes], Layout]
+    """Returns the layout of a message."""
 
-    def __init__(self, name: str, expectation: Expectation, *errors: FieldErrors) -> None:
-        """Start without messages.
-
-        Args:
-            name: of the topic in the recording.
-            expectation: of the outputs.
-            errors: of the fields.
-        """
-        self.name = name
-        self.errors = errors
+    def __init__(
+        self, name: str, label: str, expectation: Expectation, *errors: FieldErrors
+    ) -> None:
+        """Start without messages; `label` is the joint or the frame that they name."""
+        self.name, self.label, self.errors = name, label, errors
+        self.offset = 0.0
+        """Known offset of a recorded output angle, rad."""
         self.series = SeriesRecorder(errors)
         self.matcher = Matcher()
-        self.compared: dict[str, Array] = {}
-        """Columns of the last compared batch, for the checks."""
         self._gear, self._tolerances, self._solver, self._unseen = expectation
         self._unrecorded = 0  # messages whose input was not recorded
-        self._faults = Faults()
+        self._malformed = Occurrences()  # when they were received, as they have no stamp
+        self._faults: defaultdict[str, Occurrences] = defaultdict(Occurrences)
         self._late: tuple[list[bytes], list[int]] = [], []
 
     def take(
         self, messages: list[bytes], received: list[int], window: Array, inputs: RecordedInputs
     ) -> None:
-        """Compare new messages with the samples of the window.
-
-        Args:
-            messages: serialised.
-            received: times of reception, ns.
-            window: the latest samples, (n,), with the columns of `SAMPLES`.
-            inputs: the latest inputs, valid or not.
-        """
+        """Compare new messages, and when they were received, ns, with the latest samples, (n,)."""
         late = len(self._late[0])
         messages, received = self._late[0] + messages, self._late[1] + received
         stamps, malformed = self._decode(messages)
         self.matcher.see(stamps[late:])
         times = np.array(received, np.int64)
-        self._faults.add(MALFORMED, times[malformed])
+        self._malformed.add(times[malformed])
         usable = np.flatnonzero(~malformed)
         index = self.matcher.match(stamps[usable], times[usable], window)
         found = index >= 0
@@ -205,23 +160,36 @@ class OutputTopic:
         lacking = inputs.lack(times[given_up], stamps[given_up])
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.extra.add(stamps[given_up[~lacking]])
-        self._compare(usable[found], window.take(index[found]))  # faster than by an index
+        samples = window.take(index[found])  # faster than by an index
+        rotor_angle, fields = self._compare(usable[found], samples)
+        for errors, field in zip(self.errors, fields, strict=True):
+            errors.update(field, samples['stamp'], rotor_angle)
+        self.series.update(samples['stamp'], rotor_angle, *fields)
+
+    def _turns(self, samples: Array, unknown: float = 0.0) -> Array:
+        """The turns at samples, (n,), with those unseen; `unknown` where no output tells them."""
+        unseen = self._unseen.of(samples['segment'], unknown) if self._unseen else 0.0
+        return np.asarray(samples['turns'] + unseen)
+
+    def label_in(self, message: bytes) -> str:
+        """Return what a message has in the place of the label.
+
+        Raises:
+            MalformedMessageError: if it cannot be decoded.
+        """
+        return self._layout(message).texts[-1].decode(errors='replace')
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         """Decode messages for `_compare`; return their stamps and which ones are malformed."""
         raise NotImplementedError
 
-    def _compare(self, rows: Array, samples: Array) -> None:
-        """Compare some of the decoded messages with their samples."""
+    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
+        """Compare decoded messages with their samples; return rotor angles, rad, and fields."""
         raise NotImplementedError
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains the errors."""
-        yield from ()
-
-    def notes(self) -> Iterator[Finding]:
-        """Yield what fails nothing."""
-        yield from ()
+        raise NotImplementedError
 
     def report(self) -> TopicReport:
         """Return the report so far."""
@@ -238,12 +206,21 @@ class OutputTopic:
             first_missing=missing.inputs.first,
             first_extra=matcher.extra.first,
             first_out_of_order=matcher.out_of_order.first,
-            faults=tuple(self._faults.findings()),
+            faults=tuple(self._found_faults()),
             left_out=dict(missing.left_out + Counter({NO_INPUT: self._unrecorded})),
         )
 
-    def lanes(self, start: int) -> list[Lane]:
-        """Return when something happened, with the time 0 at a stamp, ns."""
+    def _found_faults(self) -> Iterator[Finding]:
+        if count := self._malformed.count:
+            first = f'the first received at {self._malformed.first}'
+            yield Finding(f'malformed: {counted(count, "message")}, {first}')
+        for fault, found in self._faults.items():
+            if found.count:
+                text = f'{fault}: {counted(found.count, "message")}'
+                yield Finding(text, stamp=found.first, when='the first at')
+
+    def events(self) -> dict[str, Occurrences]:
+        """Return what makes the topic fail, apart from errors, by its name."""
         events = {
             'missing': self.missing.inputs,
             'extra': self.matcher.extra,
@@ -252,6 +229,4 @@ class OutputTopic:
         for errors in self.errors:
             events[f'{errors.name} not finite'] = errors.non_finite
             events[f'{errors.name} absent'] = errors.absent
-        return [
-            found.lane(self.name, event, start) for event, found in events.items() if found.count
-        ]
+        return events

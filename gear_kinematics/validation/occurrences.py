@@ -1,5 +1,7 @@
 """When something happened to messages, in bounded memory."""
 
+from collections.abc import Iterator, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,18 +47,6 @@ class Occurrences:
         self.apart = max(self.apart, others.apart)
         self._merge(others.spans)
 
-    def lane(self, topic: str, event: str, start: int, *, fails: bool = True) -> Lane:
-        """Return them for the plot.
-
-        Args:
-            topic: on which they happened.
-            event: what happened.
-            start: stamp at the time 0, ns.
-            fails: whether the bag fails because of them.
-        """
-        spans = [(first / SECOND, last / SECOND) for first, last in (self.spans - start).tolist()]
-        return Lane(topic, event, self.count, spans, fails)
-
     def _merge(self, added: NDArray[np.int64]) -> None:
         spans = np.concatenate([self.spans, added])
         spans = _joined(spans[np.argsort(spans[:, 0], kind='stable')], self.apart)
@@ -65,6 +55,16 @@ class Occurrences:
             self.apart = max(2 * self.apart, int(gaps[len(spans) - _MAX_SPANS - 1]))
             spans = _joined(spans, self.apart)
         self.spans = spans
+
+
+def lanes(
+    topic: str, events: Mapping[str, Occurrences], start: int, *, fails: bool = True
+) -> Iterator[Lane]:
+    """Yield a lane of a plot for each event that happened, with the time 0 at a stamp, ns."""
+    for event, found in events.items():
+        if found.count:
+            times = (found.spans - start) / SECOND
+            yield Lane(topic, event, found.count, [(a, b) for a, b in times.tolist()], fails)
 
 
 def _joined(spans: NDArray[np.int64], apart: int) -> NDArray[np.int64]:

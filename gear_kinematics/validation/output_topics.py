@@ -16,17 +16,21 @@ from gear_kinematics.validation.diagnosis import (
     diagnose,
 )
 from gear_kinematics.validation.fields import FieldErrors, FieldSamples
-from gear_kinematics.validation.matching import Expectation, Faults, OutputTopic
+from gear_kinematics.validation.matching import Expectation, OutputTopic
 from gear_kinematics.validation.report import Finding
-from gear_kinematics.validation.unseen_turns import UnseenTurns
 from gear_kinematics.wire.batches import (
     FIELDS,
     PoseArrays,
     decode_joint_states,
     decode_pose_arrays,
 )
+from gear_kinematics.wire.cdr import joint_state_layout, pose_array_layout
 
 Array = NDArray[Any]
+Bounds = tuple[Array, Array]
+
+STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
+"""Units of the fields of a JointState by their names."""
 
 
 class JointStateTopic(OutputTopic):
@@ -34,57 +38,48 @@ class JointStateTopic(OutputTopic):
 
     units: ClassVar[Mapping[str, str]]
     """Units of the fields by their names."""
+    _layout = staticmethod(joint_state_layout)
 
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
         errors = (
             FieldErrors(field, unit, expectation.tolerances.of(unit))
             for field, unit in self.units.items()
         )
-        super().__init__(name, expectation, *errors)
-        self.joint = joint
-        self.offset = 0.0
-        """Known offset of the recorded angle, rad."""
+        super().__init__(name, joint, expectation, *errors)
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        self._states = decode_joint_states(messages, self.joint)
+        self._states = decode_joint_states(messages, self.label)
         return self._states.stamp, self._states.malformed
 
-    def _compare(self, rows: Array, samples: Array) -> None:
-        stamp, recorded = samples['stamp'], self._states.values[rows, : len(self.units)]
-        if self.offset and 'position' in self.units:
-            recorded = np.column_stack([recorded[:, 0] - self.offset, recorded[:, 1:]])
-        self._faults.add(f'no joint {self.joint!r}', stamp[~self._states.joint_found[rows]])
-        turns = samples['turns'] + self._unseen_turns(samples, recorded)
+    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
+        states = self._states
+        self._faults[f'no joint {self.label!r}'].add(samples['stamp'][~states.joint_found[rows]])
+        recorded = states.values[rows, : len(self.units)]
+        recorded -= [self.offset * (field == 'position') for field in self.units]
+        turns = self._turns(samples)
         least, most = np.stack(self._expected(samples, turns), axis=-1)
         # Any value between them is as expected.
-        nearest = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
-        rotor_angle = TURN * turns + samples['angle']
-        self._add_errors(rows, stamp, rotor_angle, recorded, nearest)
+        expected = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
+        wanted, there = ~np.isnan(expected), states.present[rows, : len(self.units)]
+        error = np.where(wanted & there, finite_or_infinite(recorded - expected), np.nan)
+        fields = [
+            FieldSamples(
+                recorded[:, k : k + 1],
+                expected[:, k : k + 1],
+                error[:, k],
+                np.flatnonzero(wanted[:, k] != there[:, k]),
+            )
+            for k in range(len(self.units))
+        ]
+        return TURN * turns + samples['angle'], fields
 
-    def _unseen_turns(self, samples: Array, recorded: Array) -> Array | float:  # noqa: ARG002
-        """The turns of the rotor to add to those of the samples, (n,)."""
-        return self._unseen.of(samples['segment']) if self._unseen else 0.0
-
-    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:
+    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:
         """The least and the greatest value of each field; NaN where it is absent."""
         raise NotImplementedError
 
-    def _add_errors(
-        self, rows: Array, stamp: Array, rotor_angle: Array, recorded: Array, expected: Array
-    ) -> None:
-        """Add what was recorded and expected of the fields, (n, fields); NaN is not expected."""
-        signed = recorded - expected
-        fields = []
-        for column, errors in enumerate(self.errors):
-            wanted, there = ~np.isnan(expected[:, column]), self._states.present[rows, column]
-            both, error = wanted & there, signed[:, column]
-            errors.update(
-                np.abs(error[both]), stamp[both], rotor_angle[both], absent=stamp[wanted != there]
-            )
-            part = slice(column, column + 1)
-            samples = _samples(recorded[:, part], expected[:, part], error)
-            fields.append(samples._replace(error=np.where(both, samples.error, np.nan)))
-        self.series.update(stamp, rotor_angle, *fields)
+    def causes(self) -> Iterator[Finding]:
+        """Yield nothing."""
+        yield from ()
 
     def _ideal_angle(self, turns: Array, angle: Array) -> Array:
         """The ideal output angle at rotor angles of 2π turns + angle, (n,), rad."""
@@ -94,12 +89,9 @@ class JointStateTopic(OutputTopic):
         return np.asarray(TURN * output_turns + rest)
 
 
-STATE_UNITS = dict(zip(FIELDS, ('rad', 'rad/s', 'N·m'), strict=True))
-"""Units of the fields of a JointState by their names."""
-
-
-def _samples(recorded: Array, expected: Array, error: Array) -> FieldSamples:
-    return FieldSamples(recorded, expected, np.where(np.isfinite(error), error, np.inf))
+def finite_or_infinite(error: Array) -> Array:
+    """Return errors of which those that are not finite are infinite."""
+    return np.where(np.isfinite(error), error, np.inf)
 
 
 class OutputState(JointStateTopic):
@@ -112,36 +104,25 @@ class OutputState(JointStateTopic):
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
 
-    def _unseen_turns(self, samples: Array, recorded: Array) -> Array | float:
-        if not self._unseen:
-            return 0.0
-        expected = self._ideal_angle(samples['turns'], samples['angle'])
-        self._unseen.learn_from_angles(samples['segment'], recorded[:, 0], expected)
-        return self._unseen.of(samples['segment'])
-
-    def _expected(self, samples: Array, turns: Array) -> Sequence[tuple[Array, Array]]:
+    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
         angle = self._ideal_angle(turns, samples['angle'])
         velocity, effort = ratio.output_rate(samples['velocity']), float(ratio) * samples['effort']
         return (angle, angle), (velocity, velocity), (effort, effort)
 
-    def _add_errors(
-        self, rows: Array, stamp: Array, rotor_angle: Array, recorded: Array, expected: Array
-    ) -> None:
-        super()._add_errors(rows, stamp, rotor_angle, recorded, expected)
-        for column, factor in enumerate(self._factors.values(), 1):
-            factor.update(recorded[:, column], expected[:, column])
-        error = recorded[:, 0] - expected[:, 0]
+    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
+        if self._unseen:
+            recorded = self._states.values[rows, 0] - self.offset
+            expected = self._ideal_angle(samples['turns'], samples['angle'])
+            self._unseen.learn(samples['segment'], recorded, expected)
+        rotor_angle, fields = super()._compare(rows, samples)
+        for factor, field in zip(self._factors.values(), fields[1:], strict=True):
+            factor.update(field.recorded[:, 0], field.expected[:, 0])
+        output_angle = fields[0].recorded[:, 0]
+        error = output_angle - fields[0].expected[:, 0]
         usable = np.isfinite(error)
-        stamp, rotor_angle, error = stamp[usable], rotor_angle[usable], error[usable]
-        output_angle = recorded[usable, 0]
-        self.fit.update(rotor_angle, output_angle, error)
-        self.compared = {
-            'stamp': stamp,
-            'rotor_angle': rotor_angle,
-            'output_angle': output_angle,
-            'error': error,
-        }
+        self.fit.update(rotor_angle[usable], output_angle[usable], error[usable])
+        return rotor_angle, fields
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains errors of the angle, or else of the velocity and the effort."""
@@ -157,6 +138,8 @@ class OutputState(JointStateTopic):
 class BodyPoses(OutputTopic):
     """body_poses."""
 
+    _layout = staticmethod(pose_array_layout)
+
     def __init__(
         self, name: str, frame_id: str, mechanism: Mechanism, expectation: Expectation
     ) -> None:
@@ -164,72 +147,58 @@ class BodyPoses(OutputTopic):
         tolerances = expectation.tolerances
         self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
         coordinates = [f'{body} {axis}' for body in self._bodies for axis in 'xyz']
-        self.position = FieldErrors('position', 'm', tolerances.position, coordinates)
-        self._orientation = FieldErrors('orientation', 'rad', tolerances.angle, self._bodies)
-        super().__init__(name, expectation, self.position, self._orientation)
+        super().__init__(
+            name,
+            frame_id,
+            expectation,
+            FieldErrors('position', 'm', tolerances.position, coordinates),
+            FieldErrors('orientation', 'rad', tolerances.angle, self._bodies),
+        )
         self._mechanism = mechanism
-        self.frame_id = frame_id
-        self._axial = np.array([b.axial_position for b in mechanism.branches] * 2)
+        self._axial = np.array([[b.axial_position] for b in mechanism.branches] * 2)
         self._order = PoseOrder(self._bodies, tolerances.position)
-        self._negated = Faults()
-        # Learned from this topic alone, which is less certain than from output_state.
-        self._own_unseen = UnseenTurns(mechanism.gear_ratio, tolerances.angle)
 
     def causes(self) -> Iterator[Finding]:
         """Yield the other orders of the poses."""
         return self._order.causes(self.matcher.compared)
 
-    def notes(self) -> Iterator[Finding]:
-        """Yield quaternions with the other sign."""
-        return self._negated.findings()
-
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))
         return self._arrays.stamp, self._arrays.malformed
 
-    def _compare(self, rows: Array, samples: Array) -> None:
+    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
         arrays, stamp = self._arrays, samples['stamp']
         for k, frame_id in enumerate(arrays.frame_ids):
-            if frame_id != self.frame_id.encode():
-                name = frame_id.decode(errors='replace')
-                framed = stamp[arrays.frame[rows] == k]
-                self._faults.add(f'frame {name!r}, not {self.frame_id!r}', framed)
+            if frame_id != self.label.encode():
+                fault = f'frame {frame_id.decode(errors="replace")!r}, not {self.label!r}'
+                self._faults[fault].add(stamp[arrays.frame[rows] == k])
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
-        turns = samples['turns'] + self._unseen_turns(samples, poses)
+        turns = self._turns(samples, unknown=np.nan)
+        known = ~np.isnan(turns)
+        turns[~known] = 0.0
         state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
-        rotor_angle = TURN * turns + samples['angle']
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
-        planar = np.hypot(*np.moveaxis(poses[..., :2] - centres, -1, 0))
-        position = np.hypot(planar, poses[..., 2] - self._axial).max(axis=1)
-        self.position.update(position, stamp, rotor_angle)
-        axial = np.broadcast_to(self._axial[:, np.newaxis], (*centres.shape[:2], 1))
+        axial = np.broadcast_to(self._axial, (*centres.shape[:2], 1))
         expected = np.append(centres, axial, axis=-1)
+        x, y, z = np.moveaxis(poses[..., :3] - expected, -1, 0)
+        position = np.hypot(np.hypot(x, y), z).max(axis=1)
         self._order.update(poses[..., :3], expected, position, stamp)
         angle = state.output_turn_angle[:, np.newaxis]
-        orientation = _orientation_error(poses[..., 3:], angle)
-        self._orientation.update(orientation, stamp, rotor_angle)
-        self._negated.add(
-            'orientations with w < 0, the same rotations as those with w > 0 of this node',
-            stamp[(poses[..., 6] < 0.0).any(axis=1)],
-        )
-        self.compared = {'stamp': stamp, 'error': position}
         recorded = 2.0 * np.arctan2(poses[..., 5], poses[..., 6])
+        orientation = _orientation_error(poses[..., 3:], angle)
         shape = len(rows), 3 * len(self._bodies)
-        self.series.update(
-            stamp,
-            rotor_angle,
-            _samples(poses[..., :3].reshape(shape), expected.reshape(shape), position),
-            _samples(recorded - TURN * np.round((recorded - angle) / TURN), angle, orientation),
+        return TURN * turns + samples['angle'], (
+            FieldSamples(
+                poses[..., :3].reshape(shape),
+                expected.reshape(shape),
+                np.where(known, finite_or_infinite(position), np.nan),
+            ),
+            FieldSamples(
+                recorded - TURN * np.round((recorded - angle) / TURN),
+                np.broadcast_to(angle, recorded.shape),
+                np.where(known, finite_or_infinite(orientation), np.nan),
+            ),
         )
-
-    def _unseen_turns(self, samples: Array, poses: Array) -> Array | float:
-        if not self._unseen:
-            return 0.0
-        segment = samples['segment']
-        state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
-        recorded = 2.0 * np.arctan2(poses[:, 0, 5], poses[:, 0, 6])
-        self._own_unseen.learn_from_poses(segment, recorded, state.output_turn_angle)
-        return self._unseen.of(segment, otherwise=self._own_unseen.of(segment))
 
 
 def _orientation_error(quaternions: Array, angle: Array) -> Array:

@@ -30,9 +30,11 @@ _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlie
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5
 """Median periods between inputs; beyond, an input between them was not recorded."""
-_SILENCE = 2.5  # median periods between inputs; beyond, the recorder lost all topics
-_MAX_STAMPS = 32_768  # of inputs, since a reset
-_MAX_PASSES = 64  # between resets
+_SILENCE = 2.5
+"""Median periods between inputs; beyond, the recorder lost all topics. It excuses losses, and must
+therefore be more than the jitter of a driver."""
+_MAX_STAMPS = 32_768  # of inputs
+_MAX_RESETS = 64  # of the stamps
 _MAX_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
 _ALWAYS = -(2**62)  # ns
 
@@ -63,156 +65,122 @@ class Missing:
         self.ended_early: float | None = None
         """s from the last input with an output to the last input, if that is too long."""
         self._unjudged = Occurrences()
-        self._last_answered: int | None = None  # received, ns
-        self._tail = Occurrences()
-        self._tail_received: int | None = None  # ns, of its first
+        self.last_answered: int | None = None
+        """When the last input with an output was received, ns."""
+        self._is_open = False  # whether the last judged input has no output
 
     def update(self, received: Array, stamp: Array, answered: Flags, cause: str = '') -> None:
-        """Process the next inputs.
-
-        Args:
-            received: (n,), ns.
-            stamp: (n,), ns.
-            answered: (n,): whether they have an output on this topic.
-            cause: reason not to judge them, or an empty text.
-        """
-        with_output = np.flatnonzero(answered)
+        """Process inputs, (n,), by whether they are answered; a cause leaves them unjudged."""
         if cause:
-            self.left_out[cause] += len(answered) - len(with_output)
+            self.left_out[cause] += int(np.count_nonzero(~answered))
             self._unjudged.add(stamp[~answered])
         else:
-            end = int(with_output[-1]) + 1 if len(with_output) else 0
-            if end:  # those after the last output are missing only if another one follows
-                self._count_tail()
-            self.inputs.add(stamp[:end][~answered[:end]])
-            if not self._tail.count and end < len(stamp):
-                self._tail_received = int(received[end])
-            self._tail.add(stamp[end:])
-        if len(with_output):
-            self._last_answered = int(received[with_output[-1]])
+            self.inputs.add(stamp[~answered])
+            if len(answered):
+                self._is_open = not answered[-1]
+        if answered.any():
+            self.last_answered = int(received[answered][-1])
 
-    def close(self, last_received: int | None, *, strict: bool) -> None:
-        """Judge the inputs after the last output.
-
-        Args:
-            last_received: time of reception of the last input, ns.
-            strict: whether all their outputs count as missing.
-        """
-        if self._last_answered is None or last_received is None:
-            self._count_tail()
+    def close(self, received: Array, stamp: Array, answered: Flags, *, strict: bool) -> None:
+        """Process the last inputs, of which those after the last output count if `strict`."""
+        late = self._is_open and not answered.any()
+        end = len(answered) if late or strict else len(np.trim_zeros(answered, 'b'))
+        self.update(received[:end], stamp[:end], answered[:end])
+        self.update(received[end:], stamp[end:], answered[end:], AFTER)
+        if self.last_answered is None:
             self.inputs.add_all(self._unjudged)
             self.left_out.clear()
-            return
-        late = self._tail_received is not None and last_received - self._tail_received > _MAX_END
-        if late:
-            self.ended_early = (last_received - self._last_answered) * 1e-9
-        if late or strict:
-            self._count_tail()
-        else:
-            self.left_out[AFTER] += self._tail.count
-
-    def _count_tail(self) -> None:
-        self.inputs.add_all(self._tail)
-        self._tail, self._tail_received = Occurrences(), None
+        elif late:
+            self.ended_early = (int(received[-1]) - self.last_answered) * 1e-9
 
 
 class Completeness:
     """Finds missing outputs on topics with the same inputs, recorded from the same time on."""
 
     def __init__(self, rotor: str, topics: Sequence[str], *, strict: bool) -> None:
-        """Start with no input.
-
-        Args:
-            rotor: name of the rotor's topic.
-            topics: names of the output topics.
-            strict: whether to judge everything, as if the recorder lost nothing.
-        """
+        """Start with no input; `strict` judges everything, as if the recorder lost nothing."""
         self.topics = {topic: Missing() for topic in topics}
         self._rotor = rotor
         self._unanswered = Missing()  # inputs without an output on any topic
         self._strict = strict
-        self._start = _ALWAYS if strict else None
-        self._first: list[Inputs] = []  # until the recorder has certainly settled
-        self._last_received: int | None = None
+        self._start = self._settled = _ALWAYS if strict else None
+        self._waiting: list[Inputs] = []
 
-    def begin(self, begun: Mapping[str, int]) -> None:
-        """Take the times from which topics are recorded, ns, by their names."""
+    def update(self, inputs: Inputs, begun: Mapping[str, int]) -> None:
+        """Process the next inputs; the latest ones wait, as the outputs may end there.
+
+        `begun` has the times from which topics are recorded, ns, by their names.
+        """
+        if not len(inputs.received):
+            return
         names = self._rotor, *self.topics
         if self._start is None and begun.keys() >= set(names):
             self._start = max(begun[name] for name in names)
-
-    def update(self, inputs: Inputs) -> None:
-        """Process the next inputs."""
-        received = inputs.received
-        if not len(received):
-            return
-        self._last_received = int(received[-1])
-        if self._start is None:
-            self._take(inputs, cause=BEFORE)
-            return
-        before, settled = received < self._start, received > self._start + _SETTLING_TIME
-        self._take(inputs.where(before), cause=BEFORE)
-        self._first.append(inputs.where(~(before | settled)))
-        if settled.any():
-            self._settle()
-            self._take(inputs.where(settled))
+        start = np.inf if self._start is None else self._start
+        before, last = inputs.received < start, inputs.received[-1]
+        self._take(inputs.where(before), BEFORE)
+        self._waiting.append(inputs.where(~before))
+        if last > start + _SETTLING_TIME:
+            inputs = self._settle()
+            due = inputs.received < last - _MAX_END
+            self._take(inputs.where(due))
+            self._waiting = [inputs.where(~due)]
 
     def close(self) -> None:
         """Judge the inputs that are still waiting, after the last input."""
-        self._settle()
-        for topic in self.topics.values():
-            topic.close(self._last_received, strict=self._strict)
+        if not self._waiting:
+            return
+        received, stamp, answered = self._settle()
+        due = received < received[-1:] - _MAX_END
+        self._take(Inputs(received, stamp, answered).where(due))
+        for topic, own in self._columns(answered[~due]):
+            strict = self._strict and topic is not self._unanswered
+            topic.close(received[~due], stamp[~due], own, strict=strict)
 
     def causes(self) -> Iterator[Finding]:
         """Yield why messages may be missing."""
-        for name, topic in self.topics.items():
-            if topic.ended_early is not None:
-                yield Finding(
-                    f'{name} ends {topic.ended_early:.3f} s before {self._rotor}: '
-                    'the node may have ended',
-                    cause=True,
-                    missing=True,
-                )
+        texts = [
+            f'{name} ends {topic.ended_early:.3f} s before {self._rotor}: the node may have ended'
+            for name, topic in self.topics.items()
+            if topic.ended_early is not None
+        ]
         missing = {name: topic.inputs.count for name, topic in self.topics.items()}
         lost = [
             f'{counted(count, "message")} of {name}' for name, count in missing.items() if count
         ]
         complete = [name for name, count in missing.items() if not count]
-        if len(missing) == 1 or not lost:
-            return
-        unanswered = self._unanswered.inputs.count
-        if set(missing.values()) == {unanswered}:
-            yield Finding(
+        unanswered = self._unanswered.inputs.count if self._unanswered.last_answered else 0
+        if len(missing) > 1 and lost and not texts and set(missing.values()) == {unanswered}:
+            texts.append(
                 f'{counted(unanswered, "message")} of {self._rotor} without any output: '
-                'the node did not receive them, or was blocked',
-                cause=True,
-                missing=True,
+                'the node did not receive them, or was blocked'
             )
-        elif complete and not unanswered:
-            yield Finding(
+        elif lost and complete and not unanswered:
+            texts.append(
                 f'{", ".join(lost)} missing, but none of {", ".join(complete)}: the node had the '
-                'inputs, and the messages were lost on their way to the recording',
-                cause=True,
-                missing=True,
+                'inputs, and the messages were lost on their way to the recording'
             )
+        yield from (Finding(text, cause=True, missing=True) for text in texts)
+
+    def _columns(self, answered: Flags) -> Iterator[tuple[Missing, Flags]]:
+        """Pair all that is counted with whether inputs have their output."""
+        yield from zip(self.topics.values(), answered.T, strict=True)
+        yield self._unanswered, np.asarray(answered.any(axis=1))
 
     def _take(self, inputs: Inputs, cause: str = '') -> None:
-        if not cause:
-            self._unanswered.update(
-                inputs.received, inputs.stamp, np.asarray(inputs.answered.any(axis=1))
-            )
-        for topic, answered in zip(self.topics.values(), inputs.answered.T, strict=True):
+        for topic, answered in self._columns(inputs.answered):
             topic.update(inputs.received, inputs.stamp, answered, cause)
 
-    def _settle(self) -> None:
-        """Find the time at which the recorder had settled, and judge the waiting inputs."""
-        if not self._first:
-            return
-        inputs = Inputs(*map(np.concatenate, zip(*self._first, strict=True)))
-        self._first.clear()
-        settled = inputs.received > _settled(inputs)
-        self._take(inputs.where(~settled), cause=SETTLING)
-        self._take(inputs.where(settled))
+    def _settle(self) -> Inputs:
+        """Return the waiting inputs that were received after the recorder had settled."""
+        inputs = Inputs(*map(np.concatenate, zip(*self._waiting, strict=True)))
+        if self._settled is None:
+            start = _ALWAYS if self._start is None else self._start
+            first = inputs.received <= start + _SETTLING_TIME
+            self._settled = _settled(inputs.where(first))
+        settled = inputs.received > self._settled
+        self._take(inputs.where(~settled), SETTLING)
+        return inputs.where(settled)
 
 
 def _settled(inputs: Inputs) -> int:
@@ -236,88 +204,60 @@ def _settled(inputs: Inputs) -> int:
 class RecordedInputs:
     """The latest stamps of recorded inputs, to find inputs that were not recorded.
 
-    A driver whose stamps are reset, as a bag that is played again and again, begins anew: what was
-    recorded before tells nothing of what was recorded of the same stamps after.
+    Where a driver's stamps are reset, as by a bag that is played again and again, the clock of the
+    stamps is another one; which one an output has is seen by its age.
     """
 
     def __init__(self, *, strict: bool) -> None:
-        """Start with none.
-
-        Args:
-            strict: whether to assume that every input was recorded.
-        """
+        """Start with none; `strict` assumes that every input was recorded."""
         self._strict = strict
-        self._passes = [_Pass()]
+        self._ages: list[list[int]] = []
+        """Time of reception - stamp of the first and the last input since each reset, ns."""
+        self._known = np.zeros(0, np.int64)
+        """The latest stamps, with the age of the first input since the reset: on one clock."""
+        self._complete = True
+        self._last = np.zeros(0, np.int64)
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
         """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
-        before = self._passes[-1].last[1] if len(self._passes[-1].last) else stamp[:1]
-        resets = np.flatnonzero(np.diff(stamp, prepend=before) < -CLOCK_RESET)
-        for number, rows in enumerate(np.split(np.arange(len(stamp)), resets)):
-            if number:
-                self._passes.append(_Pass())
-            self._passes[-1].add(received[rows], stamp[rows], rejected)
-        del self._passes[:-_MAX_PASSES]
+        before = self._last if len(self._last) else stamp[:1]
+        resets = np.diff(stamp, prepend=before) < -CLOCK_RESET
+        self._last = np.append(self._last, stamp)[-1:]
+        ages = received - stamp
+        added = [self._known]
+        for rows in np.split(np.arange(len(stamp)), np.flatnonzero(resets)):
+            if len(rows):
+                first, last = ages[rows[[0, -1]]].tolist()
+                if not self._ages or resets[rows[0]]:
+                    self._ages.append([first, last])
+                self._ages[-1][1] = last
+            if self._ages:
+                added += [stamp[rows] + self._ages[-1][0], rejected + self._ages[-1][0]]
+        known = np.concatenate(added)
+        self._complete = self._complete and len(known) <= _MAX_STAMPS
+        self._known = known[-_MAX_STAMPS:]
+        del self._ages[:-_MAX_RESETS]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Whether the inputs of outputs (n,), ns, were not recorded."""
-        lacking = np.zeros(len(stamp), bool)
         if self._strict or not len(stamp):
-            return lacking
-        nearest = np.argmin([one.distance(received, stamp) for one in self._passes], axis=0)
-        for number in np.unique(nearest):
-            rows = nearest == number
-            lacking[rows] = self._passes[number].lack(received[rows], stamp[rows])
-        return lacking
-
-
-class _Pass:
-    """The latest inputs since a reset of their stamps."""
-
-    def __init__(self) -> None:
-        self._stamps = np.zeros(0, np.int64)
-        self._complete = True
-        self._first = self.last = np.zeros(0, np.int64)
-        """Time of reception and stamp, ns; empty without a valid input."""
-
-    def add(self, received: Array, stamp: Array, rejected: Array) -> None:
-        """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
-        if len(stamp):
-            self.last = np.array([received[-1], stamp[-1]])
-            if not len(self._first):
-                self._first = np.array([received[0], stamp[0]])
-        stamps = np.concatenate([self._stamps, stamp, rejected])
-        self._complete = self._complete and len(stamps) <= _MAX_STAMPS
-        self._stamps = stamps[-_MAX_STAMPS:]
-
-    def distance(self, received: Array, stamp: Array) -> Array:
-        """How far outputs (n,), ns, are from this pass in their delay and time of reception."""
-        if not len(self._first):
-            return np.zeros(len(stamp), np.int64)
-        least, greatest = sorted((self._age(self._first), self._age(self.last)))
-        age = received - stamp
-        times = np.clip(received, self._first[0], self.last[0])
-        return np.asarray(np.abs(age - np.clip(age, least, greatest)) + np.abs(received - times))
-
-    def lack(self, received: Array, stamp: Array) -> Flags:
-        """Whether the inputs of outputs (n,), ns, were not recorded."""
-        if not len(self._first):
+            return np.zeros(len(stamp), bool)
+        if not self._ages:
             return np.ones(len(stamp), bool)
-        known = np.unique(self._stamps)
+        age, ages = received - stamp, np.array(self._ages)
+        low, high = ages.min(axis=1)[:, None], ages.max(axis=1)[:, None]
+        clock = np.argmin(np.abs(age - np.clip(age, low, high)), axis=0)
+        stamp = stamp + ages[clock, 0]
+        known = np.unique(self._known)
         after = np.searchsorted(known, stamp)
         bounds = np.concatenate([[known[0]], known, [known[-1]]])
         period = np.diff(known)
         longest = HOLE * float(np.median(period)) if len(period) else np.inf
         in_hole = (bounds[after + 1] - bounds[after] > longest) & (bounds[after + 1] != stamp)
-        age = received - stamp
         too_early = (after == 0) & self._complete & (stamp < known[0])
         too_late = after == len(known)
         return np.asarray(
             in_hole
-            | (too_early & (np.abs(age - self._age(self._first)) < _MAX_DELAY))
-            | (too_late & (np.abs(age - self._age(self.last)) < _MAX_DELAY))
+            | (too_early & (np.abs(age - ages[0, 0]) < _MAX_DELAY))
+            | (too_late & (np.abs(age - ages[-1, 1]) < _MAX_DELAY))
         )
-
-    @staticmethod
-    def _age(moment: Array) -> int:
-        return int(moment[0] - moment[1])

@@ -1,6 +1,6 @@
 """The result of validating a bag, as plain data without ROS, bags or numpy.
 
-Stamps are ns, times in s, angles in rad, lengths in m.
+Stamps are ns, times s, angles rad, lengths m. What `first_...` is the stamp of the first one.
 """
 
 import math
@@ -47,12 +47,10 @@ class FieldReport:
     max_error: float = 0.0
     rms_error: float = 0.0
     worst_stamp: int | None = None
-    """Stamp of the sample with `max_error`; None without any error."""
+    """Of the sample with `max_error`; None without any error."""
     worst_rotor_angle: float | None = None
     first_non_finite: int | None = None
-    """Stamp of the first sample that is not finite."""
     first_absent: int | None = None
-    """Stamp of the first sample that lacks the field."""
 
     @property
     def budget_used(self) -> float:
@@ -90,11 +88,8 @@ class TopicReport:
     """Messages with an earlier stamp than the previous one, unless the input restarts there."""
     fields: tuple[FieldReport, ...]
     first_missing: int | None = None
-    """Stamp of the first input without a message."""
     first_extra: int | None = None
-    """Stamp of the first message without an input."""
     first_out_of_order: int | None = None
-    """Stamp of the first message out of order."""
     faults: tuple[Finding, ...] = ()
     """Other faults, such as wrong frame ids or joint names, with their number and first stamp."""
     left_out: dict[str, int] = field(default_factory=dict)
@@ -112,7 +107,7 @@ class Gap:
     """A gap between messages of the rotor topic."""
 
     stamp: int
-    """Stamp of the sample after the gap."""
+    """Of the sample after the gap."""
     seconds: float
     turned: float
     """rad, between the samples before and after it."""
@@ -157,7 +152,6 @@ class Curve:
     """A field over the time of its series; the lists are as long."""
 
     field: str
-    """Name of the field."""
     part: str
     """What of the field: the coordinate of a pose that is farthest off, such as `oldham_b x`."""
     recorded: list[float]
@@ -205,11 +199,11 @@ class BagReport:
     """Why the bag is unusable, or the damage at which reading ended; the rest describes the
     messages before it."""
     messages: int = 0
-    """Number on the three topics."""
+    """Number on all topics."""
     rotor: InputReport | None = None
     topics: tuple[TopicReport, ...] = ()
     findings: tuple[Finding, ...] = ()
-    """About a constant offset, another mechanism or the health of the input."""
+    """Of the recording as a whole; `explain` adds the faults of topics and fields."""
     series: tuple[Series, ...] = ()
     """Of the output topics with anything to compare."""
     lanes: tuple[Lane, ...] = ()

@@ -1,17 +1,12 @@
-"""The tables of a validation, each defined by its headings and the contents of the columns."""
+"""The tables of a validation."""
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from gear_kinematics.report.document import OUTCOME, Cell, Layout, Table, Tone, number, printable
-from gear_kinematics.validation.findings import (
-    angle,
-    field_name,
-    findings,
-    moment,
-    worst_field,
-)
-from gear_kinematics.validation.report import BagReport, FieldReport, Gap, InputReport, TopicReport
+from gear_kinematics.validation.findings import angle, field_name, findings, worst_field
+from gear_kinematics.validation.report import BagReport, FieldReport, InputReport, TopicReport
+
+Row = tuple[Cell, ...]
 
 
 def bag_name(report: BagReport) -> str:
@@ -21,9 +16,7 @@ def bag_name(report: BagReport) -> str:
 
 def tables(report: BagReport) -> tuple[Table, ...]:
     """Return all tables about a bag; the first describes the reference of the comparison."""
-    gaps = report.rotor.longest_gaps if report.rotor else ()
-    fields = [_Field(report, topic, field) for topic in report.topics for field in topic.fields]
-    worst = [row for row in fields if row.field.worst_stamp is not None]
+    fields = [(field_name(t, field), field) for t in report.topics for field in t.fields]
     return (
         Table.of_values(
             Layout.INLINE,
@@ -32,127 +25,124 @@ def tables(report: BagReport) -> tuple[Table, ...]:
             ('messages', str(report.messages)),
         ),
         *([_input_table(report.rotor)] if report.rotor else []),
-        Table.of_items(_GAP, [_Gap(report, k, gap) for k, gap in enumerate(gaps, 1)]),
+        Table(_GAPS, tuple(_gaps(report))),
         Table.of_items(TOPIC, report.topics),
-        Table.of_items(_FIELD, fields),
-        Table.of_items(_WORST, worst),
+        Table(_FIELDS, tuple(_field(name, field) for name, field in fields)),
+        Table(
+            _WORST,
+            tuple(
+                (
+                    Cell(name),
+                    *_moment(field.worst_stamp, report),
+                    Cell(angle(field.worst_rotor_angle), unit='rad'),
+                )
+                for name, field in fields
+                if field.worst_stamp is not None
+            ),
+        ),
     )
 
 
 def summary(reports: Sequence[BagReport]) -> Table:
     """Return a row for each bag: its verdict, how much was compared, and the first finding."""
-    return Table.of_items(_SUMMARY, reports, words=('', 'verdict', 'first finding'))
+    columns = 'bag', 'verdict', 'compared', 'largest error', 'tolerance', 'first finding'
+    return Table(columns, tuple(map(_summary, reports)), words=('', 'verdict', 'first finding'))
 
 
-class _Gap(NamedTuple):
-    report: BagReport
-    number: int
-    gap: Gap
-
-    @property
-    def name(self) -> str:
-        topic = self.report.rotor.topic if self.report.rotor else ''
-        return printable(f'{topic} gap {self.number}')
-
-
-class _Field(NamedTuple):
-    report: BagReport
-    topic: TopicReport
-    field: FieldReport
-
-    @property
-    def name(self) -> str:
-        return field_name(self.topic, self.field)
-
-    @property
-    def tone(self) -> Tone:
-        return _tone(bad=self.field.is_beyond)
-
-    def measured(self, value: float, tone: Tone = Tone.PLAIN) -> Cell:
-        text = number(value) if self.field.compared else ''
-        return Cell(text, tone, printable(self.field.unit))
+def _summary(report: BagReport) -> Row:
+    field = worst_field(report)
+    error, tolerance = (field.max_error, field.tolerance) if field else (None, None)
+    unit = printable(field.unit) if field else ''
+    return (
+        Cell(bag_name(report)),
+        Cell(OUTCOME[report.verdict], Tone.PLAIN if report.passed else Tone.BAD),
+        Cell(str(sum(topic.compared for topic in report.topics))),
+        _measured(error, unit),
+        _measured(tolerance, unit),
+        Cell(next((found.text for found in findings(report)), '')),
+    )
 
 
 def _input_table(rotor: InputReport) -> Table:
-    rejected = [(f'rejected, {printable(c)}', _notable(n)) for c, n in rotor.rejected.items()]
+    rejected = {f'rejected, {printable(cause)}': n for cause, n in sorted(rotor.rejected.items())}
+    counts = {
+        'rejected': sum(rotor.rejected.values()),
+        **rejected,
+        'duplicates': rotor.duplicates,
+        'zero stamps': rotor.zero_stamps,
+        'unnormalised stamps': rotor.unnormalised_stamps,
+        'resets': rotor.resets,
+    }
     return Table.of_values(
         Layout.INLINE,
         ('joint', printable(rotor.joint)),
         ('messages', str(rotor.messages)),
         ('valid', str(rotor.valid)),
-        ('rejected', _notable(sum(rotor.rejected.values()))),
-        *sorted(rejected, key=lambda column: column[0]),
-        ('duplicates', _notable(rotor.duplicates)),
-        ('zero stamps', _notable(rotor.zero_stamps)),
-        ('unnormalised stamps', _notable(rotor.unnormalised_stamps)),
-        ('resets', _notable(rotor.resets)),
-        ('rate', Cell(number(rotor.rate, 6), unit='Hz')),
-        ('duration', Cell(number(rotor.duration, 6), unit='s')),
-        ('gaps', _notable(rotor.gaps)),
-        ('jumps', _notable(rotor.jumps)),
-        ('overspeed', _notable(rotor.overspeed)),
-        ('max speed', Cell(number(rotor.max_speed, 6), unit='rad/s')),
+        *((name, _count(count, Tone.NOTABLE)) for name, count in counts.items()),
+        ('rate', _measured(rotor.rate, 'Hz', digits=6)),
+        ('duration', _measured(rotor.duration, 's', digits=6)),
+        ('gaps', _count(rotor.gaps, Tone.NOTABLE)),
+        ('jumps', _count(rotor.jumps, Tone.NOTABLE)),
+        ('overspeed', _count(rotor.overspeed, Tone.NOTABLE)),
+        ('max speed', _measured(rotor.max_speed, 'rad/s', digits=6)),
         ('referenced', Cell('yes') if rotor.referenced else Cell('no', Tone.NOTABLE)),
         about=('input', printable(rotor.topic)),
     )
 
 
-def _of_worst(report: BagReport, attribute: str) -> Cell:
-    field = worst_field(report)
-    if not field:
-        return Cell('')
-    return Cell(number(getattr(field, attribute)), unit=printable(field.unit))
+_GAPS = 'longest gaps', 'until stamp', 'from start', 'silence', 'rotor turned'
 
 
-def _bad(count: int) -> Cell:
-    return Cell(str(count), Tone.BAD if count else Tone.NONE)
+def _gaps(report: BagReport) -> Iterator[Row]:
+    if rotor := report.rotor:
+        for k, gap in enumerate(rotor.longest_gaps, 1):
+            yield (
+                Cell(printable(f'{rotor.topic} gap {k}')),
+                *_moment(gap.stamp, report),
+                _measured(gap.seconds, 's', digits=6),
+                _measured(gap.turned, 'rad', digits=6),
+            )
 
 
-def _notable(count: int) -> Cell:
-    return Cell(str(count), Tone.NOTABLE if count else Tone.NONE)
-
-
-def _tone(*, bad: bool) -> Tone:
-    return Tone.BAD if bad else Tone.PLAIN
-
-
-_GAP: Mapping[str, Callable[[_Gap], str | Cell]] = {
-    'longest gaps': lambda row: row.name,
-    'until stamp': lambda row: moment(row.gap.stamp, row.report)[0],
-    'from start': lambda row: moment(row.gap.stamp, row.report)[1],
-    'silence': lambda row: Cell(number(row.gap.seconds, 6), unit='s'),
-    'rotor turned': lambda row: Cell(number(row.gap.turned, 6), unit='rad'),
-}
 TOPIC: Mapping[str, Callable[[TopicReport], str | Cell]] = {
     'topic': lambda topic: printable(topic.topic),
     'messages': lambda topic: str(topic.messages),
-    'compared': lambda topic: Cell(str(topic.compared), _tone(bad=not topic.compared)),
-    'missing': lambda topic: _bad(topic.missing),
-    'extra': lambda topic: _bad(topic.extra),
-    'duplicates': lambda topic: _notable(topic.duplicates),
-    'out of order': lambda topic: _bad(topic.out_of_order),
+    'compared': lambda topic: Cell(str(topic.compared), *[Tone.BAD] * (not topic.compared)),
+    'missing': lambda topic: _count(topic.missing),
+    'extra': lambda topic: _count(topic.extra),
+    'duplicates': lambda topic: _count(topic.duplicates, Tone.NOTABLE),
+    'out of order': lambda topic: _count(topic.out_of_order),
     'left out': lambda topic: Cell(str(sum(topic.left_out.values()) or ''), Tone.NOTABLE),
 }
-_FIELD: Mapping[str, Callable[[_Field], str | Cell]] = {
-    'field': lambda row: Cell(row.name, unit=printable(row.field.unit)),
-    'compared': lambda row: str(row.field.compared),
-    'absent': lambda row: _bad(row.field.absent),
-    'not finite': lambda row: _bad(row.field.non_finite),
-    'max error': lambda row: row.measured(row.field.max_error, row.tone),
-    'tolerance': lambda row: row.measured(row.field.tolerance),
-    'rms error': lambda row: row.measured(row.field.rms_error),
-}
-_WORST: Mapping[str, Callable[[_Field], str | Cell]] = {
-    'field': lambda row: row.name,
-    'worst at stamp': lambda row: moment(row.field.worst_stamp, row.report)[0],
-    'worst from start': lambda row: moment(row.field.worst_stamp, row.report)[1],
-    'worst at rotor angle': lambda row: Cell(angle(row.field.worst_rotor_angle), unit='rad'),
-}
-_SUMMARY: Mapping[str, Callable[[BagReport], str | Cell]] = {
-    'bag': bag_name,
-    'verdict': lambda report: Cell(OUTCOME[report.verdict], _tone(bad=not report.passed)),
-    'compared': lambda report: str(sum(topic.compared for topic in report.topics)),
-    'largest error': lambda report: _of_worst(report, 'max_error'),
-    'tolerance': lambda report: _of_worst(report, 'tolerance'),
-    'first finding': lambda report: next((found.text for found in findings(report)), ''),
-}
+"""The columns about a topic."""
+_FIELDS = 'field', 'compared', 'absent', 'not finite', 'max error', 'tolerance', 'rms error'
+_WORST = 'field', 'worst at stamp', 'worst from start', 'worst at rotor angle'
+
+
+def _field(name: str, field: FieldReport) -> Row:
+    unit = printable(field.unit)
+    errors = (field.max_error, field.tolerance, field.rms_error) if field.compared else [None] * 3
+    greatest, *others = (_measured(error, unit) for error in errors)
+    return (
+        Cell(name, unit=unit),
+        Cell(str(field.compared)),
+        _count(field.absent),
+        _count(field.non_finite),
+        Cell(greatest.text, Tone.BAD if field.is_beyond else Tone.PLAIN, unit),
+        *others,
+    )
+
+
+def _measured(value: float | None, unit: str, digits: int = 3) -> Cell:
+    return Cell('' if value is None else number(value, digits), unit=unit)
+
+
+def _count(count: int, tone: Tone = Tone.BAD) -> Cell:
+    return Cell(str(count), tone if count else Tone.NONE)
+
+
+def _moment(stamp: int | None, report: BagReport) -> Row:
+    """Write a stamp in ns, and its distance from the first stamp of the input in s."""
+    time = None if stamp is None else report.seconds(stamp)
+    offset = '' if time is None else f'{time:+.6f}'
+    return Cell('' if stamp is None else str(stamp), unit='ns'), Cell(offset, unit='s')

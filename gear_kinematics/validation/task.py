@@ -52,8 +52,6 @@ class Task:
     output_topic: str | None = None
     poses_topic: str | None = None
     calibration: Calibration | None = None
-    """Of the node that was recorded; without it, the corrected output is not judged."""
-    calibration_file: str = ''
-    """Its file."""
+    """That of `parameters.calibration`; without it, the corrected output is not judged."""
     debug: bool = False
     """Whether to print tracebacks of unexpected errors to stderr."""

@@ -26,12 +26,7 @@ class UnseenTurns:
     """
 
     def __init__(self, ratio: GearRatio, tolerance: float) -> None:
-        """Start without segments.
-
-        Args:
-            ratio: of the gear with the encoder.
-            tolerance: rad of the output, within which turns are whole.
-        """
+        """Start without segments; turns are whole within a tolerance, rad of the output."""
         self._ratio = ratio
         self._tolerance = abs(float(self._ratio)) / TURN * tolerance  # turns of the rotor
         self._segments = np.zeros(0, np.int64)  # ascending
@@ -41,30 +36,16 @@ class UnseenTurns:
         self.changes = 0
         """Segments whose turns differ from those of the previous one."""
 
-    def of(self, segment: Array, otherwise: Array | float = 0.0) -> Array:
-        """The turns to add in segments (n,), or `otherwise` where they are not known."""
+    def of(self, segment: Array, unknown: float = 0.0) -> Array:
+        """The turns to add in segments (n,), or `unknown` where no output has told them."""
         if not len(self._segments):
-            return np.zeros(len(segment)) + otherwise
+            return np.full(len(segment), unknown)
         at = np.minimum(np.searchsorted(self._segments, segment), len(self._segments) - 1)
-        return np.where(self._segments[at] == segment, self._turns[at], otherwise)
+        return np.where(self._segments[at] == segment, self._turns[at], unknown)
 
-    def learn_from_angles(self, segment: Array, recorded: Array, expected: Array) -> None:
-        """Learn from output angles that include whole turns, (n,), rad."""
-        self._learn(segment, (recorded - expected) * float(self._ratio) / TURN)
-
-    def learn_from_poses(self, segment: Array, recorded: Array, expected: Array) -> None:
-        """Learn from output angles within their turn, (n,), rad.
-
-        The output repeats after `numerator` turns of the rotor, and any multiple of 1/`numerator`
-        of its turn corresponds to whole turns of the rotor, of which the least is taken.
-        """
-        steps = (recorded - expected) * self._ratio.numerator / TURN
-        inverse = pow(self._ratio.denominator, -1, abs(self._ratio.numerator))
-        whole = np.round(steps)
-        turns = whole * inverse % abs(self._ratio.numerator)
-        self._learn(segment, turns + (steps - whole) / self._ratio.denominator)
-
-    def _learn(self, segment: Array, turns: Array) -> None:
+    def learn(self, segment: Array, recorded: Array, expected: Array) -> None:
+        """Learn from output angles, (n,), rad."""
+        turns = (recorded - expected) * float(self._ratio) / TURN
         whole = np.round(turns)
         # Numbers too large to have a fraction are garbage.
         wrong = np.maximum(np.abs(turns - whole), np.spacing(np.abs(turns)))

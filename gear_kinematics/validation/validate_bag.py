@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, in_batches
 from gear_kinematics.bag.errors import unexpected
@@ -26,6 +27,26 @@ from gear_kinematics.wire.joint_reader import JOINT_MISSING
 _BATCH = 8192  # messages of a live node that are validated together
 
 
+def validate(
+    bag: Path | str, parameters: NodeParameters | Path | str, **options: Any
+) -> BagReport:
+    """Validate a bag, as in a test of another package.
+
+    Args:
+        bag: a file or a folder.
+        parameters: of the node, or their file.
+        options: further fields of `Task`, as the options of `gearkin validate`.
+
+    Raises:
+        ConfigError: if the file cannot be used.
+        MechanismError: if the parameters describe no mechanism.
+    """
+    if not isinstance(parameters, NodeParameters):
+        options.setdefault('config', str(parameters))
+        parameters = NodeParameters.load(Path(parameters))
+    return validate_bag(Task(Path(bag), parameters, **options))
+
+
 def validate_bag(
     task: Task,
     progress: ReportProgress | None = None,
@@ -43,71 +64,68 @@ def validate_bag(
         MechanismError: if the parameters describe no mechanism.
     """
     begun = time.monotonic()
-    report = _validated(task, progress, play)
-    return replace(report, elapsed=time.monotonic() - begun)
-
-
-def _validated(
-    task: Task,
-    progress: ReportProgress | None = None,
-    play: Callable[..., Iterable[Message]] | None = None,
-) -> BagReport:
-    poses = isinstance(task.parameters.gear, Mechanism)
-    given = {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic}
-    joint = task.parameters.rotor_joint
     try:
         with Bag(task.bag) as bag:
-            topics = find_topics(bag, given, outputs=not play, poses=poses, joint=joint)
-            if play:
-                task = replace(task, parameters=_of_only_joint(task, bag, topics.rotor))
-                return _validate_live(task, bag, topics.rotor, progress, play)
-            report = _validate(task, bag, topics, progress)
-            if report.rotor and report.rotor.rejected.get(JOINT_MISSING) == report.rotor.messages:
-                parameters = _of_only_joint(task, bag, topics.rotor)
-                if parameters.rotor_joint != joint:
-                    report = _validate(replace(task, parameters=parameters), bag, topics, progress)
-                    text = f'{parameters.rotor_joint}, the only joint on {topics.rotor}, is taken'
-                    report = replace(report, findings=(Finding(text), *report.findings))
-            return report
+            report = _live(task, bag, progress, play) if play else _recorded(task, bag, progress)
     except BagError as error:
-        return unusable(task.bag, str(error), task.config)
+        report = unusable(task.bag, str(error), task.config)
     except Exception as error:
         if play and not isinstance(error, RuntimeError):  # of the live node
             raise
-        cause = str(error) if play else unexpected(error, debug=task.debug)
-        return _lost(task, cause)
+        report = _lost(task, str(error) if play else unexpected(error, debug=task.debug))
+    return replace(report, elapsed=time.monotonic() - begun)
 
 
-def _of_only_joint(task: Task, bag: Bag, rotor: str) -> NodeParameters:
-    """Return the parameters with the only joint on the rotor's topic, if theirs is not there."""
+def _topics(task: Task, bag: Bag, *, outputs: bool) -> Topics:
+    return find_topics(
+        bag,
+        {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic},
+        outputs=outputs,
+        poses=isinstance(task.parameters.gear, Mechanism),
+        joint=task.parameters.rotor_joint,
+    )
+
+
+def _with_only_joint(task: Task, bag: Bag, rotor: str) -> Task:
+    """Return the task with the only joint on the rotor's topic, if its own is not there."""
     joint = task.parameters.rotor_joint
     found = only_joint(bag, rotor, joint) if task.only_joint else joint
-    return replace(task.parameters, rotor_joint=found)
+    return replace(task, parameters=replace(task.parameters, rotor_joint=found))
 
 
-def _validate(task: Task, bag: Bag, topics: Topics, progress: ReportProgress | None) -> BagReport:
+def _recorded(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
+    """Validate the recorded outputs; if no message has the joint, with the only joint there."""
+    topics = _topics(task, bag, outputs=True)
     corrected = find_corrected_topics(bag, topics.output)
-    batches = bag.batches((*topics, *corrected.values()), progress)
-    return _report(Validator(task, topics, corrected), batches)
+    names = (*topics, *corrected.values())
+    report = _report(Validator(task, topics, corrected), bag.batches(names, progress))
+    if report.rotor and report.rotor.rejected.get(JOINT_MISSING) == report.rotor.messages:
+        other = _with_only_joint(task, bag, topics.rotor)
+        if other != task:
+            report = _report(Validator(other, topics, corrected), bag.batches(names, progress))
+            joint = other.parameters.rotor_joint
+            taken = Finding(f'{joint}, the only joint on {topics.rotor}, is taken')
+            report = replace(report, findings=(taken, *report.findings))
+    return report
 
 
-def _validate_live(
+def _live(
     task: Task,
     bag: Bag,
-    rotor: str,
     progress: ReportProgress | None,
     play: Callable[..., Iterable[Message]],
 ) -> BagReport:
     """Validate what a live node publishes on its own topics for the rotor states of a bag."""
+    rotor = _topics(task, bag, outputs=False).rotor
     total = count_due(bag, [rotor]) if progress else None
+    # Nothing is lost by a recorder here.
+    task = replace(_with_only_joint(task, bag, rotor), strict=True)
     messages = play(
         bag,
-        replace(task.parameters, calibration=task.calibration_file),
+        task.parameters,
         rotor_topic=rotor,
         progress=lambda sent, _: progress and progress(sent, total),
     )
-    # Nothing is lost by a recorder here.
-    task = replace(task, strict=True)
     corrected = corrected_beside() if task.calibration else {}
     return _report(Validator(task, corrected=corrected), in_batches(messages, _BATCH))
 
@@ -121,10 +139,6 @@ def _report(validator: Validator, batches: Iterable[Sequence[Message]]) -> BagRe
     return validator.report()
 
 
-def _absolute(task: Task) -> Task:
-    return replace(task, bag=task.bag.absolute())
-
-
 def _lost(task: Task, cause: str) -> BagReport:
     return unusable(task.bag, f'{task.bag}: {cause}', task.config)
 
@@ -134,5 +148,5 @@ def unusable(bag: Path, error: str, config: str = '') -> BagReport:
     return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)
 
 
-WORK = fleet.Work(validate_bag, _lost, _absolute)
+WORK = fleet.Work(validate_bag, _lost, lambda task: replace(task, bag=task.bag.absolute()))
 """For `fleet.on_this_machine` and `fleet.on_cluster`."""

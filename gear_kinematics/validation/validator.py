@@ -17,13 +17,12 @@ from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.validation import checks
+from gear_kinematics.validation import input_health
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
     RecomputedCorrection,
     why_unjudged,
 )
-from gear_kinematics.validation.input_health import InputHealth
 from gear_kinematics.validation.matching import (
     SAMPLES,
     WINDOW,
@@ -31,13 +30,13 @@ from gear_kinematics.validation.matching import (
     OutputTopic,
     Solver,
 )
-from gear_kinematics.validation.occurrences import Occurrences
-from gear_kinematics.validation.output_topics import BodyPoses, JointStateTopic, OutputState
+from gear_kinematics.validation.occurrences import Occurrences, lanes
+from gear_kinematics.validation.output_topics import BodyPoses, OutputState
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
 from gear_kinematics.validation.report import BagReport, Finding, Lane
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.unseen_turns import UnseenTurns
-from gear_kinematics.wire.cdr import MalformedMessageError, joint_state_layout, pose_array_layout
+from gear_kinematics.wire.cdr import MalformedMessageError
 
 Array = NDArray[Any]
 
@@ -72,13 +71,10 @@ class Validator:
         """
         self._task = task
         self._parameters = parameters = task.parameters
-        self._prefix_open = not parameters.frame_prefix
-        self._topics = topics
-        self._corrected = corrected
-        self._offset_open = task.allow_offset or not task.strict
+        self._topics, self._corrected = topics, corrected
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
-        self._health = InputHealth(parameters.max_rotor_speed)
+        self._health = input_health.InputHealth(parameters.max_rotor_speed)
         self._rejected = Occurrences()
         self._inputs = RecordedInputs(strict=task.strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
@@ -87,16 +83,13 @@ class Validator:
         self._expectation = Expectation(gear, task.tolerances, solver, self._unseen)
         self._groups: list[Completeness] = []
         self._outputs: dict[str, OutputTopic] = {}
-        prefix = parameters.frame_prefix
-        joint = prefix + parameters.output_joint
+        joint = parameters.frame_prefix + parameters.output_joint
         self.output = OutputState(topics.output, joint, self._expectation)
         self.poses = None
-        outputs: list[OutputTopic] = [self.output]
         if isinstance(gear, Mechanism) and topics.poses:
-            self.poses = BodyPoses(topics.poses, prefix + _FRAME, gear, self._expectation)
-            outputs.append(self.poses)
-        self._judge(outputs)
-        self._unjudged = 0  # messages of the corrected output
+            frame = parameters.frame_prefix + _FRAME
+            self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
+        self._judge(*filter(None, (self.output, self.poses)))
         self._why_unjudged = why_unjudged(task.calibration, single_turn=single_turn)
         self._correction = None
         columns = list(SAMPLES)
@@ -106,11 +99,12 @@ class Validator:
             )
             columns += [(name, np.float64) for name in Correction._fields]
             for topic, name in corrected.items():
-                self._judge([CORRECTED[topic](name, joint, self._expectation)])
+                self._judge(CORRECTED[topic](name, joint, self._expectation))
         self._window = np.zeros(0, columns)
         """The latest samples."""
+        self._prefix_open = not parameters.frame_prefix
+        self._offset_open = task.allow_offset or not task.strict
         self._findings: list[Finding] = []
-        self._checks = [make(parameters) for make in checks.CHECKS]
 
     def feed(self, batches: Iterable[Sequence[Message]]) -> None:
         """Process messages on the topics, up to an exception of the iterable, if any.
@@ -128,7 +122,11 @@ class Validator:
         Args:
             error: damage at which reading ended, if any.
         """
-        self._close()
+        for _ in range(2):  # late messages wait for one more batch
+            self._take(self._sorted(()))
+        self._drop(len(self._window))
+        for group in self._groups:
+            group.close()
         rotor = self._health.report(self._input, self._topics.rotor)
         topics = tuple(
             output.report()
@@ -138,16 +136,12 @@ class Validator:
         )
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
-            error += '; name it with --joint' * bool(self._input.missing_joint)
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it'
-        checked = [finding for check in self._checks for finding in check.judge(rotor)]
-        failed = any(finding.fails for finding in checked)
-        passed = all(topic.passed for topic in topics) and not failed
-        series = (
-            output.series.series(name, rotor.first_stamp or 0)
-            for name, output in self._outputs.items()
-        )
+        checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
+        passed = not any(finding.fails for finding in checked) and all(t.passed for t in topics)
+        start = rotor.first_stamp or 0
+        series = (output.series.series(name, start) for name, output in self._outputs.items())
         return BagReport(
             bag=str(self._task.bag),
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
@@ -157,14 +151,14 @@ class Validator:
             messages=rotor.messages + sum(topic.messages for topic in topics),
             rotor=rotor,
             topics=topics,
-            findings=(*self._compared(), *self._causes(), *self._notes(), *checked),
+            findings=(*self._found(), *checked),
             series=tuple(found for found in series if found),
-            lanes=() if rotor.first_stamp is None else tuple(self._lanes(rotor.first_stamp)),
+            lanes=tuple(self._lanes(start)) if rotor.valid else (),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters.module,
         )
 
-    def _judge(self, outputs: Sequence[OutputTopic]) -> None:
+    def _judge(self, *outputs: OutputTopic) -> None:
         """Compare outputs that are recorded from the same time on."""
         names = [output.name for output in outputs]
         group = Completeness(self._topics.rotor, names, strict=self._task.strict)
@@ -183,16 +177,9 @@ class Validator:
         for topic, messages in batch.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        for group in self._groups:
-            group.begin(self._begun)
         self._add_samples(batch[self._topics.rotor])
         for name, output in self._outputs.items():
             output.take(batch[name].data, batch[name].received, self._window, self._inputs)
-        if not self._correction:
-            self._unjudged += sum(len(batch[name].data) for name in self._corrected.values())
-        poses = self.poses.compared if self.poses else {}
-        for check in self._checks:
-            check.update(self.output.compared, poses)
         done = np.all([output.matcher.matched for output in self._outputs.values()], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
@@ -203,17 +190,15 @@ class Validator:
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._rejected.add(samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        waiting = len(self._window)
-        window = np.empty(waiting + len(samples.stamp), self._window.dtype)
-        window[:waiting], new = self._window, window[waiting:]
-        for name, _ in SAMPLES:
-            new[name] = getattr(samples, name)
+        columns = {name: getattr(samples, name) for name, _ in SAMPLES}
         if self._correction:
-            for name, values in self._correction.at(samples)._asdict().items():
-                new[name] = values
-        self._window = window
+            columns |= self._correction.at(samples)._asdict()
+        new = np.empty(len(samples.stamp), self._window.dtype)
+        for name, values in columns.items():
+            new[name] = values
+        self._window = np.concatenate([self._window, new])
         for output in self._outputs.values():
-            output.matcher.extend(len(samples.stamp))
+            output.matcher.extend(len(new))
 
     def _drop(self, count: int) -> None:
         """Drop the oldest samples, whose outputs are there or count as missing."""
@@ -221,41 +206,25 @@ class Validator:
         for group in self._groups:
             matchers = [self._outputs[name].matcher for name in group.topics]
             answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
-            group.update(Inputs(oldest['received'], oldest['stamp'], answered))
+            group.update(Inputs(oldest['received'], oldest['stamp'], answered), self._begun)
         for output in self._outputs.values():
             output.matcher.drop(count)
         self._window = self._window[count:]
 
-    def _close(self) -> None:
-        """Count waiting samples and messages as missing and extra, at the end."""
-        for _ in range(2):  # late messages wait for one more batch
-            self._take(self._sorted(()))
-        self._drop(len(self._window))
-        for group in self._groups:
-            group.close()
-
     def _find_prefix(self, batch: _Batch) -> None:
         """Adopt the frame prefix of the first output, if any."""
-        joint = self._parameters.output_joint
-        for topic, layout_of, name in (
-            (self._topics.poses, pose_array_layout, _FRAME),
-            (self._topics.output, joint_state_layout, joint),
-        ):
-            with suppress(MalformedMessageError):
-                data = batch[topic].data or [b'']
-                recorded = layout_of(data[0]).texts[-1].decode(errors='replace')
-                if not recorded.endswith(name):
-                    continue
-                self._prefix_open = False
-                if prefix := recorded.removesuffix(name):
-                    self._parameters = replace(self._parameters, frame_prefix=prefix)
-                    if self.poses:
-                        self.poses.frame_id = prefix + _FRAME
-                    for output in self._of_joint():
-                        output.joint = prefix + joint
-                    text = f'frame_prefix {prefix!r} is taken from the outputs'
-                    self._findings.append(Finding(text))
-                return
+        for output in filter(None, (self.poses, self.output)):
+            with suppress(MalformedMessageError, IndexError):
+                label = output.label_in(batch[output.name].data[0])
+                if label.endswith(output.label):
+                    self._prefix_open = False
+                    if prefix := label.removesuffix(output.label):
+                        self._parameters = replace(self._parameters, frame_prefix=prefix)
+                        for each in self._outputs.values():
+                            each.label = prefix + each.label
+                        text = f'frame_prefix {prefix!r} is taken from the outputs'
+                        self._findings.append(Finding(text))
+                    return
 
     def _find_offset(self, batch: _Batch) -> None:
         """Determine the offset to accept, if any, from the first batch with outputs.
@@ -270,8 +239,8 @@ class Validator:
             trial = self._trial(part, self._parameters)
             offset = trial.output.fit.offset(self._task.tolerances.angle)
             self._offset_open = not trial.output.fit.count
-            if trial.output.fit.count and offset is None:
-                return
+            if offset is None:
+                break
         if offset is None:
             return
         turned = self._parameters.rotor_direction * self._gear.gear_ratio.rotor_angle(offset)
@@ -280,12 +249,12 @@ class Validator:
             return
         text = f'the recorded output angle is off by a constant {offset:.12g} rad'
         moved = replace(self._parameters, rotor_zero=zero)
-        if _position_error(self._trial(batch, moved)) <= _position_error(trial):
+        if self._trial(batch, moved).position_error <= trial.position_error:
             self._input.parameters = moved
             before = f'{self._parameters.rotor_zero:.12g}'
             text += f': compared with rotor_zero {zero:.12g} instead of {before}, as after homing'
         elif self._task.allow_offset:
-            for output in self._of_joint():
+            for output in self._outputs.values():
                 output.offset = offset
             text = f'accepted: {text}'
         else:
@@ -299,52 +268,38 @@ class Validator:
         trial._take({name: batch[name] for name in self._topics})
         return trial
 
-    def _of_joint(self) -> Iterator[JointStateTopic]:
-        for output in self._outputs.values():
-            if isinstance(output, JointStateTopic):
-                yield output
+    @property
+    def position_error(self) -> float:
+        """The greatest error of a body's position, m; 0 without poses."""
+        return self.poses.errors[0].report().max_error if self.poses else 0.0
 
     def _sorted(self, messages: Iterable[Message]) -> _Batch:
         return by_topic(messages, (*self._topics, *self._corrected.values()))
 
-    def _compared(self) -> Iterator[Finding]:
-        """Yield with what the outputs are compared, as far as it is not the obvious."""
+    def _found(self) -> Iterator[Finding]:
+        """Yield with what the outputs are compared, what explains their faults, and the rest."""
+        rotor = self._topics.rotor
         if isinstance(self._gear, Mechanism) and not self.poses:
             yield Finding(f'no poses are recorded: {self.output.name} alone is compared')
-        judged = (self._outputs.get(name) for name in self._corrected.values())
-        if any(output.matcher.messages > 0 for output in judged if output):
-            file = self._task.calibration_file
+        corrected = self._begun.keys() & set(self._corrected.values())
+        if corrected and self._correction:
+            file = self._task.parameters.calibration
             yield Finding(f'the corrected output is compared with that of {file}')
         yield from self._findings
-
-    def _causes(self) -> Iterator[Finding]:
-        """Yield what explains the errors and the missing messages."""
         for output in self._outputs.values():
             yield from output.causes()
-        rotor = self._topics.rotor
         if self._input.mostly_rejected and self._input.missing_joint:
             yield Finding(f'{rotor}: {self._input.missing_joint}', cause=True)
         for group in self._groups:
             yield from group.causes()
-
-    def _notes(self) -> Iterator[Finding]:
-        """Yield what fails nothing."""
-        for output in self._outputs.values():
-            yield from output.notes()
         if self._unseen:
             yield from self._unseen.notes()
-        if self._unjudged:
+        if corrected and not self._correction:
             yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
 
     def _lanes(self, start: int) -> Iterator[Lane]:
         """Yield a lane for everything that happened on the topics, with the time 0 at a stamp."""
-        for event, found in (('gaps', self._health.gaps), ('rejected', self._rejected)):
-            if found.count:
-                yield found.lane(self._topics.rotor, event, start, fails=False)
+        events = {'gaps': self._health.gaps, 'rejected': self._rejected}
+        yield from lanes(self._topics.rotor, events, start, fails=False)
         for output in self._outputs.values():
-            yield from output.lanes(start)
-
-
-def _position_error(validator: Validator) -> float:
-    """The greatest error of a body's position, m; 0 without poses."""
-    return validator.poses.position.max_error if validator.poses else 0.0
+            yield from lanes(output.name, output.events(), start)

@@ -30,7 +30,9 @@ def angle():
 
 @pytest.fixture(scope='module')
 def measured(config, actuator):
-    return lambda recording: measure(recording, actuator, config, Request()).figures.smallest
+    return lambda recording: measure(recording, actuator, config, Request()).figures.by_amplitude[
+        0
+    ]
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from types import ModuleType
 import pytest
 
 from gear_kinematics.commands import cli
-from gear_kinematics.validation import checks, tables
+from gear_kinematics.validation import input_health, tables
 
 ROOT = Path(__file__).resolve().parents[2]
 BAG = ROOT / 'bags' / 'driver_faults'
@@ -24,21 +24,15 @@ def module(source: str) -> ModuleType:
     return made
 
 
-def test_a_check_fails_a_bag_and_says_why(monkeypatch, capsys):
-    monkeypatch.setattr(checks, 'CHECKS', (*checks.CHECKS, module(CHECK).OutputTravel))
-    assert cli.main(['validate', str(BAG), '--json', '-']) == 1
+@pytest.mark.parametrize('name', ['driver_faults', 'constant_speed_3000rpm'])
+def test_a_check_fails_a_bag_and_says_why(name, monkeypatch, capsys):
+    added = (*input_health.CHECKS, module(CHECK).slow_driver)
+    monkeypatch.setattr(input_health, 'CHECKS', added)
+    slow = name == 'driver_faults'
+    assert cli.main(['validate', str(BAG.parent / name), '--json', '-']) == slow
     [bag] = json.loads(capsys.readouterr().out)['bags']
-    assert bag['verdict'] == 'fail'
-    assert any(finding.endswith('beyond the end stops') for finding in bag['findings'])
-
-
-def test_a_check_that_finds_nothing_changes_nothing(monkeypatch, capsys):
-    class Unlimited(module(CHECK).OutputTravel):
-        stops = (-100.0, 100.0)
-
-    monkeypatch.setattr(checks, 'CHECKS', (*checks.CHECKS, Unlimited))
-    assert cli.main(['validate', str(BAG)]) == 0
-    assert 'end stops' not in capsys.readouterr().out
+    assert bag['verdict'] == ('fail' if slow else 'pass')
+    assert bag['findings'] == ['/rotor_state has only 500 Hz'] * slow
 
 
 def test_a_field_of_the_report_is_in_every_form(monkeypatch, capsys, tmp_path):

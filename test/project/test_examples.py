@@ -1,5 +1,7 @@
 """The examples do what they say."""
 
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +10,7 @@ import pytest
 from gear_recordings import record_both_encoders
 
 EXAMPLES = Path(__file__).parents[2] / 'examples'
+VALIDATING = EXAMPLES.parent / 'docs' / 'validating.md'
 TOLD = {
     # 2.5 rad divided by -19; satellites on circles of the eccentricity, 1.1 mm.
     'output_and_poses': ['output: -7.5389°, by the ratio -19', 'satellite a: at ['],
@@ -43,6 +46,23 @@ def test_example_says_what_it_should(name, tmp_path):
     assert (done.returncode, done.stderr) == (0, '')
     for part in TOLD[name]:
         assert part in done.stdout
+
+
+@pytest.mark.parametrize('teeth', [80, 84])
+def test_the_documented_test_of_a_package_holds_its_recording_to_its_parameters(teeth, tmp_path):
+    [source] = re.findall(
+        r'```python\n(from gear_kinematics\.validation .*?)```',
+        VALIDATING.read_text('utf-8'),
+        re.DOTALL,
+    )
+    (tmp_path / 'test_recording.py').write_text(source, 'utf-8')
+    shutil.copytree(EXAMPLES.parent / 'bags/servo_point_to_point', tmp_path / 'logs/monday')
+    parameters = f'/**: {{ros__parameters: {{ring_teeth: {teeth}, satellite_teeth: {teeth - 4}}}}}'
+    (tmp_path / 'actuator.yaml').write_text(parameters, 'utf-8')
+    command = [sys.executable, '-m', 'pytest', '-q', '-p', 'no:cacheprovider', tmp_path]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == (teeth != 80), done.stdout
+    assert ('as that of ring_teeth 80, satellite_teeth 76' in done.stdout) == (teeth != 80)
 
 
 def test_a_wrong_recording_fails_the_example(tmp_path):

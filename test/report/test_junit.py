@@ -71,7 +71,7 @@ def test_failing_parts_fail_with_a_message():
             '/output_state position',
             (
                 'failure: error 0.002 rad at rotor angle 785.398163 rad exceeds the tolerance '
-                '1e-9 rad (--tolerance-angle), at stamp 1700000002623456789'
+                'of the angle, 1e-9 rad, at stamp 1700000002623456789'
             ),
         ),
         ('/output_state velocity', 'failure: 5 values not finite'),
@@ -110,7 +110,7 @@ def test_failing_bag_is_red_even_if_no_part_of_it_fails():
     )
     assert outcomes(suite)[0] == ('bag', 'failure: another gear')
     (suite,) = parse(samples.EMPTY)
-    assert outcomes(suite) == [('bag', 'failure: the bag fails')]
+    assert outcomes(suite) == [('bag', 'failure: the bag failed')]
     assert suite.get('failures') == '1'
 
 

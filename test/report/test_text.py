@@ -87,7 +87,7 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
         f'/output_state: joint name "shaft" in 3 messages, the first at stamp {samples.START}',
         (
             '/output_state position: error 0.002 rad at rotor angle 785.398163 rad exceeds the '
-            'tolerance 1e-9 rad (--tolerance-angle), at stamp 1700000002623456789'
+            'tolerance of the angle, 1e-9 rad, at stamp 1700000002623456789'
         ),
         '/output_state velocity: 5 values not finite',
         '/output_state effort: 1 sample with the field in input or output only',

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from live import SECOND, START, rotor_bytes
 
-from gear_kinematics.correction.calibrated_output import CalibrationFit
+from gear_kinematics.correction.calibration_fit import CalibrationFit
+from gear_kinematics.correction.error_window import ErrorStatistics
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, EncoderMonitor
@@ -38,8 +39,8 @@ class Bench:
         data = rotor_bytes(stamp, [joint], [position])
         return self.encoder.accept(data, lambda: now)
 
-    def report(self, at=NOW, fit=None, **changes):
-        return self.monitor.report(self.encoder, replace(self.settings, **changes), at, fit)
+    def report(self, at=NOW, **changes):
+        return self.monitor.report(self.encoder, replace(self.settings, **changes), at)
 
 
 @pytest.fixture
@@ -198,9 +199,12 @@ def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
 
 
 @pytest.mark.parametrize(('explained', 'fits'), [(0.4, False), (0.999, True)])
-def test_calibration_that_no_longer_fits_is_a_warning(bench, explained, fits):
+def test_calibration_that_no_longer_fits_is_a_warning(bench, monkeypatch, explained, fits):
     swing(bench, 0.001)
-    report = bench.report(fit=CalibrationFit(400, explained, 0.25, fits, 40.0))
+    fit = CalibrationFit(400, explained, 0.25, fits, 40.0)
+    statistics = ErrorStatistics(calibration=fit)
+    monkeypatch.setattr(bench.encoder.window, 'statistics', lambda: statistics)
+    report = bench.report()
     expected = (OK, 'ok') if fits else (WARN, 'calibration no longer fits')
     assert (report.level, report.message) == expected
     assert report.values['explained by the calibration (%)'] == f'{100 * explained:.1f}'

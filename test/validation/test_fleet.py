@@ -6,7 +6,6 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 from contextlib import ExitStack, suppress
 from pathlib import Path
 
@@ -31,18 +30,14 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validate_bag import WORK, validate_bag
 
-SHIPPED = [
-    'constant_speed_3000rpm',
-    'driver_faults',
-    'servo_point_to_point',
-    'single_turn_encoder',
-]
 COMPARED = {
     'constant_speed_3000rpm': 3000,
     'driver_faults': 1265,
     'servo_point_to_point': 3000,
     'single_turn_encoder': 2500,
 }
+
+SHIPPED = [*COMPARED]
 
 
 def task(path: Path, **options) -> Task:
@@ -57,15 +52,11 @@ def task(path: Path, **options) -> Task:
 
 def test_a_shipped_bag_is_reported():
     told = []
-    report = validate_bag(
-        task(BAGS / 'driver_faults'), lambda count, total: told.append((count, total))
-    )
-    assert report.verdict == Verdict.PASS
-    assert report.bag == str(BAGS / 'driver_faults')
-    assert report.config == str(default_config())
-    assert report.error is None
+    report = validate_bag(task(BAGS / 'driver_faults'), lambda *progress: told.append(progress))
+    assert (report.verdict, report.error) == (Verdict.PASS, None)
+    assert (report.bag, report.config) == (str(BAGS / 'driver_faults'), str(default_config()))
     assert [topic.compared for topic in report.topics] == [1265, 1265]
-    assert told[-1][0] == report.messages == 1314 + 2 * 1265
+    assert told[-1] == (report.messages, report.messages) == (1314 + 2 * 1265,) * 2
     assert {total for _, total in told} == {report.messages}
 
 
@@ -103,13 +94,7 @@ fleet.find_topics = find_topics
 @pytest.mark.parametrize('options', [[], ['--debug']])
 def test_an_unexpected_error_makes_one_bag_unusable_and_no_other(options):
     bags = [BAGS / name for name in ('driver_faults', 'constant_speed_3000rpm')]
-    done = subprocess.run(
-        [sys.executable, '-c', BROKEN + GEARKIN, 'validate', *options, *bags],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-    )
+    done = gearkin('validate', *options, *bags, code=BROKEN + GEARKIN)
     assert done.returncode == 2
     said = f'gearkin: {bags[0]}: unexpected ZeroDivisionError: '
     lines = done.stderr.splitlines()
@@ -220,22 +205,27 @@ def test_a_bag_whose_process_died_is_begun_again(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize('place', [0, 8], ids=['first', 'last'])
-def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(place, tmp_path):
+@pytest.mark.parametrize(('way', 'place'), [('jobs', 0), ('jobs', 8), ('scheduler', 3)])
+def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(way, place, tmp_path):
     bags = copies(tmp_path / 'bags', 2)
     lost = tmp_path / 'bags' / 'killer'
     bags.insert(place, lost)
     report = tmp_path / 'report.json'
-    arguments = ['validate', '--jobs', 2, '--json', report]
-    with (
-        BlockedBag(BAGS / 'driver_faults', lost) as blocked,
-        running_gearkin(*arguments, *bags, stdout=subprocess.DEVNULL) as process,
-    ):
+    with ExitStack() as stack:
+        blocked = stack.enter_context(BlockedBag(BAGS / 'driver_faults', lost))
+        number = 2
+        if way == 'scheduler':
+            dask = stack.enter_context(cluster(tmp_path / 'cluster', allowed_failures=1))
+            for _ in range(2):  # begun again by their nannies
+                dask.add_worker('--nanny')
+            number = dask.address
+        arguments = ['validate', f'--{way}', number, '--json', report, *bags]
+        process = stack.enter_context(running_gearkin(*arguments, stdout=subprocess.DEVNULL))
         killed = kill_readers(blocked, process)
         _, errors = process.communicate(timeout=DEADLINE)
     assert process.returncode == 2
     assert errors == f'gearkin: {lost}: its worker died repeatedly\n'
-    assert killed == 3
+    assert killed == {'jobs': 3, 'scheduler': 4}[way]
     check_reports(report, bags, lost)
 
 
@@ -267,27 +257,6 @@ def test_the_bags_of_a_killed_worker_are_done_by_another(tmp_path, monkeypatch):
     check_reports(tmp_path / 'report.json', bags)
 
 
-@pytest.mark.slow
-def test_a_bag_that_kills_every_worker_is_lost_and_no_other(tmp_path):
-    bags = copies(tmp_path / 'bags', 3)
-    lost = tmp_path / 'bags' / 'killer'
-    bags.insert(3, lost)
-    with (
-        BlockedBag(BAGS / 'driver_faults', lost) as blocked,
-        cluster(tmp_path / 'cluster', allowed_failures=1) as dask,
-    ):
-        for _ in range(2):  # begun again by their nannies
-            dask.add_worker('--nanny')
-        options = ['--scheduler', dask.address, '--json', tmp_path / 'report.json']
-        with running_gearkin('validate', *options, *bags, stdout=subprocess.DEVNULL) as process:
-            killed = kill_readers(blocked, process)
-            _, errors = process.communicate(timeout=DEADLINE)
-    assert process.returncode == 2
-    assert errors == f'gearkin: {lost}: its worker died repeatedly\n'
-    assert killed == 4
-    check_reports(tmp_path / 'report.json', bags, lost)
-
-
 IMPATIENT = (
     f'import gear_kinematics.bag.fleet as f; f._PATIENCE = f._CONNECT_TIMEOUT = 1.0; {GEARKIN}'
 )
@@ -316,36 +285,25 @@ def test_a_cluster_that_has_no_workers_or_ends_is_an_error(tmp_path):
     assert 'verdict: unusable' in output
 
 
+NO_DASK = f'import sys; sys.modules["distributed"] = None; {GEARKIN}'
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ('address', 'cause'),
+    ('address', 'cause', 'code'),
     [
-        ('tcp://127.0.0.1:9', 'no Dask scheduler there: Timed out'),
-        ('tcp://nowhere.invalid:8786', 'no Dask scheduler there: Timed out'),
-        ('quark://127.0.0.1:9', "unknown address scheme 'quark'"),
-        ('nonsense', 'missing port number'),
+        ('tcp://127.0.0.1:9', 'no Dask scheduler there: Timed out', IMPATIENT),
+        ('tcp://nowhere.invalid:8786', 'no Dask scheduler there: Timed out', IMPATIENT),
+        ('quark://127.0.0.1:9', "unknown address scheme 'quark'", IMPATIENT),
+        ('nonsense', 'missing port number', IMPATIENT),
+        ('tcp://127.0.0.1:9', "is not installed: pip install 'gear_kinematics[dask]'", NO_DASK),
     ],
 )
-def test_an_unreachable_scheduler_is_an_error_in_one_line(address, cause):
+def test_an_unreachable_scheduler_is_an_error_in_one_line(address, cause, code):
     pytest.importorskip('distributed')
-    done = gearkin(
-        'validate', BAGS / 'driver_faults', '--scheduler', address, code=IMPATIENT, timeout=30.0
-    )
+    bag = BAGS / 'driver_faults'
+    done = gearkin('validate', bag, '--scheduler', address, code=code, timeout=30.0)
     assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr.startswith(f'gearkin: {address}: ')
+    assert done.stderr.startswith(f'gearkin: {"distributed" if code == NO_DASK else address}')
     assert cause in done.stderr
     assert done.stderr.count('\n') == 1
-
-
-def test_without_dask_a_scheduler_is_an_error():
-    done = gearkin(
-        'validate',
-        BAGS / 'driver_faults',
-        '--scheduler',
-        'tcp://127.0.0.1:9',
-        code=f'import sys; sys.modules["distributed"] = None; {GEARKIN}',
-    )
-    assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr == (
-        "gearkin: distributed is not installed: pip install 'gear_kinematics[dask]'\n"
-    )

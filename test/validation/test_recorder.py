@@ -230,6 +230,7 @@ def test_losses_in_every_pass_of_a_bag_that_loops_fail_nothing(traffic, config):
     kept = [m for k, m in enumerate(messages) if k not in lost]
     report = validate(kept, config)
     assert report.verdict == Verdict.PASS
+    assert report.rotor.resets == 3
     assert [t.left_out for t in report.topics] == [{NO_INPUT: 85}] * 2
     kept.insert(len(kept) * 2 // 3, next(m for m in kept if m.topic == OUTPUT))
     assert [t.extra for t in validate(kept, config).topics] == [1, 0]
@@ -312,18 +313,13 @@ def slipped(messages: list[Message], begin: float) -> list[Message]:
     ]
 
 
-def test_a_turn_lost_by_the_node_is_found(single_turn):
-    config, messages = single_turn
-    assert validate(slipped(messages, 0.5), config).verdict == Verdict.FAIL
-
-
-def test_turns_of_poses_and_angle_have_to_agree(single_turn):
-    config, messages = single_turn
-    report = validate(slipped(messages, 0.0), config)
+def test_a_turn_lost_by_the_node_is_found(single_turn, traffic, config):
+    single, messages = single_turn
+    assert validate(slipped(messages, 0.5), single).verdict == Verdict.FAIL
+    # Turns of poses and angle have to agree.
+    report = validate(slipped(messages, 0.0), single)
     assert [t.passed for t in report.topics] == [True, False]
-
-
-def test_turns_of_a_multi_turn_encoder_are_not_inferred(traffic, config):
+    # Those of a multi-turn encoder are not inferred.
     assert validate(slipped(traffic[500][:900], 0.0), config).verdict == Verdict.FAIL
 
 
