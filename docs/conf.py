@@ -14,6 +14,7 @@ from typing import Any
 
 from docutils import nodes
 from docutils.parsers.rst import Directive
+from docutils.statemachine import StringList
 from numpy.typing import ArrayLike
 from sphinx import addnodes
 from sphinx.application import Sphinx
@@ -36,7 +37,7 @@ _STYLES = re.compile(r'\x1b\[[\d;]*m')
 _WIDTH = 92  # characters
 _UNUSABLE = 2  # exit code
 
-_FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference')
+_FOLDERS = ('bags', 'benchmark', 'docs', 'docs/reference', 'docs/reference/gearkin')
 
 project = 'gear_kinematics'
 root_doc = 'docs/index'
@@ -44,7 +45,7 @@ include_patterns = ['*.md', '*.rst', *(f'{folder}/*.md' for folder in _FOLDERS)]
 extensions = ['myst_parser', 'sphinx.ext.autodoc', 'sphinxarg.ext']
 default_role = 'code'
 highlight_language = 'none'
-smartquotes_action = 'D'
+smartquotes = False
 autodoc_member_order = 'bysource'
 autodoc_preserve_defaults = True
 autodoc_default_options = {'members': True}
@@ -85,6 +86,20 @@ class _Run(Directive):
         return [nodes.literal_block(text, text)]
 
 
+class _Commands(Directive):
+    """List the commands, with their purposes and links to their pages: `{commands}`."""
+
+    def run(self) -> list[nodes.Node]:
+        """Take them from the table that the program uses."""
+        rows = [
+            f'| [{name}](gearkin/{name}.md) | {purpose} |'
+            for name, (purpose, _) in cli.COMMANDS.items()
+        ]
+        found = nodes.container()
+        self.state.nested_parse(StringList(['| command | |', '|---|---|', *rows]), 0, found)
+        return found.children
+
+
 class _Arguments(ArgParseDirective):
     """List the arguments of a command: `{arguments} validate`."""
 
@@ -101,6 +116,7 @@ class _Arguments(ArgParseDirective):
 def setup(app: Sphinx) -> None:
     """Have docstrings read as they are written in this project, and commands run."""
     app.add_directive('run', _Run)
+    app.add_directive('commands', _Commands)
     app.add_directive('arguments', _Arguments)
     app.connect('autodoc-process-docstring', _read_sections)
     app.connect('doctree-resolved', _name_arrays)

@@ -38,12 +38,12 @@ DRAWN = {
     'slides.svg': ['plot', 'slides'],
     'pictures/output.svg': ['plot', 'output', '--bag', BAG],
     'pictures/preload.svg': ['preload', '--wanted-threshold', '1', *SHAFT, '--plot'],
-    'pictures/index.svg': ['index', '--phase-b', '--preload', '0.8', *SHAFT, '--drawing'],
+    'pictures/pins.svg': ['preload', '--wanted-threshold', '1', *SHAFT, '--drawing'],
 }
 """By file, each with the arguments of gearkin that come before it."""
 PAGES = {
     'pictures/describe.png': ['describe'],
-    'pictures/index.png': ['index', '--phase-b', '--preload', '0.8', *SHAFT],
+    'pictures/index.png': ['index', '--degrees', '0.07'],
     'pictures/preload.png': ['preload', '--wanted-threshold', '1', *SHAFT],
     'pictures/lost_motion.png': ['lost-motion', 'docs/examples/ramps.csv', *CONFIG],
 }

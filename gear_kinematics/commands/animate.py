@@ -6,14 +6,14 @@ from pathlib import Path
 
 from gear_kinematics import plotting
 from gear_kinematics.bag.trajectory import Trajectory
-from gear_kinematics.commands import ExitCode, arguments, bags, drawing
+from gear_kinematics.commands import ExitCode, arguments, drawing
 from gear_kinematics.commands.files import check_targets, write_file
 from gear_kinematics.commands.output import progress
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
-_BOUNDS = {'width': (100, 1920), 'fps': (1, 50)}
+_FPS = 20
 _MOST_FRAMES = 2000
 _AMBIGUOUS = 0.5  # turns of the rotor from frame to frame: its direction cannot be seen
 
@@ -28,16 +28,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='RAD/S',
         help='rotor speed (default: two turns per second)',
     )
-    parser.add_argument(
+    arguments.group(parser, 'motion').add_argument(
         '--rate', type=arguments.positive, default=1.0, help='playback speed (default: 1)'
     )
-    parser.add_argument(
-        '--fps', type=int, default=20, help='frames per second (default: %(default)s)'
+    arguments.group(parser, 'output').add_argument(
+        '--width',
+        type=arguments.between(100, 1920, int),
+        default=420,
+        metavar='PX',
+        help='of the frames (default: %(default)s)',
     )
-    parser.add_argument(
-        '--width', type=int, default=420, metavar='PX', help='of the frames (default: %(default)s)'
-    )
-    drawing.add_branch(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
@@ -47,9 +47,6 @@ def run(options: argparse.Namespace) -> ExitCode:
     plotting.check_animation(path)
     config = arguments.load_config(options, options.bag)
     mechanism, module = config.mechanism, config.module
-    for name, (low, high) in _BOUNDS.items():
-        if not low <= (given := getattr(options, name)) <= high:
-            raise ValueError(f'--{name} must be between {low} and {high}, not {given}')
     frames = _frames(options, config, mechanism.cycle_turns)
     count = len(frames.time)
     with progress('frames', quiet=options.quiet) as bars:
@@ -59,15 +56,14 @@ def run(options: argparse.Namespace) -> ExitCode:
             module,
             path,
             frames,
-            fps=options.fps,
+            fps=_FPS,
             width=options.width,
-            branch=drawing.branch(options, mechanism),
             progress=lambda done: bars.update(task, completed=done),
         )
     write_file(options.out, content)
     if options.quiet:
         return ExitCode.DONE
-    print(f'{options.out}: {count} frames, {options.fps} per second')
+    print(f'{options.out}: {count} frames, {_FPS} per second')
     drawing.warn_if_teeth_cannot_mesh(mechanism, module)
     step = frames.longest_step
     if step > _AMBIGUOUS:
@@ -79,10 +75,10 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _frames(options: argparse.Namespace, config: NodeParameters, cycle_turns: int) -> Trajectory:
     closed = not (options.bag or options.duration)
-    moved = bags.recording(options, config) or Trajectory.at_constant_speed(
+    moved = drawing.recording(options, config) or Trajectory.at_constant_speed(
         options.speed, turns=cycle_turns, duration=options.duration
     )
-    interval = options.rate / options.fps
+    interval = options.rate / _FPS
     count = math.ceil((moved.time[-1] - moved.time[0]) / interval)
     if count > _MOST_FRAMES:
         raise ValueError(f'{count} frames are more than {_MOST_FRAMES}; reduce --duration')

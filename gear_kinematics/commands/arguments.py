@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,22 +24,36 @@ def finite(text: str) -> float:
     return number
 
 
-def count(text: str) -> int:
-    """Parse an integer of at least 1."""
-    if (number := int(text)) < 1:
-        raise argparse.ArgumentTypeError(f'must be at least 1, not {text}')
+def between(
+    low: float, high: float = math.inf, kind: Callable[[str], float] = float
+) -> Callable[[str], float]:
+    """Return a parser of numbers between two bounds; `kind` is `int` or `float`."""
+
+    def number(text: str) -> float:
+        if not low <= (value := kind(text)) <= high:
+            bounds = f'at least {low:g}' if high == math.inf else f'between {low:g} and {high:g}'
+            raise argparse.ArgumentTypeError(f'must be {bounds}, not {text}')
+        return value
+
     return number
+
+
+def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:
+    """Return the group of options under a heading of --help, which is made where it is missing."""
+    known = (group for group in parser._action_groups if group.title == title)  # noqa: SLF001
+    return next(known, None) or parser.add_argument_group(title)
 
 
 def add_config(parser: argparse.ArgumentParser) -> None:
     """Add the options for the parameters of the node."""
-    parser.add_argument(
+    gear = group(parser, 'gear')
+    gear.add_argument(
         '--config',
         type=Path,
         metavar='FILE',
         help='parameters of the node as YAML (default: config/actuator.yaml)',
     )
-    parser.add_argument(
+    gear.add_argument(
         '--node',
         default=NODE,
         metavar='NAME',
@@ -47,14 +62,34 @@ def add_config(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_mechanism(parser: argparse.ArgumentParser, *, sizes: bool = False) -> None:
+    """Add the options for a mechanism: parameters of the node, tooth numbers, and sizes too."""
+    add_config(parser)
+    gear = group(parser, 'gear')
+    gear.add_argument(
+        '--ring-teeth', type=int, metavar='ZK', help='replaces the parameter ring_teeth'
+    )
+    gear.add_argument(
+        '--satellite-teeth', type=int, metavar='ZS', help='replaces the parameter satellite_teeth'
+    )
+    for name in ('eccentricity', 'module') if sizes else ():
+        text = f'replaces the parameter {name}, m'
+        gear.add_argument(f'--{name}', type=float, metavar='M', help=text)
+
+
 def add_quiet(parser: argparse.ArgumentParser) -> None:
     """Add the option for less output."""
-    parser.add_argument(
+    group(parser, 'output').add_argument(
         '-q',
         '--quiet',
         action='store_true',
         help='print neither progress nor results, but what failed',
     )
+
+
+def add_verbose(parser: argparse.ArgumentParser, text: str) -> None:
+    """Add the option for more output."""
+    group(parser, 'output').add_argument('-v', '--verbose', action='store_true', help=text)
 
 
 def config_path(options: argparse.Namespace, bag: Path | None = None) -> Path:
@@ -69,8 +104,6 @@ _REPLACED = {
     **{name: name for name in ('ring_teeth', 'satellite_teeth', 'eccentricity', 'module')},
     'ratio': 'gear_ratio',
     'joint': 'rotor_joint',
-    'max_gap': 'transmission_error_max_gap',
-    'travel': 'transmission_error_travel',
 }
 """Parameters of the node by the options that replace them."""
 
@@ -100,18 +133,3 @@ def beside(bag: Path, name: str) -> Path | None:
     """The file of a name in the folder of a bag, if there is one."""
     path = (bag if bag.is_dir() else bag.parent) / name
     return path if path.is_file() else None
-
-
-def add_mechanism(parser: argparse.ArgumentParser) -> None:
-    """Add the options for a mechanism: parameters of the node, and tooth numbers."""
-    add_config(parser)
-    for name, metavar in (('ring', 'ZK'), ('satellite', 'ZS')):
-        text = f'replaces the parameter {name}_teeth'
-        parser.add_argument(f'--{name}-teeth', type=int, metavar=metavar, help=text)
-
-
-def add_sizes(parser: argparse.ArgumentParser) -> None:
-    """Add the options for eccentricity and module."""
-    for name in ('eccentricity', 'module'):
-        text = f'replaces the parameter {name}, m'
-        parser.add_argument(f'--{name}', type=float, metavar='M', help=text)

@@ -22,14 +22,15 @@ from gear_kinematics.parameters import NodeParameters
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_recordings(parser, 'rotor', 'output', 'torque', 'time')
-    parser.add_argument(
+    output = arguments.group(parser, 'output')
+    output.add_argument(
         '-o',
         '--output',
         default='calibration.yaml',
         metavar='FILE',
         help='the calibration (default: %(default)s); replaces nothing but a calibration',
     )
-    parser.add_argument(
+    output.add_argument(
         '--check',
         type=Path,
         metavar='FILE',

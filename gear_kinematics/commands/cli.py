@@ -15,31 +15,51 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from gear_kinematics.commands import Command, ExitCode
+from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.extras import remedy
 from gear_kinematics.commands.output import closed_pipe_ignored, complain
 from gear_kinematics.share import version
 from gear_kinematics.wire.nearest import among
 
-COMMANDS: dict[str, str] = {
-    'info': 'what is in recordings: duration, topics, rates, joints and gaps',
-    'validate': 'compare recorded outputs with recomputed ones',
-    'compute': 'write a bag with the outputs for a recorded rotor topic',
-    'replay': "publish a bag's rotor topic with the timing of the recording",
-    'demo': 'play the shipped bag into the live node and validate its outputs',
-    'init': 'list the drivers that are running, and write a parameter file for one',
-    'watch': 'show a running node and its driver live: on a page, or in the terminal',
-    'describe': 'properties of a gear: ratio, mobility, vernier, interference of the teeth',
-    'index': 'pin holes for a turn of the ring gear, a preload or the phase of branch B',
-    'preload': 'preload, torque limits and torque split, and the ring turn for them',
-    'lost-motion': 'lost motion, stiffness, play and transmission error from recordings',
-    'calibrate': 'calibrate the real output, from recordings with an encoder at rotor and output',
-    'plot': 'draw figures: kinematic scheme, roses, slides, output over time',
-    'animate': 'animate the mechanism as a GIF or an MP4',
-    'urdf': 'print the URDF, and write its meshes',
-    'completion': 'print what completes commands in a shell',
+COMMANDS: dict[str, tuple[str, str]] = {
+    'info': ('what is in recordings: duration, topics, rates, joints and gaps', 'info logs/*/'),
+    'validate': ('compare recorded outputs with recomputed ones', 'validate logs/monday'),
+    'compute': ('write a bag with the outputs for a rotor topic', 'compute logs/monday computed'),
+    'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
+    'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
+    'init': ('list running drivers, and write a parameter file for one', 'init --joint m1'),
+    'watch': ('show a running node and its driver live', 'watch --record logs/monday'),
+    'describe': ('ratio, mobility, vernier and teeth of a gear', 'describe --html gear.html'),
+    'index': (
+        'pin holes for a turn of the ring gear or the phase of branch B',
+        'index --degrees 0.15 --drawing pin.svg',
+    ),
+    'preload': (
+        'preload, torque limits and torque split, and the ring turn and pin holes for them',
+        'preload --wanted-threshold 1 --branch-stiffness 3000 --shaft-stiffness 1000',
+    ),
+    'lost-motion': (
+        'hysteresis, lost motion, stiffness, play and transmission error from recordings',
+        'lost-motion ramps.csv --html ramps.html --max-hysteresis 90',
+    ),
+    'calibrate': (
+        'calibrate the real output, from recordings with an encoder at rotor and output',
+        'calibrate encoder/monday encoder/tuesday -o calibration.yaml',
+    ),
+    'plot': (
+        'draw figures: kinematic scheme, roses, slides, output over time',
+        'plot output output.svg --bag logs/monday',
+    ),
+    'animate': ('animate the mechanism as a GIF or an MP4', 'animate servo.gif --bag logs/monday'),
+    'urdf': ('print the URDF, and write its meshes', 'urdf --meshes meshes > gear.urdf'),
+    'completion': ('print what completes commands in a shell', 'completion bash > gearkin'),
 }
-"""The subcommands, each with its purpose in one line."""
+"""The subcommands, each with its purpose and an example in a line."""
+
+_OF_PRELOAD = {'--preload': '--wanted-preload'} | {
+    name: name for name in ('--measured', '--load', '--branch-stiffness', '--backlash')
+}
+"""Options that `gearkin index` had once, and what they are called in `gearkin preload`."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -63,7 +83,11 @@ class _Parser(argparse.ArgumentParser):
         message = f'unrecognized arguments: {" ".join(unknown)}'
         if options := [word for word in unknown if word.startswith('-') and word != '-']:
             known = [text for text in self._option_string_actions if text.startswith('--')]
-            message += among(options[0].partition('=')[0], known, most=len(known))
+            option = options[0].partition('=')[0]
+            if self.prog == 'gearkin index' and option in _OF_PRELOAD:
+                message = f'{option}: see {_OF_PRELOAD[option]} of gearkin preload'
+            else:
+                message += among(option, known, most=len(known))
         self.error(message)
 
     def error(self, message: str) -> NoReturn:
@@ -112,14 +136,20 @@ def make_parser(*called: str) -> argparse.ArgumentParser:
     parser.set_defaults(program=parser)
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
-    for name, purpose in COMMANDS.items():
-        added = commands.add_parser(name, help=purpose, description=purpose)
+    for name, (purpose, example) in COMMANDS.items():
+        added = commands.add_parser(
+            name,
+            help=purpose,
+            description=purpose,
+            epilog=f'example:\n  gearkin {example}',
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         if called and name not in called:
             continue
-        command: Command = import_module(f'{__package__}.{name.replace("-", "_")}')
+        command = import_module(f'{__package__}.{name.replace("-", "_")}')
         command.add_arguments(added)
-        added.add_argument(
-            '--debug', action='store_true', help='print the traceback of an unexpected error'
-        )
+        added._action_groups.sort(key=lambda group: group.title == 'output')  # noqa: SLF001
+        # Named in the line on an unexpected error, and of no use before.
+        added.add_argument('--debug', action='store_true', help=argparse.SUPPRESS)
         added.set_defaults(run=command.run)
     return parser

@@ -16,18 +16,19 @@ from gear_kinematics.wire.nearest import listed
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    arguments.add_config(parser)
-    bags.add_rotor(parser)
-    bags.add_outputs(parser)
-    arguments.add_quiet(parser)
-    bags.add_calibration(parser)
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
-    parser.add_argument(
+    bags.add_rotor(parser)
+    bags.add_outputs(parser)
+    arguments.add_config(parser)
+    bags.add_calibration(parser)
+    output = arguments.group(parser, 'output')
+    output.add_argument(
         '--topics', nargs='*', metavar='NAME', help='other topics to copy (default: all)'
     )
-    parser.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
-    parser.add_argument('--compression', choices=('none', 'zstd'), default='none')
+    output.add_argument('--storage', choices=('mcap', 'sqlite3'), default='mcap')
+    output.add_argument('--compression', choices=('none', 'zstd'), default='none')
+    arguments.add_quiet(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:

@@ -3,16 +3,15 @@
 import argparse
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
-from gear_kinematics.report.document import Cell, Document, Section, Table, Tone
 from gear_kinematics.report.text import render
-from gear_kinematics.validation.report import BagReport
+from gear_kinematics.validation.document import document
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    parser.add_argument(
+    arguments.group(parser, 'gear').add_argument(
         '--calibration',
         type=Path,
         metavar='FILE',
@@ -28,28 +27,5 @@ def run(options: argparse.Namespace) -> ExitCode:
 
     console = Console()
     report = demo.run(console, options.calibration)
-    render(_document(report, demo.TOLERANCE), console)
+    render(document([report]), console, brief=True)
     return ExitCode.DONE if report.passed else ExitCode.FAILED
-
-
-def _document(report: BagReport, tolerance: float) -> Document:
-    rows = []
-    for topic in report.topics:
-        missing = Cell(str(topic.missing), Tone.BAD if topic.missing else Tone.PLAIN)
-        for field in topic.fields:
-            deviation = Cell(
-                f'{field.max_error:.1e}', Tone.PLAIN if field.passed else Tone.BAD, field.unit
-            )
-            name = Cell(f'{topic.topic} {field.name}')
-            rows.append((name, Cell(str(field.compared)), missing, deviation))
-    columns = '', 'messages', 'missing', 'worst deviation'
-    agree = 'all agree' if report.passed else 'they do not agree'
-    remark = (
-        f'{report.rotor.messages if report.rotor else 0} rotor states, and the outputs of the '
-        f'node compared with the matrix method: {agree} to {tolerance:g} rad and {tolerance:g} of '
-        'the eccentricity'
-    )
-    section = Section(
-        report.bag, (Table(columns, tuple(rows)),), report.verdict, remarks=(remark,)
-    )
-    return Document('gearkin demo', (section,))

@@ -1,44 +1,63 @@
-"""What `plot`, `animate` and `urdf` have in common: the image, the motion and the branch drawn."""
+"""What `plot`, `animate` and `urdf` have in common: a mechanism, its motion, and its teeth."""
 
 import argparse
+import math
+from pathlib import Path
 from typing import TextIO
 
+from gear_kinematics.bag.trajectory import Trajectory, read_trajectory
 from gear_kinematics.commands import arguments, bags
 from gear_kinematics.commands.files import add_force
+from gear_kinematics.commands.output import message_progress
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
-from gear_kinematics.wire.nearest import among
 
 
-def add_image(
-    parser: argparse.ArgumentParser, formats: str, *, lasting: bool = True
-) -> argparse._MutuallyExclusiveGroup:
+def add_image(parser: argparse.ArgumentParser, formats: str) -> argparse._MutuallyExclusiveGroup:
     """Add the arguments for a drawing of a mechanism; returns the group of alternative motions."""
     parser.add_argument('out', metavar='FILE', help=f'image file: {formats}')
-    arguments.add_mechanism(parser)
-    arguments.add_sizes(parser)
+    bags.add_rotor(parser)
+    recording = arguments.group(parser, 'recording')
+    recording.add_argument(
+        '--start-offset', type=float, metavar='S', help='start in the recording'
+    )
+    recording.add_argument(
+        '--duration', type=arguments.positive, metavar='S', help='(default: all of it)'
+    )
+    motions = arguments.group(parser, 'motion').add_mutually_exclusive_group()
+    motions.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
+    arguments.add_mechanism(parser, sizes=True)
     add_force(parser)
     arguments.add_quiet(parser)
-    motions = parser.add_mutually_exclusive_group()
-    bags.add_recording(parser, motions, lasting=lasting)
     return motions
 
 
-def add_branch(parser: argparse.ArgumentParser) -> None:
-    """Add the option for a branch."""
-    parser.add_argument('--branch', metavar='NAME', help='branch to draw (default: the first)')
+def recording(
+    options: argparse.Namespace, config: NodeParameters, *bag_only_options: str
+) -> Trajectory | None:
+    """Read the rotor's motion from the bag, from the offset on; None without a bag.
 
-
-def branch(options: argparse.Namespace, mechanism: Mechanism) -> int:
-    """The index of the branch given by the options.
+    Args:
+        options: parsed arguments.
+        config: the parameters of the node.
+        bag_only_options: names of further options that need a bag.
 
     Raises:
-        ValueError: if the mechanism has no branch of this name.
+        ValueError: if such options are given without a bag.
     """
-    names = [branch.name for branch in mechanism.branches]
-    if options.branch not in {None, *names}:
-        raise ValueError(f'no branch {options.branch!r}{among(options.branch, names)}')
-    return names.index(options.branch) if options.branch else 0
+    if not options.bag:
+        for name in ('rotor_topic', 'joint', 'start_offset', *bag_only_options):
+            if getattr(options, name) is not None:
+                raise ValueError(f'--{name.replace("_", "-")} needs --bag')
+        return None
+    start = options.start_offset or 0.0
+    with (
+        bags.naming(options.bag),
+        message_progress(options.bag.name, quiet=options.quiet) as report_progress,
+    ):
+        whole = read_trajectory(options.bag, config, options.rotor_topic, report_progress)
+        return whole.between(start, start + (options.duration or math.inf))
 
 
 def warn_if_teeth_cannot_mesh(

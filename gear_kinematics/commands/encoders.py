@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from gear_kinematics.commands.arguments import add_config, count, positive
+from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.csv_files import ANGLE_UNITS, Sources
@@ -20,15 +20,20 @@ _COLUMNS = {
 def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
     """Add the recordings, and the options on how to read them.
 
-    `load_config` applies `--ratio`, `--joint` and `--max-gap`, and `sources` returns the others.
+    `load_config` applies `--ratio` and `--joint`, and `sources` returns the others.
 
     Args:
         parser: of the command.
         roles: what the columns of CSV files can be, of `_COLUMNS`.
     """
     parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
-    add_config(parser)
-    ways = parser.add_mutually_exclusive_group()
+    add_rotor(parser)
+    recording = arguments.group(parser, 'recording')
+    recording.add_argument(
+        '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
+    )
+    arguments.add_config(parser)
+    ways = arguments.group(parser, 'gear').add_mutually_exclusive_group()
     ways.add_argument(
         '--ratio',
         type=_ratio,
@@ -51,8 +56,8 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
         action='store_true',
         help=f'{what} of the rotor, unless the name of the column says output',
     )
-    encoders = parser.add_argument_group('encoders')
-    encoders.add_argument(
+    count = arguments.between(1, kind=int)
+    group.add_argument(
         '--rotor-counts',
         '--counts',
         type=count,
@@ -60,19 +65,8 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
         help='steps per turn of the encoder of the rotor, or of the angle column: in them are the '
         'angles of columns such as motor_inc (default: from the readings)',
     )
-    encoders.add_argument(
+    group.add_argument(
         '--output-counts', type=count, metavar='N', help='the same of the output encoder'
-    )
-    topics = parser.add_argument_group('topics of a bag')
-    add_rotor(topics)
-    topics.add_argument(
-        '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
-    )
-    topics.add_argument(
-        '--max-gap',
-        type=positive,
-        metavar='S',
-        help='between interpolated rotor states (default: transmission_error_max_gap)',
     )
 
 

@@ -5,10 +5,10 @@ import errno
 import os
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from pathlib import Path
 
 from gear_kinematics.bag.finding import is_recording
+from gear_kinematics.commands.arguments import group
 from gear_kinematics.commands.output import closed_pipe_ignored
 from gear_kinematics.correction.calibration_file import is_calibration
 from gear_kinematics.report.mark import is_report
@@ -21,7 +21,7 @@ _REPLACEABLE = {'-o': ('calibration', is_calibration)}
 
 def add_force(parser: argparse.ArgumentParser) -> None:
     """Add the option to replace files that are no reports."""
-    parser.add_argument(
+    group(parser, 'output').add_argument(
         '--force',
         action='store_true',
         help='replace FILE even if it is no report of gearkin, but never a recording',
@@ -107,13 +107,14 @@ def write_file(target: str, content: bytes) -> None:
         if given.exists() and not given.is_file():  # such as a pipe, which must not be replaced
             given.write_bytes(content)
             return
-        with unfinished.open('xb') as file:  # follows no existing link
-            if path.exists():
-                os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
-            file.write(content)
-        unfinished.replace(path)
+        file = unfinished.open('xb')  # follows no existing link
+        try:
+            with file:
+                if path.exists():
+                    os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
+                file.write(content)
+            unfinished.replace(path)
+        finally:
+            unfinished.unlink(missing_ok=True)
     except OSError as error:
         raise ValueError(f'{target}: {error.strerror}') from error
-    finally:
-        with suppress(OSError):
-            unfinished.unlink()

@@ -29,10 +29,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser, configured=False)
-    parser.add_argument(
-        '-v', '--verbose', action='store_true', help='also list every topic with its type'
-    )
     arguments.add_quiet(parser)
+    arguments.add_verbose(parser, 'also list every topic with its type')
 
 
 def run(options: argparse.Namespace) -> ExitCode:

@@ -1,7 +1,6 @@
 """`gearkin lost-motion`: hysteresis, stiffness, play and transmission error from recordings."""
 
 import argparse
-import math
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
@@ -34,60 +33,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     shares = ' and '.join(f'{100.0 * share:g}' for share in STIFFNESS_SHARES)
     add_recordings(parser, 'angle', 'torque', 'rotor', 'output', 'time')
-    parser.add_argument(
-        '--rated-torque',
-        type=arguments.positive,
-        metavar='N·m',
-        help='at the output (default: the amplitude of the largest ramps, of several recordings '
-        'the least)',
-    )
-    parser.add_argument(
-        '--stiffness-torques',
-        type=arguments.positive,
-        nargs='+',
-        metavar='N·m',
-        help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
-    )
-    motion = parser.add_argument_group('motion of both encoders')
-    motion.add_argument(
-        '--travel',
-        type=_degrees,
-        metavar='DEG',
-        help='of the output that confirms a reversal (default: transmission_error_travel)',
-    )
-    motion.add_argument(
+    arguments.group(parser, 'recording').add_argument(
         '--delay',
         type=arguments.finite,
         metavar='S',
         help='by which the stamps of the output encoder are late, s, or rows of a CSV without '
         'times (default: estimated; 0: none)',
     )
-    _add_limits(parser)
-    _add_several(parser)
-    parser.add_argument(
-        '-v', '--verbose', action='store_true', help='print tables and remarks in a pipe, too'
+    gear = arguments.group(parser, 'gear')
+    gear.add_argument(
+        '--rated-torque',
+        type=arguments.positive,
+        metavar='N·m',
+        help='at the output (default: the amplitude of the largest ramps, of several recordings '
+        'the least)',
     )
-    add_report_forms(parser, junit=True)
-
-
-def _degrees(text: str) -> float:
-    return math.radians(arguments.positive(text))
-
-
-def _arc_minutes(text: str) -> float:
-    return arguments.positive(text) / ARC_MINUTES
-
-
-def _add_limits(parser: argparse.ArgumentParser) -> None:
+    gear.add_argument(
+        '--stiffness-torques',
+        type=arguments.positive,
+        nargs='+',
+        metavar='N·m',
+        help=f'limits of ranges of stiffness (default: {shares} %% of the rated torque)',
+    )
     limits = parser.add_argument_group(
         'limits', 'exit code 1 where one is exceeded, or cannot be shown to hold'
     )
     for name in ('hysteresis', 'lost-motion', 'backlash'):
         limits.add_argument(f'--max-{name}', type=_arc_minutes, metavar='ARCMIN')
     limits.add_argument('--min-stiffness', type=arguments.positive, metavar='N·m/rad')
-
-
-def _add_several(parser: argparse.ArgumentParser) -> None:
     several = parser.add_argument_group('several recordings')
     ways = several.add_mutually_exclusive_group()
     ways.add_argument(
@@ -97,6 +70,7 @@ def _add_several(parser: argparse.ArgumentParser) -> None:
         help='compare groups of recordings: a glob for each of them (repeat the option), or a '
         'regular expression with one group in parentheses',
     )
+    ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
     several.add_argument(
         '--positions',
         nargs='?',
@@ -125,8 +99,13 @@ def _add_several(parser: argparse.ArgumentParser) -> None:
         metavar='N·m',
         help='under which there must be no play (default: none)',
     )
-    ways.add_argument('--trend', action='store_true', help='find since when the gear has changed')
     bags.add_fleet(several.add_mutually_exclusive_group())
+    add_report_forms(parser, junit=True)
+    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
+
+
+def _arc_minutes(text: str) -> float:
+    return arguments.positive(text) / ARC_MINUTES
 
 
 def run(options: argparse.Namespace) -> ExitCode:

@@ -3,14 +3,18 @@
 import argparse
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from gear_kinematics import plotting
-from gear_kinematics.commands import ExitCode, arguments, bracing
+from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands import pins as pinning
+from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
-from gear_kinematics.kinematics import Mechanism, vernier
-from gear_kinematics.kinematics.preload import Preload, braced
-from gear_kinematics.kinematics.vernier import PinSetting
+from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.preload import Preload, Stiffness, braced, shaft_stiffness
+from gear_kinematics.measurement.preload.file import MeasuredPreload, read_advice
+from gear_kinematics.measurement.wording import PERCENT, plain, plus_minus
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc, arc_seconds
 
@@ -19,60 +23,104 @@ _MAX_DECIMALS = 9
 
 
 class _Answer(NamedTuple):
-    """A preload, and the pin setting for it."""
+    """A preload, and the pins for it."""
 
     mechanism: Mechanism
-    names: tuple[str, str]
-    """Names of branches A and B."""
+    measured: MeasuredPreload | None
     backlash: float
-    ring_turn: float
     preload: Preload
-    setting: PinSetting
-    """The given setting, or the nearest one."""
-    pinned_turn: float
-    """Ring turn of the setting, rad."""
+    pins: Pins
     pinned: Preload
-    """Preload of the setting."""
-    max_load: float
-    """Range of table and plot, N·m."""
-    loads: list[float]
-    """Of the table, N·m."""
+    """Preload of the nearest setting."""
+
+    @property
+    def names(self) -> tuple[str, str]:
+        """Names of branches A and B."""
+        branch_a, branch_b = braced(self.mechanism)
+        return branch_a.name, branch_b.name
+
+    @property
+    def max_load(self) -> float:
+        """Range of table and plot, N·m."""
+        return plotting.load_range(self.preload)
+
+    @property
+    def loads(self) -> list[float]:
+        """Of the table, N·m."""
+        return plotting.loads_to_list(self.preload, self.max_load)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    arguments.add_mechanism(parser)
-    ways = parser.add_mutually_exclusive_group(required=True)
-    bracing.add_ring_turn(ways)
-    bracing.add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
+    ways = pinning.add_turn(parser, required=True)
+    pinning.add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
     ways.add_argument(
-        '--wanted-preload', type=float, metavar='N·m', help='of both branches without a load'
+        '--wanted-preload',
+        type=float,
+        metavar='N·m',
+        help='of both branches without a load; negative: by turning the other way',
     )
     ways.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    bracing.add_setting(parser, '--from', 'start', 'initial pin setting (default: 0 0 0)')
-    parser.add_argument(
-        '--max-load', type=float, metavar='N·m', help='range of table and plot, on either side'
+    ways.add_argument(
+        '--measured',
+        type=Path,
+        metavar='JSON',
+        help='the least turn by measured ramps: from gearkin lost-motion --preloads --json',
     )
+    arguments.group(parser, pinning.HEADING).add_argument(
+        '--load',
+        type=arguments.positive,
+        metavar='N·m',
+        help='that --measured must be for (default: any)',
+    )
+    group = parser.add_argument_group(
+        'stiffness', 'torsional, at the output; not a parameter of the node'
+    )
+    for name, unit, text in (
+        ('shaft-stiffness', 'N·m/rad', 'between the arms'),
+        ('shaft-diameter', 'M', 'of a solid round shaft of steel'),
+        ('shaft-length', 'M', 'between the arms'),
+        ('backlash', 'RAD', 'play of the output before the turn, which has to close it first'),
+    ):
+        group.add_argument(f'--{name}', type=float, metavar=unit, help=text)
+    group.add_argument(
+        '--branch-stiffness',
+        type=float,
+        nargs='+',
+        metavar='N·m/rad',
+        help='of both branches, or of A and of B, the one at the output; inf: rigid',
+    )
+    arguments.add_mechanism(parser)
     add_report_forms(parser)
-    bracing.add_stiffness(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Report preload, limits and torque split."""
-    reporter = Reporter(options)
+    """Report preload, limits, torque split and pins."""
+    reporter = Reporter(options, others={'--drawing': options.drawing})
     answer = _answer(options)
     a, b = answer.names
     senses = (
         f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load is '
         f'positive in the direction in which ring gear {a} is turned relative to ring gear {b}.'
     )
+    pinned, notes = answer.pinned, [*answer.pins.turned()]
+    gives = f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
+    if not pinned.torque:
+        gives = f'no preload; a play of {arc(pinned.play)} remains'
+    if answer.pins.nearest.error:
+        notes.append(('gives', gives))
     section = Section(
         '',
-        (Table.of_values(Layout.LINES, *_facts(answer)), _split_table(answer)),
-        remarks=(senses,),
+        (
+            Table.of_values(Layout.LINES, *_facts(answer), *answer.pins.holes(), *notes),
+            _split_table(answer),
+        ),
+        remarks=(senses, pinning.SENSES),
         figure=plotting.torque_split(answer.preload, answer.names, answer.max_load),
+        drawing=pinning.drawing(options, answer.pins, notes),
+        answer=f'pinned in {answer.pins.nearest.settings[0]}: {gives}',
     )
     reporter.write(
         Document('gearkin preload', (section,), _data(answer)), [arguments.config_path(options)]
@@ -81,47 +129,71 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _answer(options: argparse.Namespace) -> _Answer:
-    pair, stiffness = arguments.load_config(options).mechanism, bracing.stiffness(options)
-    backlash = options.backlash or 0.0
-    if stiffness is None:
-        raise ValueError('the stiffness of branches and shaft is missing; see --help')
-    start = vernier.pin_setting(pair.ring_teeth, *(options.start or (0, 0, 0)))
+    pair = arguments.load_config(options).mechanism
+    braced(pair)  # its error, before others
+    stiffness, measured, backlash = _known(options, pair)
     if options.setting:
-        setting = vernier.pin_setting(pair.ring_teeth, *options.setting)
-        turn = pinned_turn = vernier.angle_between(start.turn, setting.turn)
+        pins = pinning.at_setting(options, pair)
     else:
-        wanted = None
-        if options.wanted_preload is not None:
-            wanted = Preload.from_torque(stiffness, options.wanted_preload)
-        elif options.wanted_threshold is not None:
-            wanted = Preload.from_limit(stiffness, options.wanted_threshold)
-        turn = wanted.ring_turn(pair, backlash) if wanted else bracing.ring_turn(options) or 0.0
-        turn = bracing.within_a_turn(turn)
-        [nearest] = vernier.choices(pair.ring_teeth, turn, start)
-        setting, pinned_turn = nearest.settings[0], nearest.ring_turn
+        turn = measured.least.high if measured else _wanted(options, pair, stiffness, backlash)
+        pins = pinning.find(options, pair.ring_teeth, pair, turn)
     preload, pinned = (
-        Preload.from_ring_turn(pair, stiffness, angle, backlash) for angle in (turn, pinned_turn)
+        Preload.from_ring_turn(pair, stiffness, angle - (pins.phase or 0.0), backlash)
+        for angle in (pins.ring_turn, pins.nearest.ring_turn)
     )
-    branch_a, branch_b = braced(pair)
-    max_load = plotting.load_range(preload) if options.max_load is None else options.max_load
-    if not 0.0 < max_load < math.inf:
-        raise ValueError(f'--max-load must be finite and greater than 0, not {max_load}')
-    return _Answer(
-        pair,
-        (branch_a.name, branch_b.name),
-        backlash,
-        turn,
-        preload,
-        setting,
-        pinned_turn,
-        pinned,
-        max_load,
-        plotting.loads_to_list(preload, max_load),
-    )
+    return _Answer(pair, measured, backlash, preload, pins, pinned)
+
+
+def _known(
+    options: argparse.Namespace, pair: Mechanism
+) -> tuple[Stiffness, MeasuredPreload | None, float]:
+    """The stiffnesses, what was measured, and the backlash, rad."""
+    if not options.measured:
+        if options.load:
+            raise ValueError('--load needs --measured')
+        return _stiffness(options), None, options.backlash or 0.0
+    given = ('branch_stiffness', 'shaft_stiffness', 'shaft_diameter', 'shaft_length', 'backlash')
+    if any(getattr(options, name) is not None for name in given):
+        raise ValueError('--measured contains the stiffness and backlash, give no others')
+    measured = read_advice(options.measured)
+    if options.load and options.load != measured.load:
+        made = f'for {measured.load:g} N·m' if measured.load else 'without --load'
+        raise ValueError(f'{options.measured}: made {made}, not for {options.load:g} N·m')
+    if not math.isclose(measured.scale, pair.ring_teeth / pair.satellite_teeth):
+        raise ValueError(f'{options.measured}: measured on a gear with other teeth')
+    return measured.preload.stiffness, measured, measured.preload.play
+
+
+def _stiffness(options: argparse.Namespace) -> Stiffness:
+    branches, shaft = options.branch_stiffness, options.shaft_stiffness
+    dimensions = [options.shaft_diameter, options.shaft_length]
+    if branches is None:
+        raise ValueError('--branch-stiffness is missing (inf for rigid branches)')
+    if len(branches) > 2:  # noqa: PLR2004, A and B
+        raise ValueError(f'--branch-stiffness takes one value or two, not {len(branches)}')
+    if shaft is not None and dimensions != [None, None]:
+        raise ValueError('--shaft-stiffness and dimensions of the shaft exclude each other')
+    if shaft is None:
+        if None in dimensions:
+            raise ValueError('--shaft-stiffness or --shaft-diameter and --shaft-length is missing')
+        shaft = shaft_stiffness(*dimensions)
+    return Stiffness(branches[0], branches[-1], shaft)
+
+
+def _wanted(
+    options: argparse.Namespace, pair: Mechanism, stiffness: Stiffness, backlash: float
+) -> float:
+    """The turn that the options ask for, rad."""
+    if options.wanted_preload is not None:
+        wanted = Preload.from_torque(stiffness, abs(options.wanted_preload))
+        return math.copysign(wanted.ring_turn(pair, backlash), options.wanted_preload)
+    if options.wanted_threshold is not None:
+        return Preload.from_limit(stiffness, options.wanted_threshold).ring_turn(pair, backlash)
+    return pinning.ring_turn(options) or 0.0
 
 
 def _data(answer: _Answer) -> dict[str, Any]:
-    known, setting = answer.preload.stiffness, answer.setting
+    known, pins = answer.preload.stiffness, answer.pins
     split = answer.preload.split(answer.loads)
     return {
         'ring_teeth': answer.mechanism.ring_teeth,
@@ -136,12 +208,13 @@ def _data(answer: _Answer) -> dict[str, Any]:
             'without_b': known.branch_a_alone,
         },
         'backlash': answer.backlash,
-        **_figures(answer.ring_turn, answer.preload),
+        'measured': plain(answer.measured and answer.measured._asdict()),
+        'from': pinning.to_json(pins.start),
+        'phase': pins.phase,
+        **_figures(pins.ring_turn, answer.preload),
         'setting': {
-            'tooth': setting.tooth,
-            'ring_hole': setting.ring_hole,
-            'chassis_hole': setting.chassis_hole,
-            **_figures(answer.pinned_turn, answer.pinned),
+            **pinning.to_json(pins.nearest.settings[0]),
+            **_figures(pins.nearest.ring_turn, answer.pinned),
         },
         'split': {
             'load': answer.loads,
@@ -170,36 +243,38 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         (f'branch {b}', known.branch_b),
         ('shaft', known.shaft),
     )
-    yield 'stiffness', ', '.join(f'{name} {_stiffness(value)}' for name, value in parts)
-    yield 'ring turn', f'{arc(answer.ring_turn)} = {answer.ring_turn:.6g} rad'
+    yield 'stiffness', ', '.join(f'{name} {_in_words(value)}' for name, value in parts)
+    if measured := answer.measured:
+        least, what = measured.least, 'hysteresis falls no further'
+        if measured.load:
+            what = f'both branches stay in mesh under {measured.load:g} N·m'
+        span = f'{PERCENT}: {arc(least.low)} to {arc(least.high)}, which is wanted'
+        yield 'measured', f'{what} from {arc(least.value)} on ({span})'
+        if measured.added_friction:
+            yield 'added friction', f'{plus_minus(measured.added_friction)} N·m'
+    yield 'ring turn', f'{arc(answer.pins.ring_turn)} = {answer.pins.ring_turn:.6g} rad'
     if answer.backlash:
         yield 'backlash', f'{arc(answer.backlash)} at the output before the turn'
     if preload.torque:
         yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load'
-        stiffness = _stiffness(known.both_in_mesh)
+        stiffness = _in_words(known.both_in_mesh)
         yield 'both mesh', f'while |load| < {preload.limit:.4g} N·m: {stiffness}'
         yield f'branch {a}', _threshold(preload.threshold_a, b, known.branch_b_alone)
         yield f'branch {b}', _threshold(preload.threshold_b, a, known.branch_a_alone)
     else:
         yield 'preload', f'none; a play of {arc(preload.play)} remains'
-        yield f'branch {a}', f'carries negative loads alone: {_stiffness(known.branch_a_alone)}'
-        yield f'branch {b}', f'carries positive loads alone: {_stiffness(known.branch_b_alone)}'
-    pinned = answer.pinned
-    if answer.pinned_turn == answer.ring_turn:
-        yield 'pin', str(answer.setting)
-    else:
-        yield 'nearest', str(answer.setting)
-        yield 'gives', f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
+        yield f'branch {a}', f'carries negative loads alone: {_in_words(known.branch_a_alone)}'
+        yield f'branch {b}', f'carries positive loads alone: {_in_words(known.branch_b_alone)}'
 
 
 def _threshold(threshold: float, other: str, left: float) -> str:
     if math.isinf(threshold):
         return 'never leaves mesh'
-    return f'leaves mesh at {threshold:+.4g} N·m; branch {other} alone: {_stiffness(left)}'
+    return f'leaves mesh at {threshold:+.4g} N·m; branch {other} alone: {_in_words(left)}'
 
 
-def _stiffness(value: float) -> str:
-    return 'rigid' if math.isinf(value) else f'{value:.4g} N·m/rad'
+def _in_words(stiffness: float) -> str:
+    return 'rigid' if math.isinf(stiffness) else f'{stiffness:.4g} N·m/rad'
 
 
 def _split_table(answer: _Answer) -> Table:

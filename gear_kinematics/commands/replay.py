@@ -18,21 +18,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     parser.add_argument('bag', type=Path, metavar='BAG')
     bags.add_rotor(parser, configured=False)
-    parser.add_argument('--rate', type=float, default=1.0, help='playback speed (default: 1)')
-    parser.add_argument('--loop', action='store_true', help='repeat until stopped')
+    playing = arguments.group(parser, 'motion')
+    playing.add_argument('--rate', type=float, default=1.0, help='playback speed (default: 1)')
+    playing.add_argument('--loop', action='store_true', help='repeat until stopped')
     for option, default, text in (
         ('--start-offset', 0.0, 'bag time to skip'),
         ('--duration', math.inf, 'bag time to play'),
     ):
-        parser.add_argument(option, type=float, default=default, metavar='S', help=text)
-    parser.add_argument(
+        playing.add_argument(option, type=float, default=default, metavar='S', help=text)
+    playing.add_argument(
+        '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
+    )
+    output = arguments.group(parser, 'output')
+    output.add_argument(
         '--topics', nargs='+', metavar='NAME', help='(default: the rotor topic, as rotor_state)'
     )
-    parser.add_argument(
+    output.add_argument(
         '--as', dest='published', metavar='NAME', help='publish the topic under this name'
-    )
-    parser.add_argument(
-        '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
     )
     arguments.add_quiet(parser)
 

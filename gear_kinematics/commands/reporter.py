@@ -10,13 +10,12 @@ from importlib import import_module
 from pathlib import Path
 from types import MappingProxyType
 
-from gear_kinematics.commands.arguments import add_quiet
+from gear_kinematics.commands import arguments
 from gear_kinematics.commands.files import add_force, check_targets, write_file, write_text
 from gear_kinematics.commands.output import Console, closed_pipe_ignored
-from gear_kinematics.commands.paper_size import add_paper, image_file
 from gear_kinematics.report.document import Document, Origin, printable
 from gear_kinematics.report.html import to_html
-from gear_kinematics.report.image import to_image
+from gear_kinematics.report.image import INCH, ImageFile, to_image
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.report.text import render
@@ -27,17 +26,53 @@ _FORMS: Mapping[str, Callable[[Document], str]] = {
     'junit': to_junit,
     'html': to_html,
 }
+_DPI = 150
+_MOST_PIXELS = 20_000
+"""Width of an image."""
 
 
 def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) -> None:
     """Add the options for files of the report, which `Reporter` writes."""
+    group = arguments.group(parser, 'output')
     for form in _FORMS:
         if junit or form != 'junit':
-            parser.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
-    parser.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+            group.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
+    group.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
     add_paper(parser)
     add_force(parser)
-    add_quiet(parser)
+    arguments.add_quiet(parser)
+
+
+def add_paper(parser: argparse.ArgumentParser) -> None:
+    """Add the options for the size of a figure; see `image_file`."""
+    group = arguments.group(parser, 'output')
+    group.add_argument(
+        '--width-mm',
+        type=arguments.between(30.0, 1000.0),
+        metavar='MM',
+        help='width of the figure, with text as large as on any other (default: what suits it)',
+    )
+    group.add_argument(
+        '--dpi',
+        type=arguments.between(30, 2400, int),
+        metavar='N',
+        help=f'pixels per inch (default: {_DPI})',
+    )
+
+
+def image_file(options: argparse.Namespace, target: str) -> ImageFile:
+    """Return the file of a figure with its size, as the options say.
+
+    Raises:
+        ValueError: if the image would be too large, or the suffix is unknown.
+        ModuleNotFoundError: without matplotlib.
+    """
+    dpi = options.dpi or _DPI
+    if (options.width_mm or 0.0) / INCH * dpi > _MOST_PIXELS:
+        raise ValueError(f'an image is at most {_MOST_PIXELS} pixels wide: reduce --dpi')
+    file = ImageFile(Path(target), options.width_mm, dpi)
+    _ = file.format  # its errors, before any work
+    return file
 
 
 class Reporter:

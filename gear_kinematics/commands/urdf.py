@@ -16,13 +16,14 @@ from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
-    parser.add_argument(
+    output = arguments.group(parser, 'output')
+    output.add_argument(
         '--meshes',
         type=Path,
         metavar='DIR',
         help='write the bodies with their teeth to this folder, as STL, and show them',
     )
-    parser.add_argument(
+    output.add_argument(
         '--mesh-uri',
         type=_mesh_uri,
         metavar='URI',

@@ -31,51 +31,45 @@ _OF = {
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    arguments.add_config(parser)
+    parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
     bags.add_rotor(parser)
     bags.add_outputs(parser)
+    arguments.add_config(parser)
     bags.add_calibration(parser)
-    parser.add_argument('bags', nargs='+', metavar='BAG', help='file, directory or glob')
+    limits = arguments.group(parser, 'limits')
     for unit, quantity in QUANTITIES.items():
-        parser.add_argument(
+        limits.add_argument(
             f'--tolerance-{quantity}',
-            type=float,
+            type=arguments.between(0.0),
             default=Tolerances().of(unit),
             metavar=unit.upper(),
             help=f'greatest accepted error of {_OF[quantity]} (default: %(default)g)',
         )
-    parser.add_argument(
+    limits.add_argument(
         '--allow-offset',
         action='store_true',
         help='accept a constant offset of the output angle that no rotor_zero explains',
     )
-    parser.add_argument(
+    limits.add_argument(
         '--strict',
         action='store_true',
         help='judge all messages, even where the recorder may have lost some, and fail a node '
         'that was homed',
     )
-    parser.add_argument(
-        '-v',
-        '--verbose',
-        action='store_true',
-        help='print all counts and errors, not only what was found',
-    )
-    way = parser.add_mutually_exclusive_group()
+    way = arguments.group(parser, 'several recordings').add_mutually_exclusive_group()
     way.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
     bags.add_fleet(way)
     add_report_forms(parser, junit=True)
+    arguments.add_verbose(parser, 'print all counts and errors, not only what was found')
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Validate every bag; the worst verdict gives the exit code."""
-    given = {name: getattr(options, f'tolerance_{name}') for name in Tolerances._fields}
-    for name, tolerance in given.items():
-        if not tolerance >= 0.0:
-            raise ValueError(f'--tolerance-{name} must be at least 0, not {tolerance:g}')
-    tolerances = Tolerances(**given)
+    tolerances = Tolerances(
+        **{name: getattr(options, f'tolerance_{name}') for name in Tolerances._fields}
+    )
     found = find_bags(options.bags, least=0)
     faults = dict(found.faults)
     reporter = Reporter(options, len(found.bags) + len(faults), brief=not options.verbose)

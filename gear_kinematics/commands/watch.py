@@ -4,10 +4,8 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from gear_kinematics.commands import ExitCode
+from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
-
-_MAX_PORT = 65535
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -25,7 +23,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--record', type=Path, metavar='BAG', help='folder to record to, from the start'
     )
     parser.add_argument(
-        '--port', type=_port, default=0, help='of the page, on 127.0.0.1 (default: a free one)'
+        '--port',
+        type=arguments.between(0, 65535, int),
+        default=0,
+        help='of the page, on 127.0.0.1 (default: a free one)',
     )
 
 
@@ -61,9 +62,3 @@ def run(options: argparse.Namespace) -> ExitCode:
         if stopped():
             raise KeyboardInterrupt
     return ExitCode.DONE
-
-
-def _port(text: str) -> int:
-    if not 0 <= (port := int(text)) <= _MAX_PORT:
-        raise argparse.ArgumentTypeError(f'must be from 0 to {_MAX_PORT}, not {text}')
-    return port

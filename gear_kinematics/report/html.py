@@ -88,13 +88,14 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
     kind = section.verdict or ''
     remarks = _list(map(escape, section.remarks), '')
     below = ''.join(map(_table, tables))
+    answer = f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
     if not section.picture_first:
         drawing = f'<div class="drawing">{section.drawing}</div>\n' if section.drawing else ''
-        yield from (_table(head), _list(findings, kind), figure, drawing, below, remarks)
+        yield from (answer, _table(head), _list(findings, kind), figure, drawing, below, remarks)
         return
     if findings:
         yield f'<p class="first {kind}">{findings.pop(0)}</p>\n'
-    yield f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
+    yield answer
     others = _list(findings, kind)
     many = len(findings) > _FEW_FINDINGS  # the figure is to be on the first screen
     yield _folded(f'{len(findings)} more findings', others) if many else others

@@ -2,6 +2,8 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import groupby
+from operator import itemgetter
 
 from rich import box
 from rich.columns import Columns
@@ -96,11 +98,21 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
     if section.answer:
         yield f'{name}result: {section.answer}'
     for table in () if brief else section.tables:
-        for subject, column, cell in table.facts():
-            about = ': '.join(filter(None, [subject, column]))
-            yield f'{name}{about}: {cell.with_unit()}'
+        if table.layout == Layout.ROWS:
+            yield from (f'{name}{row}' for row in _row_lines(table))
+        else:
+            for subject, column, cell in table.facts():
+                about = ': '.join(filter(None, [subject, column]))
+                yield f'{name}{about}: {cell.with_unit()}'
     for remark in () if brief else section.remarks:
         yield f'{name}remark: {remark}'
+
+
+def _row_lines(table: Table) -> Iterator[str]:
+    """Yield each row as its subject and its values with their labels."""
+    for subject, facts in groupby(table.facts(), key=itemgetter(0)):
+        values = '; '.join(f'{column} {cell.with_unit()}'.lstrip() for _, column, cell in facts)
+        yield f'{subject}: {values}' if subject else values
 
 
 def _render_section(section: Section, console: Console, *, brief: bool) -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pytest
 from blocked_bags import BAGS, refusal
-from gear_recordings import Samples, write_recording
 from live import rotor_bytes
 
 from gear_kinematics.bag import Bag
@@ -36,7 +35,7 @@ MISSING = {
     'plotly': [f'{command} SERVO --html a.html' for command in READERS],
     'matplotlib': [
         *('validate SERVO --plot a.png', 'lost-motion SERVO --plot a.png'),
-        *('plot output a.png --bag SERVO', 'animate a.gif --bag SERVO'),
+        *('plot output a.png --bag SERVO', 'plot scheme a.png', 'animate a.gif --bag SERVO'),
         'preload --angle 0.001 --branch-stiffness 3000 --shaft-stiffness 1000 --plot a.png',
     ],
     'distributed': [f'{command} SERVO --scheduler tcp://x:1' for command in READERS[:2]],
@@ -108,15 +107,6 @@ def test_every_command_names_the_bag_and_what_is_in_it(command, motor):
     assert {path.name for path in motor.absolute().parent.iterdir()} == {'motor'}
 
 
-@pytest.mark.parametrize(
-    'command', ['compute motor out', 'plot output a.png --bag motor'], ids=lambda text: text[:7]
-)
-@pytest.mark.usefixtures('motor')
-def test_the_joint_that_is_given_is_read(command, capsys):
-    assert main([*command.split(), '--joint', 'wheel_1']) == 0
-    assert capsys.readouterr().err == ''
-
-
 @pytest.mark.parametrize('command', ['calibrate', 'lost-motion'])
 def test_a_missing_joint_of_the_output_is_answered_with_those_that_there_are(command, motor):
     Path('my.yaml').write_text('/**: {ros__parameters: {output_encoder_joint: outer}}')
@@ -147,9 +137,8 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('plot sheme a', "'sheme'; did you mean `scheme`? there are: output, roses, "),
         ('compute a b --storage mcp', "'mcp'; did you mean `mcap`? there are: mcap"),
         ('replay a --lopp', '--lopp; did you mean `--loop`? there are: --as, '),
-        ('plot scheme a --brnch', '--brnch; did you mean `--branch`? there are: --an'),
+        ('plot scheme a --degres', '--degres; did you mean `--degrees`? there are: --bag'),
         ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
-        ('plot scheme a.png --branch A', "no branch 'A'; did you mean `a`? there a"),
         ('urdf --config my.yaml', 'did you mean `module`?; there are: ring_teeth, '),
         ('urdf --config two.yaml --node /lift/x', 'only of /left/x, /right/x; did '),
         ('compute moto out', 'moto: no such file or folder; did you mean `motor`? there '),
@@ -194,11 +183,3 @@ def test_the_error_about_a_part_of_a_bag_names_it(motor):
     words = ['plot', 'output', 'a.png', '--bag', motor, '--joint', 'wheel_1']
     error = 'motor: no rotor states from 9 s to inf s; they are from 0 s to 0.99 s'
     assert refusal(*words, '--start-offset', '9') == error
-
-
-def test_a_bag_without_rotor_states_is_named(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
-    write_recording(Path('empty'), Samples([], []))
-    assert main(['validate', 'empty', '--output-topic', '/rotor_state']) == 2
-    (error,) = capsys.readouterr().err.splitlines()
-    assert error.startswith('gearkin: empty: ')

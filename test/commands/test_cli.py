@@ -3,7 +3,7 @@
 import json
 import math
 import re
-import xml.etree.ElementTree as ET
+import shlex
 from pathlib import Path
 
 import pytest
@@ -11,7 +11,7 @@ from blocked_bags import BAGS, gearkin, gearkin_here, refusal
 from calibrations import calibration
 from terminals import ENVIRONMENT, Terminal
 
-from gear_kinematics.commands.cli import COMMANDS, main
+from gear_kinematics.commands.cli import COMMANDS, main, make_parser
 
 SINGLE_TURN = str(BAGS / 'single_turn_encoder')
 
@@ -22,25 +22,16 @@ SINGLE_TURN = str(BAGS / 'single_turn_encoder')
 @pytest.mark.live
 @pytest.mark.slow
 def test_demo_plays_the_shipped_bag_through_the_live_node_and_agrees():
-    """In a pipe, as plain lines."""
+    """In a pipe, as plain lines; positions to a picometre of the eccentricity."""
     done = gearkin('demo')
     assert (done.returncode, done.stderr) == (0, '')
-    first, verdict, *facts, remark = done.stdout.splitlines()
+    first, verdict = done.stdout.splitlines()
     assert first.startswith('Playing servo_point_to_point, 3000 recorded rotor states, into ')
-    assert verdict == 'servo_point_to_point: verdict: passed'
-    assert '3000 rotor states' in remark
-    assert 'all agree to 1e-12 rad' in remark
-    cells = [fact.split(': ')[1:] for fact in facts]
-    fields = [f'/output_state {field}' for field in ('position', 'velocity', 'effort')]
-    fields += [f'/body_poses {field}' for field in ('position', 'orientation')]
-    assert [cell[:2] for cell in cells] == [
-        [field, what] for field in fields for what in ('messages', 'missing', 'worst deviation')
-    ]
-    values = [cell[2] for cell in cells]
-    assert set(values[0::3]) == {'3000'}
-    assert set(values[1::3]) == {'0'}
-    assert all(float(value.split()[0]) <= 1e-12 for value in values[2::3])
-    assert all(line.isprintable() for line in done.stdout.splitlines())
+    assert re.fullmatch(
+        r'servo_point_to_point: verdict: passed; 3000 inputs, 6000 outputs compared, '
+        r'largest error (\S+) \S+ \(tolerance (1e-12|1.1e-15) \S+\)',
+        verdict,
+    )
 
 
 @pytest.mark.live
@@ -61,10 +52,7 @@ def test_demo_shows_messages_of_one_stamp_on_a_terminal(tmp_path):
     # The bag moves at up to 270 rad/s, 0.5 rad from message to message; there are 4 decimals.
     assert all(abs(rotor + 19.0 * output) <= 20.0 * 0.5e-4 for rotor, output in pairs)
     assert 'PASSED servo_point_to_point' in plain
-    assert 'all agree' in plain
-    for topic, fields in (('/corrected_state', 3), ('/corrected_interval', 1)):
-        rows = [line for line in plain.splitlines() if line.startswith(f'{topic} ')]
-        assert [row.split()[-4:-2] for row in rows] == fields * [['3000', '0']]
+    assert '3000 inputs, 12000 outputs compared' in plain  # the corrected ones, too
 
 
 # What a mechanism is.
@@ -103,8 +91,8 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
 
 
 def test_describe_prints_numbers_for_people(capsys, monkeypatch):
-    monkeypatch.setenv('COLUMNS', '0')  # as of a terminal that does not know its width
     """Rounded, but for parameters, and small angles in minutes and seconds of arc."""
+    monkeypatch.setenv('COLUMNS', '0')  # as of a terminal that does not know its width
     assert main(['describe', '--eccentricity', '0.00110013']) == 0
     lines = dict(line.split(': ', 1) for line in capsys.readouterr().out.splitlines())
     shown = {
@@ -117,14 +105,8 @@ def test_describe_prints_numbers_for_people(capsys, monkeypatch):
     }
     assert {name: lines[name] for name in shown} == shown
     assert lines['tip interference margin'].endswith('′')
-
-
-def test_describe_takes_another_tooth_pair(capsys):
-    arguments = ['--ring-teeth', '61', '--satellite-teeth', '58', '--eccentricity', '0.002']
-    assert main(['describe', *arguments]) == 0
-    lines = dict(line.split(': ', 1) for line in capsys.readouterr().out.splitlines())
-    shown = lines['gear ratio'], lines['oldham petals'], lines['eccentricity']
-    assert shown == ('-58/3', '61', '0.002 m')
+    assert main(['describe', '--ring-teeth', '61', '--satellite-teeth', '58']) == 0
+    assert 'gear ratio: -58/3\n' in capsys.readouterr().out
 
 
 def test_describe_says_where_teeth_cannot_avoid_interference(capsys):
@@ -152,14 +134,6 @@ def two_nodes(tmp_path) -> str:
         "  ros__parameters: {frame_prefix: 'right_', rotor_encoder: 'single_turn'}\n"
     )
     return str(path)
-
-
-@pytest.mark.parametrize('side', ['left', 'right'])
-def test_urdf_is_that_of_the_node_that_was_asked_for(capsys, two_nodes, side):
-    node = f'/{side}/gear_state_publisher'
-    assert main(['urdf', '--config', two_nodes, '--node', node]) == 0
-    robot = ET.fromstring(capsys.readouterr().out)  # noqa: S314, our own
-    assert all(link.get('name').startswith(f'{side}_') for link in robot.iter('link'))
 
 
 def test_outputs_are_those_of_the_node_that_was_asked_for(capsys, two_nodes, tmp_path):
@@ -203,8 +177,8 @@ def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypa
         ('index --from 1 2', 'expected 3 arguments; see gearkin index --help'),
         ('demo --calibration missing.yaml', 'missing.yaml: No such file or directory'),
         ('validate bag --junit', '--junit: expected one argument'),
-        ('watch --port -1', 'argument --port: must be from 0 to 65535, not -1'),
-        ('watch --port 65536', 'argument --port: must be from 0 to 65535, not 65536'),
+        ('watch --port -1', 'argument --port: must be between 0 and 65535, not -1'),
+        ('watch --port 65536', 'argument --port: must be between 0 and 65535, not 65536'),
     ],
 )
 def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause):
@@ -216,7 +190,21 @@ def test_help_is_everywhere(command):
     done = gearkin_here(*command.split(), '--help')
     assert done.returncode == 0
     assert done.stdout.startswith(f'usage: gearkin {command}')
-    assert COMMANDS.get(command, '') in ' '.join(done.stdout.split())
+    if command:
+        purpose, example = COMMANDS[command]
+        assert purpose in done.stdout
+        assert done.stdout.endswith(f'\n\nexample:\n  gearkin {example}\n')
+        make_parser().parse_args(shlex.split(example.partition(' > ')[0]))
+        headings = re.findall(r'^(\w.*):$', done.stdout, re.MULTILINE)
+        assert headings == [heading for heading in HEADINGS if heading in headings]
+
+
+HEADINGS = (
+    *('positional arguments', 'options', 'recording', 'motion', 'turn of a ring gear'),
+    *('stiffness', 'gear', 'columns of a CSV', 'limits', 'several recordings'),
+    *('output', 'example'),
+)
+"""Of the help of all commands, in this order."""
 
 
 def test_watch_and_init_replace_nothing(tmp_path, monkeypatch):

@@ -8,10 +8,8 @@ import pytest
 from blocked_bags import (
     BAGS,
     DEADLINE,
-    GEARKIN,
     BlockedBag,
     facts,
-    gearkin,
     gearkin_here,
     refusal,
     running_gearkin,
@@ -187,15 +185,3 @@ def test_what_cannot_be_computed_gets_one_line_and_code_2(name, out, cause, bags
     (tmp_path / 'there').mkdir()
     assert cause in refusal('compute', bags / name, tmp_path / out)
     assert list(tmp_path.rglob('*')) == [tmp_path / 'there']
-
-
-@pytest.mark.slow
-def test_compute_needs_neither_ros_nor_dask_nor_plotly(bags, tmp_path):
-    missing = 'for name in ("rclpy", "distributed", "dask", "plotly"): sys.modules[name] = None'
-    done = gearkin(
-        'compute',
-        bags / 'rotor_only',
-        tmp_path / 'out',
-        code=f'import sys\n{missing}\n{GEARKIN}',
-    )
-    assert done.returncode == 0, done.stderr

@@ -49,13 +49,15 @@ def test_uri_can_be_that_of_another_package(capsys, tmp_path):
         '/**:\n  ros__parameters: {ring_teeth: 61, satellite_teeth: 58, eccentricity: 0.001,\n'
         '    meshes: "package://from_file/meshes"}\n'
     )
-    assert main(['urdf', '--config', str(config)]) == 0
-    names = mesh_names(capsys.readouterr().out)
-    assert names == {f'package://from_file/meshes/{name}' for name in FILES}
-    uri = ['--mesh-uri', 'package://my_robot/meshes']
-    assert main(['urdf', '--config', str(config), '--meshes', str(tmp_path / 'm'), *uri]) == 0
-    names = mesh_names(capsys.readouterr().out)
-    assert names == {f'package://my_robot/meshes/{name}' for name in FILES}
+    uri = 'package://my_robot/meshes'
+    words = ['urdf', '--config', str(config)]
+    for options, folder in (
+        ([], 'package://from_file/meshes'),
+        (['--meshes', str(tmp_path / 'm'), '--mesh-uri', uri], uri),
+    ):
+        assert main([*words, *options]) == 0
+        names = mesh_names(capsys.readouterr().out)
+        assert names == {f'{folder}/{name}' for name in FILES}
     assert {path.name for path in (tmp_path / 'm').iterdir()} == FILES
 
 

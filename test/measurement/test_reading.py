@@ -30,9 +30,10 @@ def angle():
 
 @pytest.fixture(scope='module')
 def measured(config, actuator):
-    return lambda recording: measure(recording, actuator, config, Request()).figures.by_amplitude[
-        0
-    ]
+    def figures(recording):
+        return measure(recording, actuator, config, Request()).figures.by_amplitude[0]
+
+    return figures
 
 
 @pytest.mark.parametrize(

@@ -252,8 +252,8 @@ def test_imports_within_bag_point_one_way(imports):
 
 
 def test_commands_import_nothing_of_each_other(imports):
-    shared = ('arguments', 'bags', 'bracing', 'drawing', 'encoders', 'extras', 'files', 'output')
-    shared += ('paper_size', 'reporter')
+    shared = ('arguments', 'bags', 'drawing', 'encoders', 'extras', 'files', 'output', 'pins')
+    shared += ('reporter',)
     commands = {Path(path).stem for path in imports if path.startswith('commands/')}
     commands -= {'__init__', 'cli', *shared}
     assert {'validate', 'compute', 'plot'} < commands

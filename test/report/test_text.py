@@ -37,19 +37,16 @@ def visible(*reports, width=100):
     return ESCAPES.sub('', shown(*reports, width=width))
 
 
-def test_pipe_has_one_fact_per_line_in_the_order_of_the_report():
+def test_pipe_has_a_value_or_a_row_per_line_in_the_order_of_the_report():
     lines = piped(samples.FAILING).splitlines()
     assert lines[0] == f'{samples.FAILING.bag}: verdict: failed'
     field = [line.split(': ', 2)[2] for line in lines if ': /output_state position: ' in line]
     assert field[1:] == [
-        'compared: 4000',
-        'absent: 0',
-        'not finite: 0',
-        'max error: 0.002 rad',
-        'tolerance: 1e-9 rad',
-        'rms error: 0.00071 rad',
-        'worst at stamp: 1700000002623456789 ns',
-        'worst at rotor angle: 785.398163 rad',
+        (
+            'compared 4000; absent 0; not finite 0; max error 0.002 rad; tolerance 1e-9 rad; '
+            'rms error 0.00071 rad'
+        ),
+        'worst at stamp 1700000002623456789 ns; worst at rotor angle 785.398163 rad',
     ]
     prefix = f'{samples.FAILING.bag}: /rotor_state'
     assert [line.removeprefix(prefix) for line in lines if line.startswith(prefix)] == [
@@ -70,12 +67,8 @@ def test_pipe_has_one_fact_per_line_in_the_order_of_the_report():
         ': overspeed: 4',
         ': max speed: 314.159 rad/s',
         ': referenced: no',
-        ' gap 1: until stamp: 1700000001923456789 ns',
-        ' gap 1: silence: 0.0423 s',
-        ' gap 1: rotor turned: 13.2 rad',
-        ' gap 2: until stamp: 1700000003223456789 ns',
-        ' gap 2: silence: 0.0061 s',
-        ' gap 2: rotor turned: 1.9 rad',
+        ' gap 1: until stamp 1700000001923456789 ns; silence 0.0423 s; rotor turned 13.2 rad',
+        ' gap 2: until stamp 1700000003223456789 ns; silence 0.0061 s; rotor turned 1.9 rad',
     ]
 
 
@@ -154,7 +147,7 @@ def test_damage_is_told_before_the_findings_and_what_was_readable_after_it():
         f'logs/power_cut.mcap: error: {samples.DAMAGED.error}',
         'logs/power_cut.mcap: finding: slow',
     ]
-    assert 'logs/power_cut.mcap: /output_state: compared: 4000' in lines
+    assert any(line.startswith('logs/power_cut.mcap: /output_state: ') for line in lines)
 
 
 def test_summary_closes_a_report_on_several_bags_only():
@@ -205,7 +198,7 @@ def test_terminal_cuts_nothing_off(width):
 def test_counts_of_zero_have_no_column_on_a_terminal():
     assert ' missing' in visible(replace(samples.FAILING, findings=()))
     assert ' missing' not in visible(samples.PASSING)
-    assert 'bags/servo: /output_state: missing: 0' in piped(samples.PASSING)
+    assert 'compared 4000; missing 0; extra 0' in piped(samples.PASSING)
 
 
 def test_colours_tell_what_is_bad():
@@ -220,7 +213,7 @@ def test_offset_from_the_first_sample_is_told_when_it_is_known():
     rotor = replace(samples.ROTOR, first_stamp=samples.START)
     text = piped(replace(samples.FAILING, rotor=rotor))
     assert '11 messages missing, the first at +1.000 s\n' in text
-    assert '/output_state position: worst from start: +2.500000 s\n' in text
+    assert '; worst from start +2.500000 s;' in text
     assert 'from start' not in piped(samples.FAILING)
 
 
@@ -248,11 +241,7 @@ def test_not_a_number_is_the_worst_of_all():
 
 def test_nothing_to_compare_uses_no_budget():
     effort = [line for line in piped(samples.PASSING).splitlines() if 'effort' in line]
-    assert effort == [
-        'bags/servo: /output_state effort: compared: 0',
-        'bags/servo: /output_state effort: absent: 0',
-        'bags/servo: /output_state effort: not finite: 0',
-    ]
+    assert effort == ['bags/servo: /output_state effort: compared 0; absent 0; not finite 0']
 
 
 def test_worst_verdict_counts():

@@ -56,7 +56,13 @@ def refusal(*arguments, report='') -> str:
 
 def facts(output: str) -> dict[str, str]:
     """Read the facts of the plain report about one recording, by subject and column."""
-    return dict(line.split(': ', 1)[1].rsplit(': ', 1) for line in output.splitlines())
+    found = {}
+    for line in output.splitlines():
+        subject, _, values = line.split(': ', 1)[1].rpartition(': ')
+        found[subject] = values
+        row = re.findall(r'(?:^|; )(\D+?(?: \(95 %\))?) ([-+\d][^;]*)', values)
+        found |= {f'{subject}: {column}': value for column, value in row}
+    return found
 
 
 @contextmanager
