@@ -61,6 +61,17 @@ class Trajectory(NamedTuple):
         time = np.linspace(0.0, duration, math.ceil(_PER_TURN * length) + 1)
         return cls(time, *split_turns(speed * time), np.full(len(time), speed))
 
+    @classmethod
+    def there_and_back(cls, speed: float, turns: int) -> Self:
+        """Create a smooth motion from φ2 = 0 to so many turns of the rotor and back.
+
+        The greatest speed is in rad/s.
+        """
+        phase = np.linspace(0.0, TURN, _PER_TURN * turns + 1)
+        half = 0.5 * TURN * turns
+        time = half / speed * phase
+        return cls(time, *split_turns(half * (1.0 - np.cos(phase))), speed * np.sin(phase))
+
     def state(self, mechanism: Mechanism) -> MotionState:
         """The motion of all bodies, (n, ...)."""
         with np.errstate(over='ignore'):  # nothing here shows accelerations

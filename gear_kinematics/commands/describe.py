@@ -2,6 +2,7 @@
 
 import argparse
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from gear_kinematics import plotting
@@ -58,16 +59,24 @@ def run(options: argparse.Namespace) -> ExitCode:
     described, size = config.mechanism, config.module
     facts = [*_facts(described), *_tooth_facts(described, size)]
     values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)
+    data = {fact.key: fact.value for fact in facts}
     section = Section(
         '',
         (Table.of_values(Layout.LINES, *values),),
         figure=plotting.outlines(described, size),
+        answer=_sentence(data),
     )
-    data = {fact.key: fact.value for fact in facts}
     reporter.write(
         Document('gearkin describe', (section,), data), [arguments.config_path(options)]
     )
     return ExitCode.DONE
+
+
+def _sentence(data: Mapping[str, Any]) -> str:
+    ratio = f'The rotor turns {data["gear_ratio"]} times as fast as the output'
+    if data['interference']:
+        return f'{ratio}; {data["interference"]}.'
+    return f'{ratio}; involute teeth mesh with a contact ratio of {number(data["contact_ratio"])}.'
 
 
 def _facts(mechanism: Mechanism) -> list[_Fact]:

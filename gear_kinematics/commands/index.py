@@ -90,14 +90,21 @@ def _section(pins: Pins, drawing: str) -> Section:
         *pins.turned(),
     )
     tables = facts, _position_table(pins)
-    nearest = pins.nearest
     return Section(
         '',
         tables,
         remarks=(pinning.SENSES,),
+        answer=_sentence(pins),
         figure=_figure(pins),
         drawing=drawing,
-        answer=f'pin {nearest.settings[0]}, for a turn of {arc(nearest.ring_turn)}',
+    )
+
+
+def _sentence(pins: Pins) -> str:
+    choice = pins.nearest
+    return (
+        f'Pin {choice.settings[0]}: the ring gear turns by {arc(choice.ring_turn)}, '
+        f'{arc(abs(choice.error))} {"more" if choice.error > 0.0 else "less"} than wanted.'
     )
 
 

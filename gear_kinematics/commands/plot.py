@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         'Oldham couplings; scheme: the bodies of a branch and their centres; slides: slides and '
         'sliding speeds of the Oldham couplings',
     )
-    motions = drawing.add_image(parser, '.png, .svg, .pdf ...')
+    motions = drawing.add_image(parser, '.png, .svg or .pdf')
     motions.add_argument(
         '--degrees',
         type=arguments.finite,
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--speed',
         type=float,
         metavar='RAD/S',
-        help='rotor speed of slides and output (default: 3000 rpm)',
+        help='rotor speed of slides and output (default: 3000 rpm, of the output there and back)',
     )
     bags.add_calibration(parser)
     add_paper(parser)
@@ -87,7 +87,10 @@ def _output(options: argparse.Namespace, config: NodeParameters, file: ImageFile
     gear = config.gear  # the ratio is enough
     calibration = bags.load_calibration(options, config, options.bag)
     cycle = min(abs(gear.gear_ratio.numerator), MOST_TURNS)
-    moved = _moved(options, config, turns=cycle)
+    if options.bag or options.speed is not None or options.duration is not None:
+        moved = _moved(options, config, turns=cycle)
+    else:  # a steady motion has nothing to see
+        moved = Trajectory.there_and_back(_SPEED, cycle)
     return plotting.output(gear, file, moved, calibration)
 
 

@@ -105,12 +105,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load is '
         f'positive in the direction in which ring gear {a} is turned relative to ring gear {b}.'
     )
-    pinned, notes = answer.pinned, [*answer.pins.turned()]
-    gives = f'{pinned.torque:.4g} N·m; both mesh while |load| < {pinned.limit:.4g} N·m'
-    if not pinned.torque:
-        gives = f'no preload; a play of {arc(pinned.play)} remains'
-    if answer.pins.nearest.error:
-        notes.append(('gives', gives))
+    notes = [*answer.pins.turned(), ('outcome', _outcome(answer.pinned))]
     section = Section(
         '',
         (
@@ -118,9 +113,9 @@ def run(options: argparse.Namespace) -> ExitCode:
             _split_table(answer),
         ),
         remarks=(senses, pinning.SENSES),
+        answer=f'With {answer.pins.nearest.settings[0]} {_outcome(answer.pinned)}.',
         figure=plotting.torque_split(answer.preload, answer.names, answer.max_load),
         drawing=pinning.drawing(options, answer.pins, notes),
-        answer=f'pinned in {answer.pins.nearest.settings[0]}: {gives}',
     )
     reporter.write(
         Document('gearkin preload', (section,), _data(answer)), [arguments.config_path(options)]
@@ -234,6 +229,17 @@ def _figures(turn: float, preload: Preload) -> dict[str, float]:
     }
 
 
+def _outcome(pinned: Preload) -> str:
+    if not pinned.torque:
+        return f'there is no preload: a play of {arc(pinned.play)} remains'
+    return f'the preload is {pinned.torque:.4g} N·m: both branches mesh {_mesh_range(pinned)}'
+
+
+def _mesh_range(preload: Preload) -> str:
+    low, high = sorted((preload.threshold_a, preload.threshold_b))
+    return f'for {low:.4g} to {high:.4g} N·m'
+
+
 def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
     preload, (a, b) = answer.preload, answer.names
     known, pair = preload.stiffness, answer.mechanism
@@ -258,7 +264,7 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
     if preload.torque:
         yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load'
         stiffness = _in_words(known.both_in_mesh)
-        yield 'both mesh', f'while |load| < {preload.limit:.4g} N·m: {stiffness}'
+        yield 'both mesh', f'{_mesh_range(preload)}: {stiffness}'
         yield f'branch {a}', _threshold(preload.threshold_a, b, known.branch_b_alone)
         yield f'branch {b}', _threshold(preload.threshold_b, a, known.branch_a_alone)
     else:

@@ -37,7 +37,7 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
     for form in _FORMS:
         if junit or form != 'junit':
             group.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
-    group.add_argument('--plot', metavar='FILE', help='figure: .png, .svg, .pdf ...')
+    group.add_argument('--plot', metavar='FILE', help='figure: .png, .svg or .pdf')
     add_paper(parser)
     add_force(parser)
     arguments.add_quiet(parser)
@@ -71,7 +71,7 @@ def image_file(options: argparse.Namespace, target: str) -> ImageFile:
     if (options.width_mm or 0.0) / INCH * dpi > _MOST_PIXELS:
         raise ValueError(f'an image is at most {_MOST_PIXELS} pixels wide: reduce --dpi')
     file = ImageFile(Path(target), options.width_mm, dpi)
-    _ = file.format  # its errors, before any work
+    file.check()
     return file
 
 

@@ -86,7 +86,6 @@ def _section(
         ),
         tuple(remarked),
         Figure(tuple(panels(report)), columns=_COLUMNS),
-        picture_first=True,
         key=Table.of_values(Layout.INLINE, *_main(report).items()),
         cases=tuple(Case(one.limit, () if one.holds else (one.text,)) for one in judged)
         or (Case('measured'),),

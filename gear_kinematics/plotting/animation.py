@@ -14,7 +14,7 @@ import numpy as np
 from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
-from gear_kinematics.plotting.mechanism import COLOURS, Bodies, Centres
+from gear_kinematics.plotting.mechanism import FACES, Bodies, Centres
 from gear_kinematics.plotting.motion import rose
 from gear_kinematics.report.image import FAINT, INK, canvas
 from gear_kinematics.report.mark import MARK
@@ -112,12 +112,9 @@ def _moving(
         figure.text(middle, height, text, ha='center', **style)
     moments = [figure.text(0.735, height, '', **style) for height in (0.88, 0.82, 0.76)]
     bodies = Bodies(left, mechanism, module, branch)
-    for row, body in enumerate(bodies.patches):
-        face, edge = COLOURS[body]
-        height = 0.27 - 0.053 * row
-        figure.text(0.735, height, '■', va='center', color=face, fontsize=7)
-        figure.text(0.735, height, '□', va='center', color=edge, fontsize=7)
-        figure.text(0.775, height, NAMES[body], **style)
+    names = [NAMES[body] for body in bodies.patches]
+    handles = list(bodies.patches.values())
+    figure.legend(handles, names, loc=(0.72, 0.02), fontsize=7, handlelength=0.8)
     artists = bodies, Centres(right, mechanism, branch)
     output = frames.state(mechanism).output_angle
     for number, (time, turns, angle, turned) in enumerate(
@@ -171,7 +168,7 @@ def _palette() -> Any:
     """
     from PIL import Image, ImageColor  # noqa: PLC0415, comes with matplotlib
 
-    pairs = [*COLOURS.values(), *((_GROUND, edge) for _, edge in COLOURS.values())]
+    pairs = [*FACES.values(), *((_GROUND, edge) for _, edge in FACES.values())]
     pairs += [(_GROUND, INK), (_GROUND, FAINT)]
     rgb = [tuple(np.array(ImageColor.getrgb(colour)) for colour in pair) for pair in pairs]
     colours = np.unique([colour for a, b in rgb for colour in (a, b, (a + b) // 2)], axis=0)

@@ -9,18 +9,25 @@ import numpy as np
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
-from gear_kinematics.report.image import FAINT, INK, ImageFile, add_legend
+from gear_kinematics.report.image import COLOURS, FAINT, INK, ImageFile, add_legend
 from gear_kinematics.shape.outlines import NAMES, Array, Pose, bodies, poses
 
-COLOURS = {
-    'stator': ('#d0d7de', '#57606a'),
-    'satellite': ('#80ccff', '#0550ae'),
-    'rotor': ('#ff8182', '#a40e26'),
-    'oldham': ('#eac54f', '#7d4e00'),
-    'output_shaft': ('#4ac26b', '#116329'),
+
+def _face(edge: str) -> str:
+    """Mix the colour of an outline with white, as in page.css."""
+    parts = (int(edge[k : k + 2], 16) for k in (1, 3, 5))
+    return '#' + ''.join(f'{round(255 - 0.45 * (255 - part)):02x}' for part in parts)
+
+
+_EDGES = {
+    'stator': FAINT,
+    'satellite': COLOURS['first'],
+    'rotor': COLOURS['fail'],
+    'oldham': COLOURS['notable'],
+    'output_shaft': COLOURS['pass'],
 }
+FACES = {body: (_face(edge), edge) for body, edge in _EDGES.items()}
 """Colours of the face of each body and of its outline."""
-_EDGES = {body: edge for body, (_, edge) in COLOURS.items()}
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
@@ -41,7 +48,7 @@ class Bodies:
         self._outlines = bodies(mechanism, module, branch)
         self.patches = {}
         for body, outlines in self._outlines.items():
-            face, edge = COLOURS[body]
+            face, edge = FACES[body]
             style = {'facecolor': face, 'edgecolor': edge, 'linewidth': _OUTLINE}
             self.patches[body] = axes.add_patch(PathPatch(_path(outlines), **style))
         _square(axes, _MARGIN * float(np.max(self._outlines['stator'][0])))
@@ -66,15 +73,17 @@ class Centres:
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
         [self.circle] = axes.plot([], [], ':', color=_EDGES['oldham'], linewidth=0.8)
-        self.lines = {}
-        for name, body, width in (
-            ('satellite slot', 'satellite', 0.8),
-            ('arm slot', 'output_shaft', 0.8),
-            ('e', 'rotor', 2.4),
-            ('x', 'satellite', 2.4),
-            ('y', 'output_shaft', 2.4),
-        ):
-            [self.lines[name]] = axes.plot([], [], color=_EDGES[body], linewidth=width)
+        styles = {
+            'satellite slot': ('satellite', 0.8),
+            'arm slot': ('output_shaft', 0.8),
+            'e': ('rotor', 2.4),
+            'x': ('satellite', 2.4),
+            'y': ('output_shaft', 2.4),
+        }
+        self.lines = {
+            name: axes.plot([], [], color=_EDGES[body], linewidth=width)[0]
+            for name, (body, width) in styles.items()
+        }
         axes.plot(0.0, 0.0, 'o', color=INK, markersize=5.0)
         self.points = {
             body: axes.plot([], [], 'o', color=_EDGES[body], markersize=5.0, zorder=3)[0]
@@ -89,14 +98,16 @@ class Centres:
         e = self._mechanism.eccentricity
         o1 = np.zeros(2)
         o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
-        for name, start, end in (('e', o1, o3), ('x', o3, o4), ('y', o1, o4)):
-            self.lines[name].set_data(*np.transpose([start, end]))
-        along = np.array([[_DETAIL], [-_DETAIL]])
-        for name, body, axis in (
-            ('satellite slot', 'satellite', [1.0, 0.0]),
-            ('arm slot', 'output_shaft', [0.0, 1.0]),
-        ):
-            self.lines[name].set_data(*(placed[body].place(e * along * axis) / e).T)
+        along = e * np.array([[_DETAIL, 0.0], [-_DETAIL, 0.0]])
+        ends = {
+            'satellite slot': placed['satellite'].place(along) / e,
+            'arm slot': placed['output_shaft'].place(along[:, ::-1]) / e,
+            'e': (o1, o3),
+            'x': (o3, o4),
+            'y': (o1, o4),
+        }
+        for name, points in ends.items():
+            self.lines[name].set_data(*np.transpose(np.asarray(points)))
         for body, point in (('satellite', o3), ('oldham', o4)):
             self.points[body].set_data(*point[:, np.newaxis])
         around = 0.5 * (complex(*o3) + abs(complex(*o3)) * _CIRCLE)
@@ -106,7 +117,7 @@ class Centres:
 def outlines(mechanism: Mechanism, module: float) -> Figure:
     """Return the outlines of the first branch at φ2 = 0, in mm, for a module of the teeth in m."""
     placed = poses(mechanism, 0.0)
-    pens = {'stator': Pen.FAINT, 'satellite': Pen.FIRST, 'rotor': Pen.SECOND}
+    pens = {'stator': Pen.SECOND, 'satellite': Pen.FIRST, 'rotor': Pen.FIFTH}
     lines = []
     for body, parts in bodies(mechanism, module).items():
         if body in pens:

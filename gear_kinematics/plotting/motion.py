@@ -114,7 +114,7 @@ def _draw_slides(
         ):
             for axes, values in zip(plots, (_MM * slide[:, k], _MM * speed[:, k]), strict=True):
                 if band:
-                    _fill(axes, x, values, FAINT)
+                    _fill(axes, x, values, colour)
                 else:
                     label = f'{branch.name}, {where}'
                     axes.plot(x, values, color=colour, linestyle=dashes, label=label)

@@ -56,7 +56,7 @@ def torque_split(preload: Preload, names: tuple[str, str], max_load: float) -> F
         Line(f'branch {a}', Pen.FIRST, load, split.branch_a),
         Line(f'branch {b}', Pen.SECOND, load, split.branch_b),
     )
-    turn = Line('output', Pen.FAINT, load, arc_seconds(split.output_turn))
+    turn = Line('output', Pen.THIRD, load, arc_seconds(split.output_turn))
     x_label = f'load at the output [N·m], positive as ring gear {a} is turned'
     title = f'preload {preload.torque:.4g} N·m'
     return Figure(

@@ -211,6 +211,11 @@ class Panel:
     """Whether the lines are lanes of events, named by the levels; NaN ends an event."""
 
     @property
+    def height(self) -> float:
+        """The height, in relation to that of other stacked panels."""
+        return _LANE * (1 + len(self.lines)) if self.lanes else 1.0
+
+    @property
     def has_legend(self) -> bool:
         """Whether a legend names the lines: of a single one, the axis does."""
         return not self.lanes and len({line.name for line in self.lines}) > 1
@@ -238,12 +243,7 @@ class Figure:
     panels: tuple[Panel, ...]
     stacked: bool = False
     columns: int | None = None
-    """Most panels side by side; None: all of them."""
-
-    @property
-    def heights(self) -> list[float]:
-        """Heights of stacked panels, in relation to each other."""
-        return [_LANE * (1 + len(p.lines)) if p.lanes else 1.0 for p in self.panels]
+    """Most panels side by side in an image; None: all of them."""
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -278,10 +278,8 @@ class Section:
     mechanism: MovingMechanism | None = None
     drawing: str = ''
     """SVG."""
-    picture_first: bool = False
-    """Whether a page begins with the figure, below the first finding, and folds the tables."""
     key: Table | None = None
-    """What a page shows above such a figure."""
+    """What a page shows above the figure."""
     leads: bool = False
     """Whether a page begins with it, as with the comparison of the others."""
     cases: tuple[Case, ...] = ()
@@ -323,12 +321,15 @@ class Document:
         sections = tuple(s for s in self.sections if s.verdict not in {None, Verdict.PASS})
         return replace(self, sections=sections, summary=None, totals=self.totals * bool(sections))
 
-    @property
-    def order(self) -> list[int]:
-        """The sections as they are read: a comparison first, and failed ones before others."""
+    def in_order(self) -> Self:
+        """Return it as it is read: a comparison first, and failed sections before others."""
         ranks = [Verdict.FAIL, Verdict.UNUSABLE, Verdict.PASS, None]
         keys = [(not section.leads, ranks.index(section.verdict)) for section in self.sections]
-        return sorted(range(len(keys)), key=keys.__getitem__)
+        order, summary = sorted(range(len(keys)), key=keys.__getitem__), self.summary
+        if summary:  # which leaves out comparisons
+            rows = tuple(summary.rows[k] for k in order if k < len(summary.rows))
+            summary = replace(summary, rows=rows)
+        return replace(self, sections=tuple(self.sections[k] for k in order), summary=summary)
 
 
 def printable(text: str) -> str:

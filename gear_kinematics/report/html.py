@@ -1,29 +1,29 @@
 """Writes a report as a self-contained HTML page."""
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from html import escape
 
 from gear_kinematics.report.document import (
     OUTCOME,
     Document,
+    Figure,
     Finding,
     Layout,
     Origin,
+    Panel,
     Section,
     Table,
     Verdict,
 )
 from gear_kinematics.report.interactive import interactive
-from gear_kinematics.report.mechanism import Drawings
+from gear_kinematics.report.mechanism import Drawings, MovingMechanism
 from gear_kinematics.report.page import page, resource
 
-_STACKED_HEIGHT = 11.5  # rem, of each panel
-_ROW_HEIGHT = 30.0  # rem, of each row of panels
-_HEIGHT = 34.0  # rem
-_FEW_FINDINGS = 3
-"""Most findings above a figure, beside the first."""
+_PANEL_HEIGHT = 11.5  # rem, of stacked ones
+_HEIGHT = 34.0  # rem, of all of them at least
+_FEW_SENTENCES = 6
+"""Most findings beside the first, or remarks, that are not folded."""
 
 
 def to_html(document: Document) -> str:
@@ -32,7 +32,7 @@ def to_html(document: Document) -> str:
     Raises:
         ModuleNotFoundError: if it has figures and plotly is not installed.
     """
-    scripts = []
+    scripts, body = [], ''.join(_body(document.in_order()))
     if any(section.figure for section in document.sections):
         from plotly.offline import get_plotlyjs  # noqa: PLC0415, an extra
 
@@ -42,22 +42,18 @@ def to_html(document: Document) -> str:
     kind = OUTCOME[document.verdict] if document.verdict else document.title
     about = document.totals if len(document.sections) != 1 else ''
     names = about or ', '.join(section.name for section in document.sections)
-    return page(': '.join(filter(None, [kind, names])), ''.join(_body(document)), scripts)
+    return page(': '.join(filter(None, [kind, names])), body, scripts)
 
 
 def _body(document: Document) -> Iterator[str]:
-    order = document.order
-    several = len(order) > 1
+    several = len(document.sections) > 1
     yield from _header(document)
     yield '<main>\n'
     if several and document.summary:
-        listed = [k for k in order if k < len(document.summary.rows)]  # not a comparison
-        links = [f'#section-{k}' for k in listed]
-        rows = tuple(document.summary.rows[k] for k in listed)
-        yield f'<section id="top">{_rows(replace(document.summary, rows=rows), links)}</section>\n'
+        links = [f'#section-{k}' for k, one in enumerate(document.sections) if not one.leads]
+        yield f'<section id="top">{_rows(document.summary, links)}</section>\n'
     drawings = Drawings()
-    for k in order:
-        section = document.sections[k]
+    for k, section in enumerate(document.sections):
         yield f'<section id="section-{k}">\n'
         if several and section.name:
             yield f'<h2>{_badge(section.verdict)}{escape(section.name)}</h2>\n'
@@ -80,47 +76,70 @@ def _header(document: Document) -> Iterator[str]:
 
 
 def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]:
-    """Write the parts of a section, with a figure that comes first above folded tables."""
-    head, *tables = section.tables
-    name = f'figure-{number}'
-    figure = ''.join(_figure(section, name, drawings))
-    findings = [_sentence(finding, name if figure else '') for finding in section.findings]
-    kind = section.verdict or ''
-    remarks = _list(map(escape, section.remarks), '')
-    below = ''.join(map(_table, tables))
-    answer = f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
-    if not section.picture_first:
-        drawing = f'<div class="drawing">{section.drawing}</div>\n' if section.drawing else ''
-        yield from (answer, _table(head), _list(findings, kind), figure, drawing, below, remarks)
-        return
+    """Write the parts of a section: what was found, what can be seen, and then the tables."""
+    name, kind = f'figure-{number}', section.verdict or ''
+    moments = name if section.figure and section.figure.stacked else ''
+    findings = [_sentence(finding, moments) for finding in section.findings]
     if findings:
         yield f'<p class="first {kind}">{findings.pop(0)}</p>\n'
-    yield answer
-    others = _list(findings, kind)
-    many = len(findings) > _FEW_FINDINGS  # the figure is to be on the first screen
-    yield _folded(f'{len(findings)} more findings', others) if many else others
+    yield f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
+    yield _list(findings, kind, f'{len(findings)} more findings')
     yield _table(section.key) if section.key else ''
-    yield from (figure, remarks, _table(head), _folded('Tables', below))
+    yield from _figure(section.figure, section.mechanism, name, drawings)
+    yield f'<div class="drawing">{section.drawing}</div>\n' if section.drawing else ''
+    yield _list(list(map(escape, section.remarks)), '', f'{len(section.remarks)} remarks')
+    head, *tables = section.tables
+    below = ''.join(map(_table, tables))
+    yield _table(head) + (_folded('Tables', below) if len(tables) > 1 else below)
 
 
-def _figure(section: Section, name: str, drawings: Drawings) -> Iterator[str]:
-    """Write the data of a figure, which page.js draws, beside the mechanism that moves with it."""
-    figure, mechanism = section.figure, section.mechanism
+def _figure(
+    figure: Figure | None, mechanism: MovingMechanism | None, name: str, drawings: Drawings
+) -> Iterator[str]:
+    """Write a figure, beside the mechanism that moves with it."""
     if not figure:
         return
-    data = json.dumps(interactive(figure, mechanism), allow_nan=False, separators=(',', ':'))
-    # It must not contain the end tag of the script element.
-    for char in '<>&':
-        data = data.replace(char, f'\\u{ord(char):04x}')
-    rows = figure.shape[0] * _ROW_HEIGHT
-    height = max(_HEIGHT, sum(figure.heights) * _STACKED_HEIGHT if figure.stacked else rows)
+    if not figure.stacked:
+        yield '<div class="panels">\n'
+        for k, panel in enumerate(figure.panels):
+            yield f'<figure><figcaption>{escape(panel.title)}</figcaption>'
+            yield f'{_legend([panel])}{_plot([panel], None, f"{name}-{k}")}</figure>\n'
+        yield '</div>\n'
+        return
+    height = max(_HEIGHT, _PANEL_HEIGHT * sum(panel.height for panel in figure.panels))
+    plot = _plot(figure.panels, mechanism, name, f' style="--height: {height:g}rem"')
     if mechanism:
         yield '<div class="moving">\n'
         yield from drawings.moving(mechanism, name)
-    yield f'<div class="figure" id="{name}" style="--height: {height:g}rem">'
-    yield '<noscript>Plots need JavaScript.</noscript></div>\n'
-    yield f'<script type="application/json" data-figure="{name}">{data}</script>\n'
-    yield '</div>\n' if mechanism else ''
+        yield f'<div>{_legend(figure.panels)}{plot}</div>\n</div>\n'
+    else:
+        yield _legend(figure.panels) + plot
+
+
+def _plot(
+    panels: Sequence[Panel], mechanism: MovingMechanism | None, name: str, style: str = ''
+) -> str:
+    """Write the data of a plot, which page.js draws."""
+    data = json.dumps(interactive(panels, mechanism), allow_nan=False, separators=(',', ':'))
+    # It must not contain the end tag of the script element.
+    for char in '<>&':
+        data = data.replace(char, f'\\u{ord(char):04x}')
+    return (
+        f'<div class="figure" id="{name}"{style}>'
+        '<noscript>Plots need JavaScript.</noscript></div>\n'
+        f'<script type="application/json" data-figure="{name}">{data}</script>\n'
+    )
+
+
+def _legend(panels: Sequence[Panel]) -> str:
+    """Write the names of lines, each of which hides its line in the plot below or shows it."""
+    lines = {line.name: line for panel in panels if panel.has_legend for line in panel.lines}
+    items = ''.join(
+        f'<li><button type="button" aria-pressed="true" style="--line: var(--{line.pen})">'
+        f'{escape(name)}</button></li>'
+        for name, line in lines.items()
+    )
+    return f'<ul class="legend">{items}</ul>\n' if items else ''
 
 
 def _folded(name: str, content: str) -> str:
@@ -139,10 +158,11 @@ def _sentence(finding: Finding, figure: str) -> str:
     return f'<a href="#{figure}" data-time="{finding.time:.9g}">{text}</a>'
 
 
-def _list(items: Iterable[str], kind: str) -> str:
-    """Write a list of sentences in HTML."""
+def _list(items: Sequence[str], kind: str, name: str) -> str:
+    """Write a list of sentences in HTML, folded if they would push away what is below them."""
     written = ''.join(f'<li>{item}</li>' for item in items)
-    return f'<ul class="{f"remarks {kind}".strip()}">{written}</ul>\n' if written else ''
+    listed = f'<ul class="{f"remarks {kind}".strip()}">{written}</ul>\n' if written else ''
+    return _folded(name, listed) if len(items) > _FEW_SENTENCES else listed
 
 
 def _footer(origin: Origin | None) -> str:

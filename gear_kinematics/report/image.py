@@ -1,26 +1,30 @@
 """Writes figures as image files, with matplotlib."""
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import chdir, contextmanager
 from dataclasses import dataclass, replace
+from importlib import import_module
 from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.report.document import FEW, Figure, Panel, Pen
 from gear_kinematics.report.mark import MARK
-from gear_kinematics.report.symmetric_log import SymmetricLog
+from gear_kinematics.report.page import resource
+from gear_kinematics.report.symmetric_log import SymmetricLog, tick_text
 
-INK, FAINT = '#24292f', '#8c959f'
-SERIES = ('#0969da', '#bf8700', '#1a7f37', '#8250df', '#cf222e', '#1b7c83')
+COLOURS = dict(re.findall(r'--(\w+): light-dark\((#\w+)', resource('page.css')))
+"""Of pages in the light, by their names."""
+INK, FAINT, RULE = COLOURS['text'], COLOURS['faint'], COLOURS['rule']
+SERIES = tuple(COLOURS[pen] for pen in Pen if pen not in {Pen.MODEL, Pen.FAINT})
 """Colours of lines in a plot, reused in turn for more lines."""
-_COLOURED = (Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH)
-_PENS = {**dict(zip(_COLOURED, SERIES, strict=True)), Pen.MODEL: INK, Pen.FAINT: FAINT}
 _STYLE = {
     'axes.edgecolor': INK,
     'axes.linewidth': 0.6,
-    'grid.color': FAINT,
-    'grid.linewidth': 0.3,
+    'axes.axisbelow': True,
+    'grid.color': RULE,
+    'grid.linewidth': 0.5,
     'legend.frameon': False,
     'lines.linewidth': 1.2,
     'svg.hashsalt': 'gear_kinematics',  # for reproducible files
@@ -31,12 +35,8 @@ _METADATA = {
     'png': {'Comment': MARK},
     'svg': {'Description': MARK, 'Date': None},  # undated, for reproducible files
     'pdf': {'Creator': MARK, 'CreationDate': None},
-    'ps': {'Creator': MARK},
-    'eps': {'Creator': MARK},
 }
-_WITH_EXIF = 'jpg', 'jpeg', 'tif', 'tiff', 'webp'
-_SOFTWARE = 0x0131
-"""The tag in Exif."""
+"""By the format: our mark, by which files are recognised."""
 _FOLDER = '/'
 """To import matplotlib in: it obeys a matplotlibrc in the current folder, which may come with a
 recording. There are no modules either that could be imported in place of others."""
@@ -70,19 +70,21 @@ class ImageFile:
 
     @property
     def format(self) -> str:
-        """The format.
+        """The format."""
+        return self.path.suffix[1:].lower()
+
+    def check(self) -> None:
+        """Check that it can be written, before any work.
 
         Raises:
             ValueError: if the suffix is unknown.
             ModuleNotFoundError: without matplotlib.
         """
-        with chdir(_FOLDER):
-            from matplotlib.backend_bases import FigureCanvasBase  # noqa: PLC0415, an extra
-        formats = FigureCanvasBase.get_supported_filetypes()
-        if (kind := self.path.suffix[1:].lower()) not in formats:
-            known = ', '.join(sorted(formats))
+        if self.format not in _METADATA:
+            known = ', '.join(_METADATA)
             raise ValueError(f'{self.path}: the suffix of a plot must be one of {known}')
-        return kind
+        with chdir(_FOLDER):
+            import_module('matplotlib')
 
     @contextmanager
     def canvas(self, width: float, height: float, *, scaled: bool = True) -> Iterator[Any]:
@@ -101,29 +103,17 @@ class ImageFile:
             yield opened
 
     def encode(self, figure: Any) -> bytes:
-        """Return the bytes of the file, with our mark where the format has a place for it."""
-        options: dict[str, Any] = {'metadata': _METADATA.get(self.format)}
-        if self.format in _WITH_EXIF:
-            from PIL import Image  # noqa: PLC0415, comes with matplotlib
-
-            exif = Image.Exif()
-            exif[_SOFTWARE] = MARK
-            options = {'pil_kwargs': {'exif': exif}}
-        buffer = BytesIO()
-        figure.savefig(buffer, format=self.format, dpi=self.dpi, **options)
+        """Return the bytes of the file, with our mark."""
+        buffer, metadata = BytesIO(), _METADATA[self.format]
+        figure.savefig(buffer, format=self.format, dpi=self.dpi, metadata=metadata)
         return buffer.getvalue()
 
 
 def to_image(figure: Figure, file: ImageFile) -> bytes:
-    """Draw a figure for a file.
-
-    Raises:
-        ValueError: if its suffix is unknown.
-        ModuleNotFoundError: without matplotlib.
-    """
+    """Draw a figure for a file that was checked."""
     least_width, least_height = _LEAST_PANEL
     if figure.stacked:
-        share = sum(figure.heights)
+        share = sum(panel.height for panel in figure.panels)
         width, height = _STACKED[0], min(_STACKED[1], max(least_height, _TALLEST / share))
         if file.width:
             height = max(least_height, height * file.width / width)
@@ -173,7 +163,8 @@ def add_legend(
 
 
 def _draw_panels(figure: Figure, canvas: Any) -> None:
-    ratios = {'height_ratios': figure.heights} if figure.stacked else {}
+    heights = [panel.height for panel in figure.panels]
+    ratios = {'height_ratios': heights} if figure.stacked else {}
     places = canvas.subplots(*figure.shape, sharex=figure.stacked, squeeze=False, **ratios).ravel()
     count = len(figure.panels)
     for axes in places[count:]:
@@ -200,11 +191,12 @@ def _draw(axes: Any, panel: Panel) -> None:
         axes.set_xscale('log')
         axes.set_yscale('log')
         axes.set_ylim(bottom=panel.low)
-    scale = SymmetricLog.of(panel) if panel.scale == 'symlog' else None
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(lambda value, _: tick_text(value))
+    scale = SymmetricLog(panel) if panel.scale == 'symlog' else None
     if scale:
-        axis = scale.axis(panel)
-        axes.set_yticks(axis['tickvals'], axis['ticktext'])
-        axes.set_ylim(axis['range'])
+        axes.set_yticks(scale.axis['tickvals'], scale.axis['ticktext'])
+        axes.set_ylim(scale.axis['range'])
     if panel.equal:
         axes.set_aspect('equal')
     if panel.lanes:
@@ -219,23 +211,24 @@ def _draw(axes: Any, panel: Panel) -> None:
             markersize=2.0 if len(line.x) > FEW else 6.0,
             linewidth=3.0 if panel.lanes else 1.0,
             alpha=line.opacity,
-            color=_PENS[line.pen],
+            color=COLOURS[line.pen],
             label=line.name,
         )
         if line.error is not None:
             style = {'linestyle': 'none', 'linewidth': 1.0, 'capsize': 3.0}
-            axes.errorbar(line.x, line.y, line.error, color=_PENS[line.pen], **style)
+            axes.errorbar(line.x, line.y, line.error, color=COLOURS[line.pen], **style)
     if panel.ticks:
         axes.set_xticks(*zip(*panel.ticks, strict=True), rotation=panel.tick_angle)
         axes.set_xlim(panel.tick_range)
         axes.tick_params('x', labelsize='small')
-    label = {'textcoords': 'offset points', 'va': 'top', 'fontsize': 'small', 'color': FAINT}
+    label = {'textcoords': 'offset points', 'va': 'top', 'fontsize': 'small'}
     for place, text in panel.marks:
         axes.axvline(place, color=FAINT, linestyle='--', linewidth=0.8)
-        at = {'xycoords': ('data', 'axes fraction'), 'xytext': (-2, 0)}
+        at = {'xycoords': ('data', 'axes fraction'), 'xytext': (-2, 0), 'color': FAINT}
         axes.annotate(text, (place, 0.99), rotation=90, ha='right', **at, **label)
     for level, text in panel.levels:
         place = float(scale.height(level)) if scale else level
-        axes.axhline(place, color=FAINT, linestyle='--', linewidth=0.8)
-        at = {'xycoords': ('axes fraction', 'data'), 'xytext': (0, -2)}
+        colour = FAINT if panel.lanes else COLOURS['fail']
+        axes.axhline(place, color=colour, linestyle='--', linewidth=0.8)
+        at = {'xycoords': ('axes fraction', 'data'), 'xytext': (0, -2), 'color': colour}
         axes.annotate(text, (0.01, place), **at, **label)

@@ -5,12 +5,8 @@ from pathlib import Path
 MARK = 'made by gearkin'
 """In comments of text and in the metadata of images."""
 _JSON = b'{\n  "made_by": "gearkin '
-_STARTS = (
-    *(b'<!DOCTYPE html>', b'<?xml ', b'<svg '),
-    *(b'\x89PNG\r\n', b'GIF8', b'\xff\xd8\xff', b'RIFF', b'II*\0', b'MM\0*'),
-    *(b'%PDF-', b'%!PS'),
-)
-"""Begins of the other formats: pages and drawings, images, documents."""
+_STARTS = (b'<!DOCTYPE html>', b'<?xml ', b'<svg ', b'\x89PNG\r\n', b'GIF8', b'%PDF-')
+"""Begins of the other formats."""
 _MP4 = b'ftyp'
 """At the fifth byte."""
 _SEARCHED = 2**16

@@ -14,16 +14,8 @@ _RADIUS = 500.0
 _VIEW = _RADIUS + 5.0
 _CENTRE = 7.0
 """Radius of the dots that mark centres."""
-_SPEEDS = {
-    1e-4: '1/10000 of real time',
-    1e-3: '1/1000 of real time',
-    1e-2: '1/100 of real time',
-    1e-1: '1/10 of real time',
-    1.0: 'real time',
-    10.0: '10 × real time',
-    100.0: '100 × real time',
-}
-"""Factors of the playing speed."""
+_SPEEDS = (1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0)
+"""Playing speeds / real time."""
 _EASY_RATE = 360.0  # degrees of the rotor per second, which the eye can follow
 
 
@@ -95,8 +87,8 @@ def _closed(points: Array) -> str:
 def _controls(moving: MovingMechanism) -> str:
     speed = _easy_speed(moving)
     speeds = ''.join(
-        f'<option value="{value:g}"{" selected" if value == speed else ""}>{name}</option>'
-        for value, name in _SPEEDS.items()
+        f'<option value="{value:g}"{" selected" * (value == speed)}>{value:g} × real time</option>'
+        for value in _SPEEDS
     )
     return (
         '<div class="controls"><button type="button" disabled>Play</button>'

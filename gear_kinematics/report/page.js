@@ -1,8 +1,7 @@
-// Draws each figure when it comes into view: the page of a fleet has hundreds.
+// Draws each plot when it comes into view: the page of a fleet has hundreds.
 'use strict';
 (() => {
   const figures = new Map();
-  const phone = matchMedia('(max-width: 40rem)');
   const probe = document.body.appendChild(document.createElement('i'));
 
   function colour(name) { // of the style sheet, in the present scheme
@@ -10,30 +9,12 @@
     return getComputedStyle(probe).color;
   }
 
-  // On a phone, panels that would be side by side are below each other, and texts have more lines.
-  function fit(element, {time, layout}) {
-    element.style.height = '';
-    if (!phone.matches) return layout;
-    const fitted = structuredClone(layout);
-    const panels = Object.keys(layout).filter(name => name.startsWith('yaxis'));
-    const titles = Object.keys(layout).filter(name => name.startsWith('xaxis')).map(name => fitted[name].title);
-    for (const item of [...fitted.annotations, ...titles]) {
-      if (item.text.length > 40) item.text = item.text.replace(/(.{20,38}) /g, '$1<br>');
-    }
-    if (time || panels.length < 2) return fitted;
-    element.style.height = `${20 * panels.length}rem`;
-    panels.forEach((name, k) => {
-      fitted[name].domain = [1 - (k + 0.65) / panels.length, 1 - k / panels.length];
-      fitted[name.replace('y', 'x')].domain = [0, 1];
-    });
-    return fitted;
-  }
-
   function draw(element) {
     const figure = figures.get(element);
-    const layout = fit(element, figure);
+    const {layout} = figure;
     const axis = {
       gridcolor: colour('rule'), showline: true, linecolor: colour('rule'), zerolinecolor: colour('faint'),
+      automargin: true, tickformat: '.8~g',
     };
     const themed = {
       ...layout,
@@ -43,7 +24,7 @@
       font: {color: colour('text'), family: 'system-ui, sans-serif', size: 12},
       hoverlabel: {bgcolor: colour('raised'), font: {color: colour('text')}},
       hoversubplots: 'axis',
-      margin: {l: 90, r: 20, t: phone.matches && layout.showlegend ? 90 : 55, b: phone.matches ? 65 : 50},
+      margin: {l: 20, r: 20, t: 30, b: 20},
       modebar: {bgcolor: 'rgba(0,0,0,0)', color: colour('faint'), activecolor: colour('text')},
       shapes: layout.shapes.map(({meta, line, label, ...shape}) => ({
         ...shape,
@@ -77,26 +58,36 @@
     figures.set(element, JSON.parse(script.textContent));
     seen.observe(element);
   }
-  for (const query of [matchMedia('(prefers-color-scheme: dark)'), phone]) {
-    query.addEventListener('change', () => {
-      for (const element of figures.keys()) if (element.data) draw(element);
-    });
-  }
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
+    for (const element of figures.keys()) if (element.data) draw(element);
+  });
   addEventListener('beforeprint', () => {
     for (const folded of document.querySelectorAll('details')) folded.open = true;
     for (const element of figures.keys()) if (!element.data) draw(element);
   });
 
-  // Findings lead to their moment: the time axis shows it with a twentieth of the whole around it.
   document.addEventListener('click', ({target}) => {
     const link = target.closest('a[data-time]');
-    if (!link) return;
-    const element = document.getElementById(link.hash.slice(1));
+    if (link) show(document.getElementById(link.hash.slice(1)), Number(link.dataset.time));
+    const name = target.closest('.legend button');
+    if (name) toggle(name, name.closest('.legend').nextElementSibling);
+  });
+
+  // Findings lead to their moment: the time axis shows it with a twentieth of the whole around it.
+  function show(element, moment) {
     if (!element.data) draw(element);
-    const moment = Number(link.dataset.time);
     const known = figures.get(element).time.filter(at => at !== null);
     const around = (Math.max(...known) - Math.min(...known)) / 40 || 1;
     Plotly.relayout(element, {'xaxis.range': [moment - around, moment + around]});
     element.dispatchEvent(new CustomEvent('moment', {detail: moment}));
-  });
+  }
+
+  // Names in the legend hide and show their lines.
+  function toggle(button, element) {
+    button.ariaPressed = button.ariaPressed !== 'true';
+    for (const trace of figures.get(element).data) {
+      if (trace.name === button.textContent) trace.visible = button.ariaPressed === 'true';
+    }
+    draw(element);
+  }
 })();

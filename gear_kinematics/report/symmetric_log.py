@@ -1,8 +1,10 @@
-"""A scale that is logarithmic on both sides of zero, and linear near zero."""
+"""A scale that is logarithmic on both sides of zero, and linear near zero; the texts of ticks.
+
+matplotlib has such a scale, but plotly has none: both draw the heights that it gives.
+"""
 
 import math
-from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,57 +13,47 @@ from gear_kinematics.report.document import Array, Panel, number
 
 _TICKS = 4
 """Most ticks on each side of zero."""
+_DECADES = 12
 _SMALLEST = 1e-300
 """Smallest divisor without overflow."""
+_DIGITS = 8
 
 
-@dataclass(frozen=True, slots=True)
 class SymmetricLog:
-    """The scale of a y axis."""
+    """The scale of a y axis, for all values and levels of a panel within twelve decades."""
 
-    smallest: float
-    """The power of ten at which the logarithmic part starts."""
-    greatest: float
-
-    @classmethod
-    def of(cls, panel: Panel) -> Self:
-        """Choose the scale for all values and levels of a panel."""
+    def __init__(self, panel: Panel) -> None:
         levels = [level for level, _ in panel.levels]
-        return cls.fit(np.concatenate([*(line.y for line in panel.lines), levels]))
-
-    @classmethod
-    def fit(cls, values: ArrayLike) -> Self:
-        """Choose the scale that shows all finite magnitudes within twelve decades."""
-        sizes = np.abs(values)
-        sizes = sizes[np.isfinite(sizes) & (sizes > 0.0)]
-        if not len(sizes):
-            sizes = np.ones(1)
-        greatest = max(float(sizes.max()), _SMALLEST)
-        least = max(float(sizes.min()), 1e-12 * greatest, _SMALLEST)
-        # At least one decade, even for a single magnitude.
-        return cls(10.0 ** (_decade(least) - (_decade(least) == _decade(greatest))), greatest)
+        values = np.concatenate([*(line.y for line in panel.lines), levels])
+        values = values[np.isfinite(values) & (values != 0.0)]
+        sizes = np.maximum(np.abs(values), _SMALLEST) if len(values) else np.ones(1)
+        self._negative = bool(np.any(values < 0.0))
+        self._greatest = float(np.max(sizes))
+        self._top = _decade(self._greatest)
+        low = _decade(max(float(np.min(sizes)), 10.0**-_DECADES * self._greatest, _SMALLEST))
+        self._bottom = min(low, self._top - 1)
 
     def height(self, values: ArrayLike) -> Array:
         """Return the heights of values."""
-        return np.copysign(np.log10(1.0 + np.abs(values) / self.smallest), values)
+        return np.copysign(np.log10(1.0 + np.abs(values) / 10.0**self._bottom), values)
 
-    def ticks(self) -> list[float]:
-        """Return powers of ten up to the greatest value, at even distances."""
-        lowest, highest = _decade(self.smallest), _decade(self.greatest)
-        step = max(1, math.ceil((highest - lowest) / _TICKS))
-        return [10.0**decade for decade in range(highest, lowest, -step)]
-
-    def axis(self, panel: Panel) -> dict[str, Any]:
-        """Return the range and the ticks of the axis of a panel."""
-        negative = any(np.nanmin(line.y, initial=0.0) < 0.0 for line in panel.lines)
-        signs = (-1, 1) if negative else (1,)
-        ticks = sorted({0.0, *(sign * tick for sign in signs for tick in self.ticks())})
-        reach = 1.1 * float(self.height(self.greatest))
+    @property
+    def axis(self) -> dict[str, Any]:
+        """The range and the ticks of the axis: zero, and powers of ten at even distances."""
+        step = math.ceil((self._top - self._bottom) / _TICKS)
+        ticks = [10.0**decade for decade in range(self._top, self._bottom, -step)]
+        ticks = [*(-tick for tick in ticks if self._negative), 0.0, *reversed(ticks)]
+        reach = 1.1 * float(self.height(self._greatest))
         return {
             'tickvals': self.height(ticks).tolist(),
-            'ticktext': [number(tick) for tick in ticks],
-            'range': [-reach if negative else -0.1 * reach, reach],
+            'ticktext': [tick_text(tick) for tick in ticks],
+            'range': [-reach if self._negative else -0.1 * reach, reach],
         }
+
+
+def tick_text(value: float) -> str:
+    """Write the number at a tick as plotly does."""
+    return number(value, _DIGITS).replace('-', '−')
 
 
 def _decade(value: float) -> int:

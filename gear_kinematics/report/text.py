@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import groupby
-from operator import itemgetter
 
 from rich import box
 from rich.columns import Columns
@@ -42,7 +40,7 @@ _TONE_STYLES = {
 
 
 def render(document: Document, console: Console, *, brief: bool = False) -> None:
-    """Print a report: tables on a terminal, one fact per line elsewhere.
+    """Print a report: tables on a terminal, one row per line elsewhere.
 
     Args:
         document: the report.
@@ -56,8 +54,9 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
             written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
             console.print(Text(written), soft_wrap=True)
         return
+    document = document.in_order()
     several = len(document.sections) > 1
-    for section in (document.sections[k] for k in document.order):
+    for section in document.sections:
         shortened = brief and bool(section.answer or section.verdict == Verdict.UNUSABLE)
         if not (several and shortened and section.verdict == Verdict.PASS):  # in the summary
             _render_section(section, console, brief=shortened)
@@ -65,17 +64,15 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
         console.print(Text(document.totals, 'bold'))
         console.print()
     if several and document.summary:
-        listed = [k for k in document.order if k < len(document.summary.rows)]
-        rows = tuple(document.summary.rows[k] for k in listed)
-        console.print(_rows(replace(document.summary, rows=rows), console))
+        console.print(_rows(document.summary, console))
 
 
 def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
-    """Yield one fact per line, each with the section it belongs to; see `render`."""
+    """Yield a row of a table per line, each with the section it belongs to; see `render`."""
     summary = [f'summary: {document.totals}'] if document.totals else []
     compared = any(section.leads for section in document.sections)
     yield from summary if compared else ()
-    for section in (document.sections[k] for k in document.order):
+    for section in document.in_order().sections:
         name = f'{section.name}: ' if section.name else ''
         findings = [finding.text for finding in section.findings]
         if brief and section.verdict is None:
@@ -89,7 +86,7 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
 
 
 def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
-    """Yield the facts of one section, a line each; of a brief one, no values."""
+    """Yield what is known of one section, line by line; of a brief one, no values."""
     name = f'{section.name}: ' if section.name else ''
     if section.verdict:
         yield f'{name}verdict: {OUTCOME[section.verdict]}'
@@ -98,21 +95,20 @@ def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:
     if section.answer:
         yield f'{name}result: {section.answer}'
     for table in () if brief else section.tables:
-        if table.layout == Layout.ROWS:
-            yield from (f'{name}{row}' for row in _row_lines(table))
-        else:
-            for subject, column, cell in table.facts():
-                about = ': '.join(filter(None, [subject, column]))
-                yield f'{name}{about}: {cell.with_unit()}'
+        yield from (f'{name}{line}' for line in _table_lines(table))
     for remark in () if brief else section.remarks:
         yield f'{name}remark: {remark}'
 
 
-def _row_lines(table: Table) -> Iterator[str]:
-    """Yield each row as its subject and its values with their labels."""
-    for subject, facts in groupby(table.facts(), key=itemgetter(0)):
-        values = '; '.join(f'{column} {cell.with_unit()}'.lstrip() for _, column, cell in facts)
-        yield f'{subject}: {values}' if subject else values
+def _table_lines(table: Table) -> Iterator[str]:
+    """Yield a line for each row, and of facts a line for each."""
+    for row in table.rows:
+        facts = list(replace(table, rows=(row,)).facts())
+        if table.layout == Layout.LINES:
+            yield from (f'{column}: {cell.with_unit()}' for _, column, cell in facts)
+        elif facts:
+            values = '; '.join(f'{column}: {cell.with_unit()}' for _, column, cell in facts)
+            yield ': '.join(filter(None, [facts[0][0], values]))
 
 
 def _render_section(section: Section, console: Console, *, brief: bool) -> None:

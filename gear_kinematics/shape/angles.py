@@ -1,10 +1,12 @@
 """Angles in degrees, minutes and seconds of arc."""
 
 import math
-from typing import Any, overload
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Angle = TypeVar('_Angle', float, NDArray[np.float64])
 
 
 def arc(angle: float) -> str:
@@ -25,10 +27,6 @@ def arc(angle: float) -> str:
     return f'{sign}{seconds:.3f}″'
 
 
-@overload
-def arc_seconds(angle: float) -> float: ...
-@overload
-def arc_seconds(angle: NDArray[np.float64]) -> NDArray[np.float64]: ...
-def arc_seconds(angle: Any) -> Any:
+def arc_seconds(angle: _Angle) -> _Angle:
     """Convert an angle in rad, or an array of them, to seconds of arc."""
     return angle * (3600.0 * 180.0 / math.pi)

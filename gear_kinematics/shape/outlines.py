@@ -1,4 +1,4 @@
-"""Outlines of the bodies of a branch, and their poses at a rotor angle, for drawings and pages.
+"""Polygons of the bodies of a branch, and their poses at a rotor angle, for drawings and pages.
 
 The gears are to scale; cam, coupling and arm are sized so that they fit inside the satellite and
 their slides can be seen. Where the slides are too long for that, with very few teeth, coupling
@@ -7,7 +7,7 @@ and arm are left out.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from gear_kinematics.kinematics import Mechanism, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.shape import teeth
+from gear_kinematics.shape.teeth import circle
 
 Array = NDArray[np.float64]
-Outlines = tuple[Array, ...]
+Polygons = tuple[Array, ...]
 """Closed polygons (n, 2), m, in the frame of their body: a counterclockwise border, then clockwise
 holes, so that the nonzero and the even-odd fill rule agree."""
 
@@ -54,7 +55,7 @@ class Pose(NamedTuple):
         return turned + self.centre[..., np.newaxis, :]
 
 
-def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Outlines]:
+def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Polygons]:
     """Compute the outlines of `BODIES`, in this order, of the branch with an index.
 
     The module of the teeth is in m.
@@ -65,25 +66,34 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Ou
     root = float(np.min(np.hypot(*satellite.T)))
     e = mechanism.eccentricity
     x, y = of_branch.cam_direction
-    cam = e * x, e * y
-    shapes = {'stator': _pierced(_circle(_RING_BORDER * float(np.max(np.hypot(*ring.T)))), ring)}
-    sizes = _Sizes.within(root, e)
-    if not sizes:
-        shapes['satellite'] = _pierced(satellite, _circle(0.5 * root))
-        shapes['rotor'] = _pierced(_circle(0.5 * root, *cam))
+    cam_centre = e * x, e * y
+    shapes = {'stator': _pierced(circle(_RING_BORDER * float(np.max(np.hypot(*ring.T)))), ring)}
+    room = root - 3.0 * e  # the slides take three eccentricities
+    if room < _LEAST_ROOM * root:
+        shapes['satellite'] = _pierced(satellite, circle(0.5 * root))
+        shapes['rotor'] = _pierced(circle(0.5 * root, *cam_centre))
         return shapes
-    low, high, key = 0.5 * (sizes.coupling_bore + sizes.coupling), sizes.slot, sizes.key
-    slot = np.array([(low, -key), (high, -key), (high, key), (low, key)])
-    mark = _circle(0.2 * (root - sizes.rim), 0.5 * (sizes.rim + root))
-    tongue = [(sizes.tongue, -key), (sizes.tongue, key)]
-    jaws = turned(_tabbed_circle(sizes.rim_bore, _jaw(sizes), 2), 0.5 * math.pi)
+    # Radii from the inside to the outside, and half the width of the keys.
+    shaft, cam, key = 0.18 * room, 0.29 * room, 0.07 * room
+    coupling_bore = cam + e + 0.03 * room
+    coupling = coupling_bore + 0.17 * room
+    jaw = coupling + e + 0.02 * room
+    tongue = coupling + e + 0.12 * room  # of the coupling
+    slot = tongue + e + 0.02 * room  # of the satellite and the arm
+    rim_bore, rim = slot + 0.03 * room, slot + 0.11 * room  # of the arm
+    inner = 0.5 * (coupling_bore + coupling)
+    slots = np.array([(inner, -key), (slot, -key), (slot, key), (inner, key)])
+    mark = circle(0.2 * (root - rim), 0.5 * (rim + root))
+    # A block inside the rim of the arm, with a slot for a key of the coupling.
+    side = [(jaw, 2.4 * key), (jaw, key), (slot, key)]
+    block = [*((x, -y) for x, y in side), *reversed(side)]
+    keys = _tabbed_circle(coupling, [(tongue, -key), (tongue, key)], 4)
+    jaws = turned(_tabbed_circle(rim_bore, block, 2), 0.5 * math.pi)
     return shapes | {
-        'satellite': _pierced(satellite, _circle(sizes.cam), slot, turned(slot, math.pi), mark),
-        'rotor': _pierced(_circle(sizes.cam, *cam), _circle(sizes.shaft)),
-        'oldham': _pierced(
-            _tabbed_circle(sizes.coupling, tongue, 4), _circle(sizes.coupling_bore)
-        ),
-        'output_shaft': _pierced(_circle(sizes.rim), jaws),
+        'satellite': _pierced(satellite, circle(cam), slots, turned(slots, math.pi), mark),
+        'rotor': _pierced(circle(cam, *cam_centre), circle(shaft)),
+        'oldham': _pierced(keys, circle(coupling_bore)),
+        'output_shaft': _pierced(circle(rim), jaws),
     }
 
 
@@ -139,57 +149,6 @@ def turned(outline: Array, angle: float) -> Array:
     return Pose(np.zeros(2), np.asarray(angle)).place(outline)
 
 
-class _Sizes(NamedTuple):
-    """Radii from the inside to the outside, m."""
-
-    shaft: float
-    cam: float
-    coupling_bore: float
-    coupling: float
-    jaw: float
-    """Inner radius of the jaws of the arm."""
-    tongue: float
-    """Outer radius of the keys of the coupling."""
-    slot: float
-    """Outer radius of the slots for the keys."""
-    rim_bore: float
-    rim: float
-    """Outer radius of the rim of the arm."""
-    key: float
-    """Half the width of the keys."""
-
-    @classmethod
-    def within(cls, root: float, e: float) -> Self | None:
-        """Divide the radius inside the teeth; the slides take three eccentricities of it."""
-        room = root - 3.0 * e
-        if room < _LEAST_ROOM * root:
-            return None
-        cam = 0.29 * room
-        bore = cam + e + 0.03 * room
-        coupling = bore + 0.17 * room
-        tongue = coupling + e + 0.12 * room
-        slot = tongue + e + 0.02 * room
-        return cls(
-            shaft=0.18 * room,
-            cam=cam,
-            coupling_bore=bore,
-            coupling=coupling,
-            jaw=coupling + e + 0.02 * room,
-            tongue=tongue,
-            slot=slot,
-            rim_bore=slot + 0.03 * room,
-            rim=slot + 0.11 * room,
-            key=0.07 * room,
-        )
-
-
-def _jaw(sizes: _Sizes) -> list[tuple[float, float]]:
-    """A block inside the rim of the arm, with a slot for a key of the coupling."""
-    width, key = 2.4 * sizes.key, sizes.key
-    side = [(sizes.jaw, width), (sizes.jaw, key), (sizes.slot, key)]
-    return [*((x, -y) for x, y in side), *reversed(side)]
-
-
 def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int) -> Array:
     """A circle with equal tabs, evenly spaced; `tab` is the one on the x axis."""
     half_width = abs(tab[0][1])
@@ -202,10 +161,5 @@ def _tabbed_circle(radius: float, tab: Sequence[tuple[float, float]], count: int
     return np.concatenate([turned(part, TURN * k / count) for k in range(count)])
 
 
-def _circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
-    angles = np.arange(0.0, TURN - 0.5 * _ARC, _ARC)
-    return np.column_stack([x + radius * np.cos(angles), y + radius * np.sin(angles)])
-
-
-def _pierced(border: Array, *holes: Array) -> Outlines:
+def _pierced(border: Array, *holes: Array) -> Polygons:
     return border, *(hole[::-1] for hole in holes)

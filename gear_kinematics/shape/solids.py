@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.shape.outlines import Outlines, bodies
+from gear_kinematics.shape.outlines import Polygons, bodies
 
 FACE_WIDTH = 0.01
 """Of the gears, m."""
@@ -38,7 +38,7 @@ Triangles = NDArray[np.float32]
 class Solid(NamedTuple):
     """A prism about z = 0."""
 
-    outlines: Outlines
+    outlines: Polygons
     height: float
     """m."""
 
@@ -105,7 +105,7 @@ def _triangles(solid: Solid) -> Triangles:
     )
 
 
-def _divided(points: Triangles, outlines: Outlines) -> NDArray[np.int64]:
+def _divided(points: Triangles, outlines: Polygons) -> NDArray[np.int64]:
     """Divide a polygon with holes into triangles, (n, 3): indices, counterclockwise."""
     # An extra: only those who write meshes need it.
     from mapbox_earcut import triangulate_float64  # noqa: PLC0415

@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Branch, Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import ring_turn_between
+from gear_kinematics.kinematics.rotor_turns import TURN
 
 Array = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ _CLEARANCE = 0.25  # between tip and root, modules (ISO 53, type A)
 _BACKLASH = 0.02  # between the flanks, along their normal, modules; taken from the satellite
 _LEAST_TIP = 0.2  # thickness of a tip, modules: thinner ones count as pointed
 _FLANK_POINTS = 8  # with fewer, the chords of gears with few teeth come too close
-_CIRCLE_POINTS = 360
+_CIRCLE_POINTS = 120
 _MOST_TEETH = 1000  # more are too fine for any picture
 
 
@@ -74,7 +75,7 @@ def outlines(mechanism: Mechanism, module: float) -> Outlines:
         pair = None
     if pair is None or mechanism.ring_teeth > _MOST_TEETH:
         return Outlines(
-            _circle(mechanism.ring_rolling_radius), _circle(mechanism.satellite_rolling_radius)
+            circle(mechanism.ring_rolling_radius), circle(mechanism.satellite_rolling_radius)
         )
     return pair.outlines
 
@@ -285,8 +286,10 @@ def _inv(angle: float) -> float:
     return math.tan(angle) - angle
 
 
-def _circle(radius: float) -> Array:
-    return _points(radius, np.linspace(0.0, 2.0 * math.pi, _CIRCLE_POINTS, endpoint=False))
+def circle(radius: float, x: float = 0.0, y: float = 0.0) -> Array:
+    """A circle about a point, counterclockwise, (n, 2)."""
+    angle = np.linspace(0.0, TURN, _CIRCLE_POINTS, endpoint=False)
+    return np.column_stack([x + radius * np.cos(angle), y + radius * np.sin(angle)])
 
 
 def _points(radius: Array | float, angle: Array) -> Array:

@@ -53,7 +53,6 @@ def _section(report: BagReport) -> Section:
         figure=drawn,
         mechanism=moving(report) if drawn else None,
         cases=tuple(_cases(report)),
-        picture_first=True,
         answer=answer(report),
         elapsed=report.elapsed,
     )

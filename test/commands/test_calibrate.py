@@ -74,7 +74,7 @@ def test_file_and_reports_are_written(recording, tmp_path, capsys):
     assert document['left_out']['rms_after'] == calibration.validation.rms_after
     assert {term['name'] for term in document['terms']} >= {'rotor × 1', 'teeth × 1'}
     told = capsys.readouterr().out
-    assert 'likely cause eccentricity or runout of the cams' in told
+    assert 'likely cause: eccentricity or runout of the cams' in told
     # Nothing is known of other multiples.
     assert order_of(Fraction(80, 19), Fraction(-19), None).cause == ''
     assert 'verdict: passed' in told

@@ -44,8 +44,8 @@ def test_every_topic_is_listed_on_demand(capsys):
     assert main(['info', '-v', str(CONSTANT)]) == 0
     line, *facts = capsys.readouterr().out.splitlines()
     assert line.startswith(f'{CONSTANT}: 3.00 s')
-    row = 'part output; messages 3000; rate 1000 Hz; gaps 0; joints output_shaft; type JointState'
-    assert f'{CONSTANT}: /output_state: {row}' in facts
+    row = 'part: output; messages: 3000; rate: 1000 Hz; gaps: 0; joints: output_shaft; type: '
+    assert f'{CONSTANT}: /output_state: {row}JointState' in facts
     with Terminal() as terminal:
         gearkin('info', '-v', CONSTANT, stdout=terminal.other, env=ENVIRONMENT)
         shown = re.sub(r'\x1b\[[\d;]*m', '', terminal.text())

@@ -47,13 +47,14 @@ def turn_of(ring_teeth: int, tooth: int, ring_hole: int, chassis_hole: int) -> F
 
 def test_index_says_which_holes_to_pin_in_words(capsys):
     out = printed(capsys, 'index', '--angle', '0.001')
-    answer = 'result: pin ring hole 78 in chassis hole 1, tooth 2, for a turn of 3′ 24.878″\n'
-    assert out.startswith(answer)
+    pins = 'Pin ring hole 78 in chassis hole 1, tooth 2'
+    turn = 'the ring gear turns by 3′ 24.878″, 1.387″ less than wanted.'
+    assert out.startswith(f'result: {pins}: {turn}\n')
     assert '265680 positions, one every 4.878″' in out
     assert 'ring hole 78 in chassis hole 1, tooth 2' in out
     assert 'ring hole 78 in chassis hole 42, tooth 42: the same position' in out
     assert '3′ 24.878″ for a wanted 3′ 26.265″ (-1.387″)' in out
-    row = 'steps 0: tooth 2 or 42; ring hole 78; chassis hole 1 or 42; turn 3′ 24.878″; error'
+    row = 'steps 0: tooth: 2 or 42; ring hole: 78; chassis hole: 1 or 42; turn: 3′ 24.878″; error'
     assert row in out
 
 
@@ -170,9 +171,9 @@ def test_preload_reads_well(capsys, monkeypatch):
         monkeypatch.setenv(name, value)
     out = printed(capsys, 'preload', '--wanted-threshold', '2', *SOFT)
     assert 'branch a 3000 N·m/rad, branch b 2000 N·m/rad, shaft 1000 N·m/rad' in out
-    assert re.search(r'pinned in ring hole \d+ .*: 1\.4\d+ N·m; both mesh', out)
+    assert re.search(r'With ring hole \d+ .* the preload is 1\.4\d+ N·m: both', out)
     assert '1.455 N·m in both branches without a load' in out
-    assert 'while |load| < 2 N·m: 2750 N·m/rad' in out
+    assert 'for -2 to 5.333 N·m: 2750 N·m/rad' in out
     assert 'leaves mesh at +5.333 N·m; branch b alone: 2000 N·m/rad' in out
     assert 'leaves mesh at -2 N·m; branch a alone: 750 N·m/rad' in out
     rows = [line.split() for line in out.splitlines() if line.endswith('leaves mesh ')]

@@ -106,7 +106,7 @@ REPORTS = {
     'a.gif': ['animate', '--duration', '0.1', '--width', '100'],
     **{
         f'a.{suffix}': ['preload', '--degrees', '1', *STIFFNESS, '--plot']
-        for suffix in ('png', 'svg', 'pdf', 'ps', 'jpg', 'webp')
+        for suffix in ('png', 'svg', 'pdf')
     },
 }
 

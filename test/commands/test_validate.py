@@ -61,7 +61,7 @@ def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_onl
     assert f'late: finding: not judged, as caused by the recorder: /body_poses {left_out}\n' in (
         done.stdout
     )
-    assert re.search('^late: /body_poses: .*; left out 40', done.stdout, re.MULTILINE)
+    assert re.search('^late: /body_poses: .*; left out: 40', done.stdout, re.MULTILINE)
     for run, options in ((gearkin_here, []), (gearkin, ['--jobs', '2'])):
         done = run('validate', '--strict', *options, 'late', cwd=bags)
         assert done.returncode == 1
@@ -86,7 +86,7 @@ def test_the_worst_verdict_of_many_counts_and_failed_bags_come_first(options, ba
 def test_all_shipped_bags_pass_each_with_its_own_config():
     done = gearkin_here('validate', '-v', 'bags', cwd=BAGS.parent)
     assert (done.returncode, done.stderr) == (0, '')
-    configs = dict(re.findall(r'^bags/(\S+): config: (.+)$', done.stdout, re.MULTILINE))
+    configs = dict(re.findall(r'^bags/(\S+): config: (.+?);', done.stdout, re.MULTILINE))
     assert configs == {
         'constant_speed_3000rpm': str(CONFIG),
         'driver_faults': str(CONFIG),
@@ -100,10 +100,10 @@ def test_the_config_beside_the_file_of_a_bag_is_used_unless_another_is_given():
     file = SINGLE_TURN / 'single_turn_encoder_0.mcap'
     done = gearkin_here('validate', '-v', file)
     assert done.returncode == 0, done.stdout
-    assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"}\n' in done.stdout
+    assert f'{file}: config: {SINGLE_TURN / "actuator.yaml"};' in done.stdout
     done = gearkin_here('validate', '-v', file, '--config', CONFIG)
     assert done.returncode == 1
-    assert f'{file}: config: {CONFIG}\n' in done.stdout
+    assert f'{file}: config: {CONFIG};' in done.stdout
 
 
 def test_a_bag_that_is_given_twice_is_validated_once(bags):
@@ -351,7 +351,7 @@ def test_what_a_live_node_publishes_is_validated_not_what_was_recorded(
     assert done.returncode == 2
     assert done.stderr == f'gearkin: {bad}: not a bag of a known kind\n'
     assert f'{bags / bag}: verdict: passed\n' in done.stdout
-    compared = re.findall(r': /(\w+): .*?compared (\d+);', done.stdout)
+    compared = re.findall(r': /(\w+): .*?compared: (\d+);', done.stdout)
     assert compared == [(topic, str(SAMPLES)) for topic, _ in compared]
     assert {topic for topic, _ in compared} == topics
 

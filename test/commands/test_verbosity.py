@@ -24,7 +24,7 @@ def without_poses(path):
 
 
 def test_a_bag_is_a_line_in_a_pipe_if_it_passed_and_described_in_full_if_verbose(capsys):
-    compared = f'{SINGLE_TURN}: /output_state: messages 2500; compared 2500; '
+    compared = f'{SINGLE_TURN}: /output_state: messages: 2500; compared: 2500;'
     assert main(['validate', str(SINGLE_TURN)]) == 0
     said = '2500 inputs, 5000 outputs compared, largest error 0 (tolerance 1e-9)'
     assert capsys.readouterr().out == f'{SINGLE_TURN}: verdict: passed; {said}\n'

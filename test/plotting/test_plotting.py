@@ -196,21 +196,6 @@ def test_output_of_many_turns_is_a_band_and_a_turn_in_detail(actuator, figures):
     assert band.get_datalim(whole.transData).y0 == pytest.approx(-900.0 / 19 * 180.0 / math.pi)
 
 
-def test_lanes_are_named_and_have_no_numbers(figures):
-    lanes = (Line('lost', Pen.FIFTH, np.array([1.0, 2.0, np.nan]), np.zeros(3)),)
-    value = Line('angle', Pen.FIRST, np.arange(4.0), np.arange(4.0))
-    panels = (
-        Panel('', 't', 'rad', (value,)),
-        Panel('', 't', '', lanes, levels=((0.0, 'lost: 7'),), lanes=True),
-    )
-    to_image(Figure(panels, stacked=True), PNG)
-    values, drawn = figures[0].axes
-    assert [text.get_text() for text in drawn.texts] == ['lost: 7']
-    assert not len(drawn.get_yticks())
-    assert drawn.get_window_extent().height < 0.5 * values.get_window_extent().height
-    assert not figures[0].legends
-
-
 def assert_nothing_is_cut_off(pixels: Image.Image) -> None:
     """Paper is white along all edges."""
     grey = np.asarray(pixels.convert('L'))
@@ -306,7 +291,7 @@ def test_frames_of_a_gif_show_the_bodies_in_turn(actuator, loop):
         turn = float(expected.output_angle)
         centre = np.array([float(x) for x in expected.branches[0].satellite_centre[:2]])
         direction = np.array([math.cos(turn), math.sin(turn)])
-        for sign, colour in ((1.0, (255, 255, 255)), (-1.0, (128, 204, 255))):
+        for sign, colour in ((1.0, (255, 255, 255)), (-1.0, (154, 186, 223))):
             x, y = pixels_per_m * (centre + sign * mark * direction)
             assert colours.getpixel((round(99.5 + x), round(99.5 - y))) == colour
 

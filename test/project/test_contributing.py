@@ -42,9 +42,9 @@ def test_a_field_of_the_report_is_in_every_form(monkeypatch, capsys, tmp_path):
     files = {form: tmp_path / form for form in ('html', 'junit')}
     written = [word for form, path in files.items() for word in (f'--{form}', str(path))]
     assert cli.main(['validate', '-v', str(BAG), *written]) == 0
-    assert '; answered 100 %\n' in capsys.readouterr().out
+    assert 'answered: 100 %' in capsys.readouterr().out
     assert 'answered' in files['html'].read_text('utf-8')
-    assert '; answered 100 %' in files['junit'].read_text('utf-8')
+    assert 'answered: 100 %' in files['junit'].read_text('utf-8')
 
 
 def test_a_subcommand_reports_in_every_form(monkeypatch, capsys):

@@ -93,7 +93,7 @@ def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
         told[words[0]] = capsys.readouterr().out
     assert list(told) == ['validate', 'calibrate', 'preload', 'lost-motion']
     assert 'within the 95 % interval' in told['calibrate']
-    assert 'while |load| < 1 N·m' in told['preload']
+    assert 'for -1 to' in told['preload']
     assert 'ring hole 60 in chassis hole 10, tooth 11' in told['preload']
     assert 'the output rests anywhere within' in told['lost-motion']
     written = {'monday.html', 'report.xml', 'calibration.html', 'pin.svg', 'ramps.html'}

@@ -37,39 +37,20 @@ def visible(*reports, width=100):
     return ESCAPES.sub('', shown(*reports, width=width))
 
 
-def test_pipe_has_a_value_or_a_row_per_line_in_the_order_of_the_report():
+def test_pipe_has_one_row_per_line_in_the_order_of_the_report():
     lines = piped(samples.FAILING).splitlines()
     assert lines[0] == f'{samples.FAILING.bag}: verdict: failed'
-    field = [line.split(': ', 2)[2] for line in lines if ': /output_state position: ' in line]
-    assert field[1:] == [
-        (
-            'compared 4000; absent 0; not finite 0; max error 0.002 rad; tolerance 1e-9 rad; '
-            'rms error 0.00071 rad'
-        ),
-        'worst at stamp 1700000002623456789 ns; worst at rotor angle 785.398163 rad',
-    ]
-    prefix = f'{samples.FAILING.bag}: /rotor_state'
-    assert [line.removeprefix(prefix) for line in lines if line.startswith(prefix)] == [
-        ': joint: rotor',
-        ': messages: 4013',
-        ': valid: 4008',
-        ': rejected: 5',
-        ': rejected, joint missing: 3',
-        ': rejected, position not finite: 2',
-        ': duplicates: 1',
-        ': zero stamps: 1',
-        ': unnormalised stamps: 7',
-        ': resets: 1',
-        ': rate: 1000 Hz',
-        ': duration: 3.999 s',
-        ': gaps: 2',
-        ': jumps: 1',
-        ': overspeed: 4',
-        ': max speed: 314.159 rad/s',
-        ': referenced: no',
-        ' gap 1: until stamp 1700000001923456789 ns; silence 0.0423 s; rotor turned 13.2 rad',
-        ' gap 2: until stamp 1700000003223456789 ns; silence 0.0061 s; rotor turned 1.9 rad',
-    ]
+    name = f'{samples.FAILING.bag}: '
+    tables = [line.removeprefix(name) for line in lines if f'{name}/rotor_state' in line]
+    assert tables[0].startswith('/rotor_state: joint: rotor; messages: 4013; valid: 4008; ')
+    assert tables[0].endswith('overspeed: 4; max speed: 314.159 rad/s; referenced: no')
+    end = 'until stamp: 1700000001923456789 ns; silence: 0.0423 s; rotor turned: 13.2 rad'
+    assert tables[1] == f'/rotor_state gap 1: {end}'
+    assert len(tables) == 3
+    assert (
+        f'{name}/output_state position: worst at stamp: 1700000002623456789 ns; '
+        'worst at rotor angle: 785.398163 rad'
+    ) in lines
 
 
 def test_every_fault_is_a_sentence_that_names_and_locates_it():
@@ -140,25 +121,6 @@ def test_pipe_is_neither_wrapped_nor_decorated():
     assert all(': ' in line for line in text.splitlines())
 
 
-def test_damage_is_told_before_the_findings_and_what_was_readable_after_it():
-    lines = piped(replace(samples.DAMAGED, findings=(samples.Finding('slow'),))).splitlines()
-    assert lines[:3] == [
-        'logs/power_cut.mcap: verdict: unusable',
-        f'logs/power_cut.mcap: error: {samples.DAMAGED.error}',
-        'logs/power_cut.mcap: finding: slow',
-    ]
-    assert any(line.startswith('logs/power_cut.mcap: /output_state: ') for line in lines)
-
-
-def test_summary_closes_a_report_on_several_bags_only():
-    closing = 'summary: 3 bags: 1 passed, 1 failed, 1 unusable'
-    reports = (samples.PASSING, samples.FAILING, samples.UNUSABLE)
-    assert piped(*reports).splitlines()[-1] == closing
-    assert 'summary' not in piped(samples.PASSING)
-    assert '3 bags: 1 passed, 1 failed, 1 unusable' in visible(*reports)
-    assert '1 bag' not in visible(samples.PASSING)
-
-
 @pytest.mark.parametrize('render_one', [piped, visible])
 def test_names_cannot_control_the_terminal(render_one):
     text = render_one(samples.UNPRINTABLE)
@@ -198,7 +160,7 @@ def test_terminal_cuts_nothing_off(width):
 def test_counts_of_zero_have_no_column_on_a_terminal():
     assert ' missing' in visible(replace(samples.FAILING, findings=()))
     assert ' missing' not in visible(samples.PASSING)
-    assert 'compared 4000; missing 0; extra 0' in piped(samples.PASSING)
+    assert 'missing: 0' in piped(samples.PASSING)
 
 
 def test_colours_tell_what_is_bad():
@@ -207,14 +169,6 @@ def test_colours_tell_what_is_bad():
     assert re.search(r'\x1b\[1;31m *11\x1b', failing)
     assert '\x1b[1;32mPASSED' in passing
     assert '31m' not in passing
-
-
-def test_offset_from_the_first_sample_is_told_when_it_is_known():
-    rotor = replace(samples.ROTOR, first_stamp=samples.START)
-    text = piped(replace(samples.FAILING, rotor=rotor))
-    assert '11 messages missing, the first at +1.000 s\n' in text
-    assert '; worst from start +2.500000 s;' in text
-    assert 'from start' not in piped(samples.FAILING)
 
 
 @pytest.mark.parametrize(
@@ -237,11 +191,6 @@ def test_not_a_number_is_the_worst_of_all():
     (row,) = document([replace(samples.NOT_FINITE, topics=(topic,))]).summary.rows
     assert [cell.text for cell in row][:4] == ['logs/nan', 'failed', '4000', 'nan']
     assert any(fault.topic == '/output_state effort' for fault in faults(samples.NOT_FINITE))
-
-
-def test_nothing_to_compare_uses_no_budget():
-    effort = [line for line in piped(samples.PASSING).splitlines() if 'effort' in line]
-    assert effort == ['bags/servo: /output_state effort: compared 0; absent 0; not finite 0']
 
 
 def test_worst_verdict_counts():

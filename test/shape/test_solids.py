@@ -132,20 +132,6 @@ def assert_closed_and_outwards(path: Path, solid) -> None:
     assert np.ptp(triangles[..., 2]) == pytest.approx(solid.height, rel=1e-6)
 
 
-def test_normals_in_the_files_are_those_of_the_corners(written, actuator):
-    for path in written(actuator).iterdir():
-        data = path.read_bytes()
-        count = int.from_bytes(data[80:84], 'little')
-        assert len(data) == 84 + 50 * count
-        assert not data.startswith(b'solid')  # would be text
-        numbers = np.array([np.frombuffer(data, '<f4', 12, 84 + 50 * k) for k in range(count)])
-        normal, first, second, third = numbers.reshape(-1, 4, 3).astype(float).swapaxes(0, 1)
-        across = np.cross(second - first, third - first)
-        length = np.linalg.norm(across, axis=1)
-        np.testing.assert_allclose(np.linalg.norm(normal, axis=1), 1.0, atol=1e-6)
-        np.testing.assert_allclose(np.sum(normal * across, axis=1), length, rtol=1e-6)
-
-
 def test_installed_meshes_are_those_of_the_default_actuator(actuator):
     """If not: gearkin urdf --meshes meshes/80_76_0_0011_0_0005."""
     uri = folder_uri('auto', actuator, MODULE)

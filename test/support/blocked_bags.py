@@ -58,10 +58,10 @@ def facts(output: str) -> dict[str, str]:
     """Read the facts of the plain report about one recording, by subject and column."""
     found = {}
     for line in output.splitlines():
-        subject, _, values = line.split(': ', 1)[1].rpartition(': ')
-        found[subject] = values
-        row = re.findall(r'(?:^|; )(\D+?(?: \(95 %\))?) ([-+\d][^;]*)', values)
-        found |= {f'{subject}: {column}': value for column, value in row}
+        first, *others = line.split(': ', 1)[1].split('; ')
+        *about, name, value = first.split(': ')
+        values = [(name, value), *(other.partition(': ')[::2] for other in others)]
+        found |= {': '.join([*about, column]): text for column, text in values}
     return found
 
 

@@ -3,12 +3,8 @@
 import math
 from dataclasses import replace
 
-import numpy as np
-
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.validation.fields import FieldErrors, FieldSamples, SeriesRecorder
-from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import (
     BagReport,
     Curve,
@@ -244,44 +240,6 @@ EXACT = replace(
     series=series(0.0),
 )
 """Not a bit of difference."""
-
-
-def of_300_000_messages() -> BagReport:
-    """Give a report in which everything is as large as it gets: five fields fail all the time."""
-    count = 100_000
-    random = np.random.default_rng(7)
-    stamp = START + 1_000_000 * np.arange(count)
-    angle = 200.0 * np.sin(9e-4 * np.arange(count))
-    topics, drawn, events = [], [], []
-    for topic, names in (
-        ('/output_state', ('position', 'velocity', 'effort')),
-        ('/body_poses', ('position', 'orientation')),
-    ):
-        recorder = SeriesRecorder([FieldErrors(name, '', 1e-9) for name in names])
-        lost = Occurrences()
-        lost.add(stamp[random.random(count) < 0.1])
-        for start in range(0, count, 5000):
-            rows = slice(start, start + 5000)
-            fields = []
-            for _ in names:
-                error = random.normal(size=(5000, 1))
-                expected = random.normal(size=(5000, 1))
-                fields.append(FieldSamples(expected + error, expected, error[:, 0]))
-            recorder.update(stamp[rows], angle[rows], *fields)
-        drawn.append(recorder.series(topic, START))
-        spans = [((a - START) / 1e9, (b - START) / 1e9) for a, b in lost.spans.tolist()]
-        events.append(Lane(topic, 'missing', lost.count, spans))
-        fails = replace(POSITION, compared=count, max_error=4.0, worst_stamp=START)
-        fields = tuple(replace(fails, name=name) for name in names)
-        topics.append(replace(OUTPUT, topic=topic, messages=count, missing=1, fields=fields))
-    return replace(
-        FAILING,
-        messages=3 * count,
-        rotor=replace(ROTOR, messages=count, valid=count, first_stamp=START),
-        topics=tuple(topics),
-        series=tuple(drawn),
-        lanes=tuple(events),
-    )
 
 
 ALL = (

@@ -60,7 +60,7 @@ def page(browser, folder):
         page.goto(address)
         yield page
         assert page.seen == [address]
-        program.wait_for(rf'{MOTOR}: joints brake, m1; rate \d+ Hz')
+        program.wait_for(rf'{MOTOR}: joints: brake, m1; rate: \d+ Hz')
     assert program.process.returncode == 130
     assert 'Traceback' not in program.text()
 

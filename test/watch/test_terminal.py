@@ -167,7 +167,7 @@ def test_recordings_in_a_pipe_are_whole_also_after_the_process_was_killed(tmp_pa
         assert programs['ended'].process.wait(DEADLINE) == 130
     text = programs['ended'].text()
     listed, *_ = text.splitlines()
-    assert listed == f'{MOTOR}: joints: brake, m1'
+    assert listed.startswith(f'{MOTOR}: joints: brake, m1; rate: ')
     assert re.search(
         rf'^[\d-]+T[\d:]+\S* {OTHER} connected \| output angle \S+° .*; rotor angle .*; '
         r'input \d+ Hz \(last message .* ago\); transmission error .* \| rotor input healthy',

@@ -257,8 +257,8 @@ def test_drivers_are_listed_with_joints_and_rates():
     list_drivers(DRIVERS, console)
     list_drivers([], console)
     assert stream.getvalue().splitlines() == [
-        '/motor/joint_states: joints brake, m1; rate 1000 Hz; drivers 2',
-        '/odd: rate 0 Hz',
+        '/motor/joint_states: joints: brake, m1; rate: 1000 Hz; drivers: 2',
+        '/odd: rate: 0 Hz',
         'There are no topics of type JointState yet.',
     ]
 
@@ -291,7 +291,7 @@ def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
     assert main(['init', *arguments]) == 2
     told = capsys.readouterr()
     assert told.err == f'gearkin: {cause}\n'
-    assert '/motor/joint_states: joints brake, m1; ' in told.out
+    assert '/motor/joint_states: joints: brake, m1; ' in told.out
     assert not list(listening.iterdir())
 
 
@@ -306,7 +306,7 @@ def test_init_writes_to_stdout_and_lists_elsewhere(listening, capsys):
     assert main(['init', '--joint', 'm1', '-o', '-']) == 0
     told = capsys.readouterr()
     assert told.out == new_config('/motor/joint_states', 'm1', 'actuator.yaml')
-    assert '/motor/joint_states: joints brake, m1; ' in told.err
+    assert '/motor/joint_states: joints: brake, m1; ' in told.err
     assert not list(listening.iterdir())
 
 

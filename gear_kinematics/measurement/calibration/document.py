@@ -58,7 +58,6 @@ def document(fit: Fit, target: str) -> Document:
         (Finding('finding', finding),),
         tuple(map(printable, sentences)),
         Figure(tuple(_panels(fit)), columns=2),
-        picture_first=True,
     )
     widths = {'half_width': made.half_width, 'outside_half_width': made.outside_half_width}
     data = {
