@@ -36,13 +36,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='judge this calibration by recordings that it was not made from, and make none',
     )
+    arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
     add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Calibrate with all recordings together, or judge a calibration by each."""
     others = {} if options.check else {'-o': options.output}
-    reporter = Reporter(options, len(options.recordings) if options.check else 1, others)
+    sections = len(options.recordings) if options.check else 1
+    reporter = Reporter(options, sections, others, brief=not options.verbose)
     # All recordings are of one gear, so one configuration applies to all.
     config = arguments.load_config(options, options.recordings[0])
     if options.check:

@@ -20,6 +20,7 @@ from gear_kinematics.validation.report import Finding
 Array = NDArray[np.float64]
 Stamps = NDArray[np.int64]
 
+_REMEDY = 'validate with the parameters of the recorded node'
 _MAX_TEETH = 1000
 _MIN_TURNING = 0.1  # rad of the rotor, to determine a ratio
 _BLOCKS, _MIN_BLOCKS = 32, 4
@@ -150,9 +151,9 @@ def _another_ratio(gear: Gear, slope: Estimate) -> str:
         return (
             f'the recorded ratio is {ratio}, as that of ring_teeth {ring}, satellite_teeth '
             f'{satellite} ({Fraction(-satellite, ring - satellite)}){flipped}, not of '
-            f'{gear.ring_teeth}, {gear.satellite_teeth} ({gear.gear_ratio})'
+            f'{gear.ring_teeth}, {gear.satellite_teeth} ({gear.gear_ratio}): {_REMEDY}'
         )
-    return f'the recorded ratio is {ratio}, not {gear.gear_ratio}'
+    return f'the recorded ratio is {ratio}, not {gear.gear_ratio}: {_REMEDY}'
 
 
 def _tooth_pair(mechanism: Mechanism, slope: float, uncertainty: float) -> tuple[int, int] | None:

@@ -60,7 +60,7 @@ def test_file_and_reports_are_written(recording, tmp_path, capsys):
     target, page = tmp_path / 'calibration.yaml', tmp_path / 'report.html'
     report = tmp_path / 'report.json'
     forms = ['--json', str(report), '--html', str(page)]
-    assert main(['calibrate', str(recording), '-o', str(target), *forms]) == 0
+    assert main(['calibrate', '-v', str(recording), '-o', str(target), *forms]) == 0
     calibration = Calibration.load(target)
     (source,) = calibration.recordings
     assert (source.name, source.samples) == ('gear.csv', 25_000)
@@ -83,7 +83,7 @@ def test_file_and_reports_are_written(recording, tmp_path, capsys):
 
 def test_nothing_is_written_that_does_not_help(noise, tmp_path, capsys):
     target = tmp_path / 'calibration.yaml'
-    assert main(['calibrate', str(noise), '-o', str(target)]) == 1
+    assert main(['calibrate', '-v', str(noise), '-o', str(target)]) == 1
     assert not target.exists()
     told = capsys.readouterr().out
     assert 'Nothing is written' in told
@@ -135,7 +135,7 @@ def test_a_calibration_is_replaced(recording, tmp_path):
 def test_ratio_can_be_given_and_fitted(recording, tmp_path, capsys):
     given, fitted = tmp_path / 'given.yaml', tmp_path / 'fitted.yaml'
     assert main(['calibrate', str(recording), '-o', str(given), '--ratio', '-19']) == 0
-    assert main(['calibrate', str(recording), '-o', str(fitted), '--fit-ratio']) == 0
+    assert main(['calibrate', '-v', str(recording), '-o', str(fitted), '--fit-ratio']) == 0
     assert 'The gear ratio is estimated as -19.0' in capsys.readouterr().out
     for target in (given, fitted):
         calibration = Calibration.load(target)

@@ -45,7 +45,8 @@ def document(fit: Fit, target: str) -> Document:
     verdict = Verdict.PASS if fit.helps else Verdict.FAIL
     before, after = map(_arc_minutes, (made.validation.rms_before, made.validation.rms_after))
     finding = (
-        f'The error falls from {before} to {after} arcmin rms in what was left out of the fit.'
+        f'The error falls from {before} to {after} arcmin rms in what was left out of the fit. '
+        'The node takes the file as its parameter calibration.'
         if fit.helps
         else f'No correction helps: with the best one the error is {after} arcmin rms instead of '
         f'{before} in what was left out of the fit, no more than by chance. Nothing is written.'
@@ -267,7 +268,7 @@ def _section(j: Judgement) -> Section:
             left = f'{_arc_minutes(found[0])}′ {found[1]}'
         finding = (
             f'The calibration no longer holds: {inside:.1f} % instead of {PERCENT} lie within the '
-            f'interval; what is left: {left}.'
+            f'interval; what is left: {left}. Calibrate the gear again.'
         )
     else:
         finding = (
