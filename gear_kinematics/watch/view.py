@@ -100,8 +100,8 @@ def _state_of(gear: GearNode | None, rotor: Latest | None) -> tuple[State, str, 
     if rotor and (rotor.age is None or rotor.age > gear.parameters.input_timeout):
         return 'no input', '' if rotor.age is None else _duration(rotor.age), ''
     output = gear.joint(topics.OUTPUT_STATE)
-    if output and _freshness(output):
-        return 'no output', _duration(output.age), ''
+    if output and _freshness(output):  # the topic of a driver that has ended is gone
+        return 'no output' if rotor else 'no input', _duration(output.age), ''
     return 'connected', '', ''
 
 

@@ -182,6 +182,11 @@ def test_driver_that_has_stopped_is_no_connection(age, duration):
     assert told['duration'] == (duration or '')
 
 
+def test_driver_whose_topic_is_gone_gives_no_input():
+    told = state_of(gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 9.0)}.get), None, [])
+    assert (told['state'], told['duration']) == ('no input', '9.0 s')
+
+
 def test_status_is_described_with_what_to_do():
     values = {'advice': 'Check the driver.'}
     status = Status('rotor input', 2, 'no input for 3.2 s', values, 100.0)
