@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Make the recordings of this folder again: a driver and gear_state_publisher over DDS, recorded.
 
     python bags/record.py DIRECTORY

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How good calibrations of simulated gears are on recordings that were not used."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The C++ node of the benchmarks, which is built where rclcpp is installed."""
 
 import shutil

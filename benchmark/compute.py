@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How long `gearkin compute` takes, against copying messages raw, in the same run.
 
     python benchmark/compute.py [--messages 100000] [--rounds 5] [--json]

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The baseline of start-up: an rclpy node that does nothing but report its first message."""
 
 import time

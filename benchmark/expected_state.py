@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the node has to answer to the driver of the benchmarks, by the matrix method.
 
 It shares no formula with the node. Messages are read in batches, by what reads recordings. All

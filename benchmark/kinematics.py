@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How fast the kinematics are, against what no implementation can avoid and against Pinocchio.
 
     python benchmark/kinematics.py [--samples 1000000] [--rounds 9] [--json]

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the live node costs and how soon it answers, against other nodes, in one run.
 
     python benchmark/live.py [--outputs output_state ...] [--rates 500 1000 ...] [--seconds 5]

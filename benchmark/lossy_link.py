@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How soon the node has a message that a lossy link between it and the driver has lost.
 
     python benchmark/lossy_link.py [--profile FILE] [--rate 500] [--seconds 60] [--loss 1] [--json]

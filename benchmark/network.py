@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Two hosts on this machine, joined by a cable that can be pulled and can lose packets.
 
 A host is a Linux network namespace. It has no name and no way out, and it is gone with the last

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What driver and listener have in common: a ROS node that follows orders, see `processes`."""
 
 import json

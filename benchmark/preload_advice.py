@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How often the advice on a preload holds on simulated gears."""
 
 import argparse

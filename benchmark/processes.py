@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Programs that a benchmark runs side by side, each a process of its own.
 
 They talk to each other over ROS, and to the benchmark in lines of JSON: orders on their standard

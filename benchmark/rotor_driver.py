@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The driver of the benchmarks: publishes rotor_state at a steady rate, and does little else.
 
 It sends probes until it is ordered to drive, and reports when it has.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The node at work for half an hour: nothing is lost, nothing is wrong, and memory stays flat.
 
     python benchmark/soak.py [--minutes 30] [--rate 1000] [--json]

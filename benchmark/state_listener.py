@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The listener of the benchmarks: hears what a node publishes, and when.
 
 It reports the first time that it hears the node, takes an order how many answers to wait for,

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The baseline of the benchmarks: the same job as the tutorials teach it.
 
 Message objects, queues of ten, rclpy.spin; one actuator, and nothing but good input.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How fast `gearkin validate` is, against other ways to go through the same bag, in the same run.
 
     python benchmark/validation.py [--messages 300000] [--rounds 5] [--memory 10000000] [--json]

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What Sphinx makes of these pages and of those above this folder: `make docs`.
 
 The sources are the whole project, so that links lead to the same place here and where the

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Draw what `gearkin` does not: the flow of messages, and the bodies as viewers show them."""
 
 import math

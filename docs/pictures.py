@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Draw the pictures of the README and of these pages: `make pictures`.
 
 Pages are photographed by the system's Chromium.

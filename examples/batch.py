@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Print how far the slides of the gear move in a turn of the rotor, from one batch."""
 
 import numpy as np

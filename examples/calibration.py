@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Calibrate a gear from one recording of rotor and output encoder, and check it by another one.
 
 python calibration.py FIRST SECOND RATIO   # bags or CSV files

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Print the output angle and the pose of each body at one rotor angle."""
 
 from math import degrees, pi

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Print the figures of a catalogue from torque ramps: hysteresis, backlash and stiffness."""
 
 import math

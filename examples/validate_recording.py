@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Hold a recording of a package to what the node should have published, as its pytest could.
 
 python validate_recording.py [BAG [PARAMETERS]]

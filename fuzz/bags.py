@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bytes as bags: messages or a BagError, whatever they are, and little memory for few bytes.
 
 An input is a file of a bag. One that begins like none is the metadata.yaml of a folder, in which

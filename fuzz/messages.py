@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bytes as messages: decoded as rclpy decodes them or malformed, one by one and in batches.
 
 An input is one message, or several with `SEPARATOR` between them, as a driver sends one after the

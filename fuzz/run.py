@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Fuzz a harness of this folder, guided by coverage: python fuzz/run.py messages.
 
 Options of libFuzzer follow the harness, such as -max_total_time=300 (s). It starts from the

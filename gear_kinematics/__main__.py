@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The entry points of both programs, which handle signals before slow imports.
 
 Otherwise a signal during the import of ROS or numpy would raise KeyboardInterrupt somewhere in it,

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Location of the files that are installed with the package: config, launch files, bags."""
 
 import re

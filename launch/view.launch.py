@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Show the mechanism: gear_state_publisher, robot_state_publisher and RViz."""
 
 from launch import LaunchContext, LaunchDescription

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Install pinned requirements with pip, showing how far it is where stderr is a terminal.
 
     python requirements/install.py requirements/demo.txt pip.log

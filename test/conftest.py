@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What every test needs: a ROS domain of its own, hypothesis profiles, mechanisms, shared data."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How both programs start and end: signals, closed streams, and what is missing."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Installed files are found in every layout in which the package gets installed."""
 
 import importlib.util

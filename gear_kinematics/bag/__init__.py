@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Recorded bags: reading and writing raw messages, without ROS.
 
 rosbag2 files are read here, because rosbags refuses unfinished and damaged files altogether and

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Decompression within limits. Its libraries are imported where a bag needs them."""
 
 import os

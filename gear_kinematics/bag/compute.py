@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
 
 from collections.abc import Collection, Mapping

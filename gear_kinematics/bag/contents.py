@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The files of a recording, and the contents of its metadata.yaml."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Works through many recordings in processes of this machine or on a Dask cluster."""
 
 import concurrent.futures

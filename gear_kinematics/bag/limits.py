@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What reading a bag may take, so that a crafted one is refused before it fills the memory."""
 
 

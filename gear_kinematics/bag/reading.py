@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Reads recordings of any storage, and opens their files by content, whatever their names."""
 
 import tempfile

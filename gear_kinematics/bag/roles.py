@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finds the topics of the rotor, the outputs and the encoder in a recording."""
 
 from collections.abc import Mapping, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The interface of a file of a bag."""
 
 from collections.abc import Collection, Iterable, Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The writer of rosbags, faster, and with types without definition as rosbag2 writes them.
 
 Everything has the same bytes as written by rosbags.

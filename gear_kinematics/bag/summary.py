@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What is in a recording: its topics, their rates and gaps, and which part each plays."""
 
 from collections.abc import Mapping

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The rotor's motion over time: recorded, or at a constant speed."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The subcommands of `gearkin`, one module each.
 
 Each module has `add_arguments(parser)` and `run(options)`, which returns the exit code and raises

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin animate`: an animation of the mechanism as a GIF or an MP4."""
 
 import argparse

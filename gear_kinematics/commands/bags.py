@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Arguments about bags, and the files beside them, that several commands have in common."""
 
 import argparse

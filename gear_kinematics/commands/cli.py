@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Kinematics, validation and preload of hypocycloidal gears with Oldham couplings.
 
 Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.

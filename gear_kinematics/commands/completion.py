@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin completion`: complete commands, options and files on the Tab key of a shell."""
 
 import argparse

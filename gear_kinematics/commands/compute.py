@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin compute`: add the outputs to a bag that has only the rotor topic."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What `plot`, `animate` and `urdf` have in common: a mechanism, its motion, and its teeth."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The options for recordings of encoders and torques, common to `lost-motion` and `calibrate`."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Packages that pip installs only with an extra, and the error if one is missing."""
 
 EXTRAS = {

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Files that a command writes: nothing of the user's is replaced by a report."""
 
 import argparse

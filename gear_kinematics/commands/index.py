@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin index`: the pin setting for a wanted turn of a ring gear."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Output of commands on terminals and in pipes, and progress bars."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What `index` and `preload` have in common: the turn of a ring gear, and the pins for it."""
 
 import argparse

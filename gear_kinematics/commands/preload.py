@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin preload`: preload of the branches, and the ring turn and pin setting for it."""
 
 import argparse

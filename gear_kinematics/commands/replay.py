@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin replay`: publish a bag's rotor topic with the timing of the recording."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin watch`: a running node live, on a page or in the terminal."""
 
 import argparse

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The file of a calibration: what corrects the output of one gear, and what it was made from."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The calibrated deviation of the real from the ideal output angle, with its 95 % interval."""
 
 import math

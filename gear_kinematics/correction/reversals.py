@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Lost motion on reversals, told apart from a delay between the stamps of the encoders.
 
 Both make the error of backward motion exceed that of forward motion at the same output angle. Lost

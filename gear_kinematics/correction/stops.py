@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The stop operators of a calibration, followed along the motion of the output.
 
 Along the ideal output angle x = φ2/i, the play p of a play operator of radius r follows x only

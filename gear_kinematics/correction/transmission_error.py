@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The transmission error, sample by sample: measured minus ideal output angle.
 
 Encoder and rotor are sampled at different times. A measured angle is compared with the ideal one

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Uncertainties by the Guide to the Expression of Uncertainty in Measurement (JCGM 100:2008)."""
 
 import math

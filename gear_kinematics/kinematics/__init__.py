@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Kinematics of the anti-backlash planetary gear: numpy and the standard library, no ROS."""
 
 from gear_kinematics.kinematics.errors import MechanismError

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The gear ratio as an exact fraction, and what needs no more of a gear than that."""
 
 import math

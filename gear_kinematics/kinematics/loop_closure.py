@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Loop closure: the residual of the vector loops, the constraint Jacobian, and the mobility.
 
 The planar multibody system behind the Jacobian: the stator is fixed; the moving bodies are the

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The motion by the matrix method, eqs. (4), (7), (8), (11)-(18): 4×4 transforms alone.
 
 The slides of the Oldham couplings come from solving the loop closure

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The mechanism: tooth numbers, eccentricity, branches, and quantities derived from them."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The closed form of the motion: eqs. (5)-(22) of the paper and their time derivatives.
 
 Each formula is written once, in functions that take numpy arrays and plain floats alike: `solve`

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The preload of two branches braced against each other: lossless statics.
 
 Turning the ring gear of one branch against the other's closes the backlash; a further turn dψ_net

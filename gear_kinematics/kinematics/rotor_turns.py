@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The rotor's position as whole turns and an angle within the turn, which never loses precision.
 
 A float64 angle of 10^10 turns has a spacing of 7.6e-6 rad. An integer turn count beside an angle

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """4×4 homogeneous transforms of the frames of the mechanism.
 
 T_ab takes the coordinates of a point in frame a to those in frame b: r_b = T_ab r_a with

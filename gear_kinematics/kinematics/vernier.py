@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The vernier of pin holes that fixes a ring gear in the chassis and sets the preload.
 
 A ring gear has zk teeth and zk + 1 pin holes, the chassis zk + 2 holes; one pin goes through a

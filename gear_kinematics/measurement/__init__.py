@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What a recording says of the real gear: lost motion, stiffness, transmission error, calibration.
 
 `reading.read` makes a `recording.Recording` of a file, and `lost_motion.measure` a `LostMotion` of

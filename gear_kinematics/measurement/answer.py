@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What a recording shows in sentences: the answer, what limits say of it, and remarks."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Recordings as CSV files: one row a sample, one column a quantity, names in the first row."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The report on lost motion: tables, and the JSON, which docs/lost_motion.md describes."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The step of an encoder, found in its readings.
 
 Distances of readings are multiples of it. They are multiples as well of the resolution in which

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The figures of a hysteresis curve as catalogues give them; docs/lost_motion.md defines them."""
 
 import math

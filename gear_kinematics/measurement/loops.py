@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Hysteresis loops of torque ramps: found by the torque alone, without numbers of tests."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What a recording tells of a gear: the figures of torque ramps, and the transmission error.
 
 `measure` works on a recording that was read, `measure_recording` on a file, so that many can be

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A measured figure as reports name and show it."""
 
 from typing import NamedTuple

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The middle line of hysteresis loops, and the backlash that it leaves room for.
 
 At one angle, the torque exceeds the load on the spring by the friction while it rises, and falls

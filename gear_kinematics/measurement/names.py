@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What names of recordings say: groups, positions, settings of the preload, and times."""
 
 import fnmatch

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The gear ratio from recorded angles of rotor and output, and the gears that may have it."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The one reader of recordings: a bag or a CSV file becomes a `Recording`."""
 
 from collections.abc import Sequence

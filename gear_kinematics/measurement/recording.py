@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A recording of a gear, whatever its file format: angles under torque, and both encoders."""
 
 import hashlib

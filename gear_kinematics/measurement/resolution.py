@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the steps of an encoder add to the uncertainty of what is computed from its readings."""
 
 import math

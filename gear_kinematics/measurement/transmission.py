@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The transmission error of a recording over the output angle: accuracy, lost motion, orders.
 
 An order is a number of cycles per turn of the output.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The parameters of the node and of `gearkin --config`: types, bounds, defaults and files."""
 
 from gear_kinematics.parameters.files import ConfigError

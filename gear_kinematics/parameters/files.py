@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Parameter files of ROS: which of their parameters apply to a node."""
 
 import re

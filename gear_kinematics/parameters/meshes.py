@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The parameter `meshes`: where viewers find the meshes of the URDF."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A parameter file for a driver: the default one, with the driver's joint."""
 
 import math

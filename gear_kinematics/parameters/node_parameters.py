@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The parameters of the node and of `gearkin --config`: type, meaning and bounds.
 
 The default values are in config/actuator.yaml alone.

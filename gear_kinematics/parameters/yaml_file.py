@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Reads YAML files that users write, with one clear error whatever is wrong with them."""
 
 import os

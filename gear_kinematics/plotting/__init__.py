@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Figures of the mechanism, as the bytes of image files or for a report.
 
 Plots take the image file that they are for, whose suffix is its format. They raise ValueError for

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The kinematic scheme: the bodies of a branch, and their centres magnified."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Plots of the motion: roses and slides of the couplings, and the output over time."""
 
 from itertools import cycle

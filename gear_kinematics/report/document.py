@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The contents of a report, independent of how it is rendered.
 
 Texts are safe to print on a terminal, but not escaped for markup, HTML or XML.
@@ -37,8 +38,7 @@ class Tone(StrEnum):
     BAD = 'bad'
 
 
-_CLOSE = ('°', '′', '″')
-"""Units without a space before them."""
+_CLOSE = ('°', '′', '″')  # units without a space before them
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Converts panels for plotly, without colours, which page.js adds from the style sheet."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A report as JUnit XML, as Jenkins, GitLab and Ant read it."""
 
 from datetime import UTC, datetime

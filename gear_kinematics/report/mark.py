@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The mark by which gearkin recognises the files that it wrote, and so replaces no others."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Draws a moving mechanism for a page; page.css positions its bodies, motion.js moves it."""
 
 import math

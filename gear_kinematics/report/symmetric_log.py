@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A scale that is logarithmic on both sides of zero, and linear near zero; the texts of ticks.
 
 matplotlib has such a scale, but plotly has none: both draw the heights that it gives.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Prints a report as tables on a terminal, or as plain lines in a pipe."""
 
 from collections.abc import Iterator

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`python -m gear_kinematics.ros`: starts the node."""
 
 import sys

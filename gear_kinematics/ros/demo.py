@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The demo: plays the shipped bag into the node, shows its outputs live and validates them."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The diagnostics of a node, and checks of its connections in the ROS graph."""
 
 from collections import defaultdict

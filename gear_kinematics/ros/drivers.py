@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Runs a node in its own process, as its driver and its recorder.
 
 `Replay` is both; `live_messages` plays a bag into a node and yields its outputs.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The mechanism as a visualization_msgs/MarkerArray, for RViz and Foxglove.
 
 The outlines of the teeth have thousands of points, which would have to be sent again to move them.

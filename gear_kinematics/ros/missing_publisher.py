@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Suggests another topic of joint states while that of the rotor has no publisher."""
 
 from contextlib import suppress

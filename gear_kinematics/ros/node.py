@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
 
 import time

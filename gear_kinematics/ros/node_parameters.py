@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Declares the parameters of the node to ROS, and finds faults that rclpy does not."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Plays bags: publishes recorded messages with the timing of the recording."""
 
 import importlib.util

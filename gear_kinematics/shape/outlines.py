@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Polygons of the bodies of a branch, and their poses at a rotor angle, for drawings and pages.
 
 The gears are to scale; cam, coupling and arm are sized so that they fit inside the satellite and

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A drawing on A4 of the pin holes of ring gear and chassis, with the setting marked."""
 
 import math

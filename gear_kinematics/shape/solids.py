@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The bodies as solids: their outlines, extruded along the axis, as binary STL.
 
 Each body of a branch is one closed solid in its own frame, and the same for every branch: the URDF

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Involute teeth of ring gear and satellite that mesh at the eccentricity.
 
 The teeth are those of the basic rack of ISO 53: pressure angle α = 20°, addendum m, clearance

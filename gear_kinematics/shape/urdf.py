@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The mechanism as a URDF, for robot_state_publisher, RViz and other tools.
 
 The tree: stator → rotor → satellite → Oldham coupling for each branch, and stator → output shaft.

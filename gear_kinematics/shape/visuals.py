@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the links of the URDF look like: cylinders and boxes, or meshes with teeth."""
 
 import math

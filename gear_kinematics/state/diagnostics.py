@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The node's diagnostics of its inputs, without ROS."""
 
 from collections import Counter

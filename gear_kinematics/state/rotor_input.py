@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Reads the rotor's position from serialised rotor_state messages, and rejects bad ones."""
 
 import math

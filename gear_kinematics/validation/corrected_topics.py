@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the topics of the corrected output with recomputed ones, sample by sample.
 
 The hysteresis depends on the motion before the recording. What another history would change is

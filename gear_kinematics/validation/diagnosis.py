@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Causes of deviations: an offset, another mechanism, unit or shaft, another order of poses."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Errors of the fields of an output topic, and their record over time for plots."""
 
 import math

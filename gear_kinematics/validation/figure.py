@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The curves of a validation, and the mechanism that moves with them."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Rate, gaps and speed of the rotor topic, and the checks of its contents."""
 
 from collections.abc import Callable, Iterator, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Matches published messages with their input samples by header stamp.
 
 A node publishes in the order of its inputs, so nearly all messages match in long runs; a single

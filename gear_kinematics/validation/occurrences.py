@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """When something happened to messages, in bounded memory."""
 
 from collections.abc import Iterator, Mapping

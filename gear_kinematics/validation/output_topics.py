@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the fields of each output topic with recomputed ones, sample by sample."""
 
 from collections.abc import Iterator, Mapping, Sequence

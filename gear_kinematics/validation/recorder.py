@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Messages that are missing in a recording because of its recorder, not of the node.
 
 A recorder subscribes to one topic after another and loses messages meanwhile: `ros2 bag record`

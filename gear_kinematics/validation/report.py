@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The result of validating a bag, as plain data without ROS, bags or numpy.
 
 Stamps are ns, times s, angles rad, lengths m. What `first_...` is the stamp of the first one.

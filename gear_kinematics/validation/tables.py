@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The tables of a validation."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence

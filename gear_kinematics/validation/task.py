@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A bag, and how to validate it."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Turns of a single-turn encoder that a recording does not show, taken from the outputs."""
 
 from collections.abc import Iterator

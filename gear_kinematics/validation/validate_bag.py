@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Validates a bag, in this process, another one or on a Dask cluster."""
 
 import time

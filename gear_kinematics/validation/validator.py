@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compares the outputs of a node with recomputed ones, in one pass over a recording."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence

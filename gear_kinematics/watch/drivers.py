@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The JointState topics of drivers: their joints, and how often they come."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the ROS graph says: the nodes of gears, their topics, and the drivers beside them."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence

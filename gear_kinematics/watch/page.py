@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The page of `gearkin watch`; watch.js fills it with what the server sends."""
 
 from importlib.resources import files

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Subscriptions that are polled: they cost nothing until someone looks."""
 
 import time

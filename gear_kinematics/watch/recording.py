@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Records topics to a bag, message by message as they come, and counts what is lost."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Serves the page of `gearkin watch` on this machine, to those who have its address."""
 
 import asyncio

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What there is to see at a moment, in the words and numbers that people read."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Watches the node of a gear and the drivers beside it, in a thread of its own."""
 
 import shlex

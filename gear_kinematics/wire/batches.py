@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Decodes and encodes batches of raw messages as arrays.
 
 Messages of the same layout have everything at the same place, so a batch of them is a table of

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The wire format (CDR) of sensor_msgs/JointState and geometry_msgs/PoseArray, without ROS.
 
 Both start with a std_msgs/Header. CDR (XCDR version 1, as ROS 2 writes it): four bytes of

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Reads one joint from sensor_msgs/JointState messages; defines the causes of rejection."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What messages on unknown names say: the nearest known name, and all of them."""
 
 from collections.abc import Collection, Iterable

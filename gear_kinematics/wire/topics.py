@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The topics of the node: the only place where their names and types are written.
 
 Names are relative to the namespace of the node, unless they begin with a slash.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Computed bags: same bytes as the node's, other topics unchanged, complete or nothing."""
 
 import hashlib

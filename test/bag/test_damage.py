@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Damaged bags are read up to the damage, which is named with its place."""
 
 import random

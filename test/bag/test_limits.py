@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A crafted bag must not take more than 300 MB or 20 s beyond what its size explains.
 
 Each bag goes through gearkin in a process of its own, whose processor time and peak of memory

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bags of every kind are read whole; the expected messages are read by rosbags alone."""
 
 import shutil

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """When the messages of a bag are due in a replay."""
 
 from itertools import islice

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The shipped bags: their outputs at 50 digits, and what their README says of them."""
 
 import hashlib

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Without rosbags, as on a machine of which apt installed everything."""
 
 import sys

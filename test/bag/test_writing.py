@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Written bags: complete or nothing, read by others, with the descriptions of copied topics."""
 
 import os

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bags of each outcome for the commands that read recordings."""
 
 from pathlib import Path

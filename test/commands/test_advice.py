@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What gearkin advises: what is missing, which names there are, and which bag it is about."""
 
 import shutil

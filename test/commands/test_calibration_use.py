@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin validate, compute and plot with a calibration, as a user runs them."""
 
 import json

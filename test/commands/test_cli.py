@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The program gearkin as a user runs it: output, exit codes, one clear line on bad input."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin completion, as a shell uses it."""
 
 import subprocess

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Progress of live commands on a terminal, and Ctrl-C, which ends every command with 130."""
 
 import re

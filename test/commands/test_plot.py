@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin plot and gearkin animate as someone who makes a figure runs them."""
 
 import os

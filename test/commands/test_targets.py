@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Files that gearkin writes: it replaces its own, and never a recording."""
 
 import json

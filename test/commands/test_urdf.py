@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin urdf`: the URDF and its meshes."""
 
 import re

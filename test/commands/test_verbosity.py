@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """How much gearkin prints: a line on what passed, less with --quiet, all with --verbose."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The file of a calibration: what is read is what was written, and nothing else is accepted."""
 
 import os

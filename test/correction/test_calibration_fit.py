@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A calibration beside measured errors: what is explained, and when it no longer fits."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The correction of the output angle, against its definition in 50 digits."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Lost motion and delay of simulated gears, live and from pairs of runs."""
 
 import math

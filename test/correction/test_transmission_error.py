@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The transmission error sample by sample, against numpy over whole records."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The gear ratio: its text, its exact output angle, and the fractions and teeth in an interval."""
 
 import copy

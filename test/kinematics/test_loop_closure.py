@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Loop closure: the residual detects faults, the Jacobian is right, the mobility is one."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The matrix method: against the closed form, with which it shares no formula, and the oracle."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Mechanism and Branch: what is accepted, what is refused, and what follows from the teeth."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The closed form against 50-digit matrix products, and the properties of the motion."""
 
 import math

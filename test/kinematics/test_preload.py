@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The preload: against an exact solution of the unilateral contact, and the paper's numbers."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Turns of the rotor: exact splitting, unwrapping, gaps, and homing."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The vernier of pin holes: counts and nearest settings by brute force."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What a report says of a recording: its answer, its remarks, and what became of limits."""
 
 import math

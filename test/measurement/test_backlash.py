@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The backlash that torque ramps leave room for: of simulated gears that are known."""
 
 import math

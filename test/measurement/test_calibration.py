@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Calibrations of simulated gears: what is found, and what holds on other recordings."""
 
 from dataclasses import replace

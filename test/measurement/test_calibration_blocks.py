@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Uncertainties from blocks, elimination of a recording's own unknowns, prediction of folds."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Checks of calibrations on the other half of a recording, and what they refuse."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Stop operators along a motion, against a loop over its samples."""
 
 from dataclasses import replace

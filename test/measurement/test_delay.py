@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
 
 import math

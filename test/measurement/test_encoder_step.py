@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The step of an encoder, from readings that are printed, in single precision, or noisy."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Figures of hysteresis curves: of simulated gears that are known, and of a measured actuator."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Reversals of torque ramps, and the angle over the torque between them."""
 
 import numpy as np

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Up to which preload the figures fall, on simulated gears and measured figures."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The gear ratio that is estimated from simulated angles of rotor and output."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the steps of an encoder add to an uncertainty, against rounded readings."""
 
 import math

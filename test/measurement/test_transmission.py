@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The transmission error of recordings whose errors are known."""
 
 from fractions import Fraction

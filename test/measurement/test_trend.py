@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Since when a gear has changed: simulated sequences of recordings."""
 
 from datetime import UTC, datetime

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Parameter files for a driver: what the node reads in them, and what is never replaced."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Parameter tables and files: defaults of the contract, faults that name parameter and bound."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The data given to matplotlib, against 50-digit and matrix-method motion."""
 
 import math

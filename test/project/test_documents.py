@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What README and documentation say: commands that run, and every name of the node."""
 
 import re

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bytes of every kind, into the node over DDS and into the harnesses of the fuzzer."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A run of the tests that hangs comes to an end, and says where it was."""
 
 import os

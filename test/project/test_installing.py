@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What `make` shows while it builds its virtual environment."""
 
 import importlib.metadata

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The package as users get it: sdist and wheel, pip, colcon, and what package.xml says."""
 
 import ast

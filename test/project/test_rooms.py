@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Rooms of the package: what they may import, what a listing shows, and that each has tests."""
 
 import ast

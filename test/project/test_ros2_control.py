@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The example for ros2_control, held against what its packages do.
 
 Neither runs here. What is written down of them is from joint_state_topic_hardware_interface 1.1.0,

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What a stranger on the DDS domain, or one who crafts a bag or a config, cannot do.
 
 docs/security.md says what each test stands for.

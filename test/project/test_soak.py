@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The soak: twenty seconds of it, and that it finds what it looks for."""
 
 import json

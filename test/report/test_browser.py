@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The report in a browser: what it shows first, on a phone too; the mechanism moves, and is where
 50 digits say.
 """

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The report as a page: whole, offline, safe, and drawn to the right scale."""
 
 import base64

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Faults in the graph, with nodes that share a participant, so that changes show at once."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The profile for Fast DDS: who chooses it, and that it spares a wakeup for every message."""
 
 import os

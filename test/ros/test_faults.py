@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Faults beside a running node, of drivers, listeners and clocks: no output is lost or wrong."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Markers: bodies placed as by the matrix method, meshing teeth, and few messages."""
 
 import math

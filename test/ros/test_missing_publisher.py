@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Which topics the node suggests if the rotor's has no publisher; without DDS."""
 
 from types import SimpleNamespace

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The node within the process of the test: parameters, and callbacks without DDS."""
 
 import math

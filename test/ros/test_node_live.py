@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The node as a process of its own, with a driver, listeners and clients over DDS."""
 
 import math

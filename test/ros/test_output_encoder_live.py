@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The transmission error and the corrected output of the node as a process of its own."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Driver and node on two hosts, while the network loses packets and its cable is pulled.
 
 Everything happens once, in `run`; each test holds one claim against what was seen. The listeners

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Viewers of the mechanism: launch files, RViz's configuration, Foxglove's layout."""
 
 import ast

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Outlines fit each other, and poses agree with the 50-digit motion."""
 
 import numpy as np

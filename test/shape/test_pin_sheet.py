@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The drawing of the pin holes: their numbers and positions, and which are pinned."""
 
 import math

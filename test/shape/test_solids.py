@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Meshes as Assimp reads them (RViz's and MoveIt's library), and where Pinocchio puts them."""
 
 import math

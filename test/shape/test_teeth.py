@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Outlines of the teeth: they touch and never overlap, as shapely sees them.
 
 Expected values come from shapely's areas and from the worked example of an internal gear pair in

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The URDF as read by others: XML, tree, inertias, and the poses of the links."""
 
 import math

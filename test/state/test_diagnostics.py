@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The report on the rotor input: levels, messages and values, with a simulated clock."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The encoder at the output: simulated transmission errors are recovered."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The rotor input, by the rows of the contract's table of bad input."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The published messages against the motion at 50 digits, and their layout."""
 
 import math

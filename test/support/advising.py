@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Recordings of braced gears at several settings as the advice sees them, and how often it holds.
 
 The figures are read from the curve of the gear itself; between recordings they scatter.

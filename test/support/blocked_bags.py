@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin as a process, and bags in the midst of which it can be caught."""
 
 import io

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Gears whose two branches are braced against each other; nothing of the package is used.
 
 Each branch is a spring that only pushes. The torque over the angle is summed up and inverted by

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Calibrations of simulated gears, judged on a recording that was not used."""
 
 from dataclasses import replace

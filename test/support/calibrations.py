@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A calibration for tests, and its correction in 50 digits by the formulas as they are defined."""
 
 from fractions import Fraction

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The system's Chromium, driven by Playwright; a test that has none is skipped with the reason."""
 
 import shutil

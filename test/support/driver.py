@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A driver to be run as a process of its own, which can be killed at any moment."""
 
 import time

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A driver and a listener as processes of their own, on any host: Fast DDS has one per process."""
 
 import math

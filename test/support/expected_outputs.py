@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The outputs of the node to a rotor position, at 50 digits, and the comparison with them."""
 
 import math

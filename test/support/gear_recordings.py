@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Recordings of gears that are known, simulated without anything of the code under test."""
 
 import csv

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The harnesses of the fuzzer, which are no modules of a package."""
 
 from functools import cache

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A driver, listener and client beside a live gear_state_publisher, and messages to send to it."""
 
 import itertools

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bags of every kind, made by rosbags and the `mcap` package; each maker returns the path."""
 
 import sqlite3

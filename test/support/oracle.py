@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The expected motion at 50 digits, from 4×4 matrix products, independent of the code under test.
 
 T_ab takes frame-a coordinates to frame b; frames: 1 stator, 2 rotor, 3 satellite, 4 Oldham

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What property tests share: mechanisms and motions to draw, and comparisons that NaN fails."""
 
 import math

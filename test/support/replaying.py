@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What a recorded rotor topic calls for, worked out from the contract alone, at 50 digits.
 
 Nothing of `gear_kinematics` is imported here: messages are decoded by rosbags, expected values

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Reports written by hand, one for each outcome; the numbers are chosen, not computed."""
 
 import math

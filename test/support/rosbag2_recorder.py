@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A recorder that does to a recording what rosbag2 does, without ROS.
 
 It finds the topics when they appear, subscribes to one after another, and takes messages from its

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The shipped bags, their topics, and bags as rosbags reads them and the project writes them."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Readings of a rotor and an output encoder on a gear that is known, as functions of time.
 
 Nothing of the code under test is used. Play is the motion of a block between two stops.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A gear with both encoders, stepped through time; nothing of the package under test is used.
 
 The backlash is followed by its contact (M. Nordin, P.-O. Gutman, Automatica 38 (2002) 1633): the

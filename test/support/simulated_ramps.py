@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Torque ramps of gears that are known, stepped through time; nothing under test is used.
 
 The load on the spring is the state: friction holds it until the torque differs from it by more

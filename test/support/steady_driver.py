@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A driver as a process of its own, at 1 kHz: `python steady_driver.py NAMESPACE`.
 
 Beside the motor, joint m1 of several on motor/joint_states, it publishes the encoder of the output

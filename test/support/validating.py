@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Validates messages, and finds its way in the report."""
 
 from pathlib import Path

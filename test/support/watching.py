@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin watch` beside a node and a driver at 1 kHz, and a stand-in for what watches them."""
 
 import contextlib

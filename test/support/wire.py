@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """CDR written field by field: of any encapsulation, and with strings as they should not be."""
 
 import struct

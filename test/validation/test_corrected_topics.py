@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The corrected output in recordings: the node's passes, and what differs is found and named."""
 
 import math

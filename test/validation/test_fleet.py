@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Bags one by one, in processes and on a cluster, whose workers are killed."""
 
 import json

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """When something happened: counted exactly, and kept in bounded memory."""
 
 import numpy as np

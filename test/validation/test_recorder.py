@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Recordings by `ros2 bag record`: correct ones pass, and each fault is found."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The page of `gearkin watch` in Chromium, beside a live node and a driver at 1 kHz."""
 
 import asyncio

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Recordings of `gearkin watch` without ROS: what is counted as lost, and what ends them."""
 
 import struct

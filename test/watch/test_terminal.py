@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """`gearkin watch` and `gearkin init` in a terminal and in a pipe, beside a driver at 1 kHz."""
 
 import contextlib

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What `gearkin watch` shows, and whom its server answers, without a node."""
 
 import asyncio

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The wire format against rclpy, which reads and writes what the middleware does."""
 
 import struct

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """One joint of messages of any layout, against the decoder that knows no layout before."""
 
 import math

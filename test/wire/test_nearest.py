@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The nearest known name is asked for, and nothing where none is near."""
 
 import pytest

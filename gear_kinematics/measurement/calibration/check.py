@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Checks a calibration by recordings that it was not made from."""
 
 from dataclasses import replace

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The reports on a calibration and on its check; docs/calibration.md describes their JSON."""
 
 from collections.abc import Iterator, Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The calibration of a gear: what its output angle deviates by, fitted to recordings.
 
 deviation = constant + Σ orders of the rotor's angle + Σ stop operators + wind-up by the torque.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the calibration of a gear consists of, beside the content of its file."""
 
 from collections.abc import Mapping

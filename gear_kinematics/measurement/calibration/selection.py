@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Normal equations of the linear model block by block, and uncertainties from these blocks.
 
 Every fit without a block is the fit of all blocks less its normal equations, so that samples are

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Orders in the residuals: amplitudes over cycles per turn of the rotor."""
 
 import math

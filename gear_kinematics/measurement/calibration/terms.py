@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """What the linear model needs of a recording, and the terms of the model.
 
 A column of a term is in the unit of the calibration file, so that a coefficient is what the file

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Changes of figures between groups of recordings, or over time, with their significance.
 
 Figures are positive and scatter in proportion to their values, so that logarithms are compared:

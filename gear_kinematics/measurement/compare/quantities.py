@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The figures of several recordings at one torque, so that they can be compared."""
 
 import math

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The sections of a report on several recordings, in words, tables and panels."""
 
 import math

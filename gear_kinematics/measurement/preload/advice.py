@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Up to which setting of the preload the hysteresis falls, and which setting a load needs.
 
 Hysteresis is the angle between loads ±M0 on the gear, M0 being the friction. It falls while the

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The advice on a preload, read from the JSON of `gearkin lost-motion --preloads`."""
 
 import json

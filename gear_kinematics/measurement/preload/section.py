@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The section of a report on recordings at several settings of the preload."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The EventsExecutor of rclpy, where there is one.
 
 It needs the least time for a message, but is experimental in rclpy 7.1: some releases for Jazzy

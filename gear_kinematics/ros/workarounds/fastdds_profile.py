@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The profile of Fast DDS that the node uses unless there is another one.
 
 By default, Fast DDS 2.14 wakes up a thread for every message to every reliable subscriber.

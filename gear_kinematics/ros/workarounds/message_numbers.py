@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Messages with their number among those of their publisher, whatever executor takes them.
 
 rclpy passes both to a callback of two arguments; the EventsExecutor of rclpy 7.1 passes them as

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Publishers that a subscription has met, polled instead of reported by a callback.
 
 A callback could deadlock the thread that takes the event and the one that receives:

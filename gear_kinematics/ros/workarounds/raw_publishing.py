@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Publishing of serialised messages without the checks of rclpy.
 
 `Publisher.publish` of rclpy 7.1 checks the type and holds the handle around `publish_raw`, which

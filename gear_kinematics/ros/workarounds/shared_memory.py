@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Checks that /dev/shm has enough space for ROS.
 
 Without, SIGBUS kills the process when rclpy is imported, or Fast DDS 2.14 loses messages.

@@ -1,3 +1,4 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Shutdown of ROS that does not hang in Fast DDS.
 
 Destroying a node waits, without a time limit, until no discovery callback runs. Fast DDS 2.14, if
