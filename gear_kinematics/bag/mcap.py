@@ -219,10 +219,8 @@ class Mcap(Storage):
         try:
             end = self._stream.seek(-37, os.SEEK_END)
             opcode, _, start, _, _, magic = struct.unpack('<BQQQI8s', self._stream.read())
-            if (opcode, magic) == (
-                _FOOTER,
-                MCAP_MAGIC,
-            ) and 0 < end - start < self.limits.max_record:
+            found = start and (opcode, magic) == (_FOOTER, MCAP_MAGIC)  # 0: there is no summary
+            if found and 0 < end - start < self.limits.max_record:
                 self._stream.seek(start)
                 records, place = self._stream.read(end - start), 0
                 while place < len(records):

@@ -184,3 +184,18 @@ def test_a_bag_without_messages_is_written_and_read(tmp_path, storage):
         assert (bag.topics, bag.message_count) == (TYPES, 0)
         assert not list(bag.messages(TYPES))
         assert file_of(bag.path).name.startswith('bag_0.')
+
+
+def test_a_file_without_a_summary_is_read_in_pieces_to_find_its_topics(recorded, tmp_path):
+    without = ('use_statistics', 'use_summary_offsets', 'repeat_channels', 'repeat_schemas')
+    options = dict.fromkeys((*without, 'use_chunking'), False)
+    path = tmp_path / 'bag.mcap'
+    mcap_file(path, recorded * 60, index_types=IndexType.NONE, **options)
+    size = path.stat().st_size
+    assert path.read_bytes()[-28:-20] == bytes(8)  # where the summary starts
+    tracemalloc.start()
+    bag = Bag(path)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert bag.topics == TYPES
+    assert peak < size
