@@ -99,6 +99,24 @@ def find_rotor_topic(bag: Bag, given: str | None = None, joint: str = '') -> str
     return find_topics(bag, {'rotor': given}, outputs=False, joint=joint).rotor
 
 
+def outputs_of(bag: Bag, rotor: str) -> Topics:
+    """Return the topics of the outputs for a rotor's topic: those that a bag has, by their name.
+
+    Where it has none, or those of several nodes, they are in the namespace of the rotor's topic.
+    """
+    kind = TOPICS[OUTPUT_STATE].type
+    beside = Topics.beside(rotor)
+    recorded = [
+        topic
+        for topic in _of_type(bag.topics, kind)
+        if base_name(topic) == OUTPUT_STATE
+        and f'{topic.removesuffix(OUTPUT_STATE)}{ROTOR_STATE}' not in bag.topics
+    ]
+    if beside.output in bag.topics or len(recorded) != 1:
+        return beside
+    return Topics.beside(recorded[0])._replace(rotor=rotor)
+
+
 def only_joint(bag: Bag, topic: str, joint: str) -> str:
     """Return the joint to read on a topic of joint states: the only one, or else the given one."""
     found = set[str]()

@@ -5,9 +5,9 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.bag import Bag, TopicError
+from gear_kinematics.bag import Bag, BagError, TopicError
 from gear_kinematics.bag.compute import ComputeResult, compute
-from gear_kinematics.bag.roles import Topics, find_rotor_topic
+from gear_kinematics.bag.roles import find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters import NodeParameters, default_config
@@ -42,15 +42,16 @@ def run(options: argparse.Namespace) -> ExitCode:
         message_progress(options.bag.name, quiet=options.quiet) as progress,
     ):
         rotor = options.rotor_topic or find_rotor_topic(bag, joint=config.rotor_joint)
-        beside = Topics.beside(rotor)
-        try:
-            result = compute(
+        outputs = outputs_of(bag, rotor)
+
+        def write(config: NodeParameters) -> ComputeResult:
+            return compute(
                 bag,
                 options.out,
                 config,
                 rotor_topic=rotor,
-                output_topic=options.output_topic or beside.output,
-                poses_topic=options.poses_topic or beside.poses,
+                output_topic=options.output_topic or outputs.output,
+                poses_topic=options.poses_topic or outputs.poses,
                 calibration=calibration,
                 topics=options.topics,
                 files=_files(options, config),
@@ -58,10 +59,22 @@ def run(options: argparse.Namespace) -> ExitCode:
                 compression=options.compression,
                 progress=progress,
             )
+
+        taken = ''
+        try:
+            result = write(config)
         except TopicError as error:
             raise TopicError(f'{error}; --topics says which topics to copy') from error
+        except BagError:
+            joint = only_joint(bag, rotor, config.rotor_joint)
+            if options.joint is not None or joint == config.rotor_joint:
+                raise
+            result = write(replace(config, rotor_joint=joint))
+            taken = f'{joint}, the only joint on {rotor}, is taken'
     if not options.quiet:
         _print_summary(options.out, result)
+        if taken:
+            print(printable(taken))
     if result.rotor_input.mostly_rejected:
         missing = result.rotor_input.missing_joint
         joints = f': {missing}' if missing else ''

@@ -15,7 +15,6 @@ from gear_kinematics.validation.document import document
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.task import QUANTITIES, Task, Tolerances
 from gear_kinematics.validation.validate_bag import WORK, unusable, validate_bag
-from gear_kinematics.wire.joint_reader import JOINT_MISSING
 
 _EXIT_CODES = {
     Verdict.PASS: ExitCode.DONE,
@@ -129,14 +128,6 @@ def _validated(options: argparse.Namespace, tasks: Sequence[Task]) -> dict[Path,
             return validate_bag(task, report_progress, play)
 
     return {
-        task.bag: _with_option(replace(report, bag=str(task.bag)))  # as it was given
+        task.bag: replace(report, bag=str(task.bag))  # as it was given
         for task, report in bags.results(options, WORK, tasks, 'bags', validate)
     }
-
-
-def _with_option(report: BagReport) -> BagReport:
-    """Name the option for another joint, if no message has that of the rotor."""
-    rotor = report.rotor
-    if report.error and rotor and not rotor.valid and JOINT_MISSING in rotor.rejected:
-        return replace(report, error=f'{report.error}; name it with --joint')
-    return report

@@ -117,7 +117,8 @@ class RotorInput:
     def why_rejected(self) -> str:
         """The causes with their counts, and which joints there are if that is one of them."""
         causes = ', '.join(f'{cause} {count}' for cause, count in self.rejected.items())
-        return f'{causes}: {self.missing_joint}' if self.missing_joint else causes
+        hint = f': {self.missing_joint}; name it with --joint' if self.missing_joint else ''
+        return causes + hint
 
     @property
     def segment(self) -> int:

@@ -122,7 +122,7 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
     if offset is not None:
         return (
             f'the recorded output angle is off by a constant {offset:.12g} rad; '
-            'allow_offset accepts it'
+            '--allow-offset accepts it'
         )
     slope = fit.slope()
     if slope is None:

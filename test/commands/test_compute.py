@@ -17,7 +17,7 @@ from blocked_bags import (
 )
 from gear_recordings import old_recording
 from live import rotor_bytes
-from shipped_bags import CONFIGS, JOINT_STATE
+from shipped_bags import CONFIGS, JOINT_STATE, POSE_ARRAY
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.writing import BagWriter
@@ -143,6 +143,35 @@ def test_a_computed_bag_validates_without_repeating_its_topics(outputs, tmp_path
     assert gearkin_here('validate', out).returncode == 0
     # Named topics stand back where another one is asked for.
     assert gearkin_here('validate', out, '--rotor-topic', '/left').returncode != 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('others', 'topics'),
+    [
+        ((), {'/motor/output_state', '/motor/body_poses'}),
+        (('/output_state', '/body_poses'), {'/output_state', '/body_poses'}),
+        (('/a/output_state', '/b/output_state'), {'/motor/output_state', '/motor/body_poses'}),
+        (('/a/output_state', '/a/rotor_state'), {'/motor/output_state', '/motor/body_poses'}),
+    ],
+    ids=['none', 'recorded', 'several', 'of another'],
+)
+def test_recorded_outputs_are_replaced_and_the_only_joint_is_taken(others, topics, tmp_path):
+    bag, out = tmp_path / 'monday', tmp_path / 'out'
+    with BagWriter(bag) as writer:
+        for topic in ('/motor/joints', *others):
+            writer.add_topic(topic, POSE_ARRAY if 'poses' in topic else JOINT_STATE)
+        for stamp in range(10**9, 2 * 10**9, 10**7):
+            writer.write('/motor/joints', stamp, rotor_bytes(stamp, ['m1'], [1.0]))
+    words = ('--rotor-topic', '/motor/joints')
+    assert 'there are: m1; name it with --joint' in refusal(
+        'compute', bag, out, *words, '--joint', 'rotor'
+    )
+    done = gearkin_here('compute', bag, out, *words)
+    assert done.stdout.endswith('\nm1, the only joint on /motor/joints, is taken\n')
+    with Bag(out) as computed:
+        assert set(computed.topics) == {'/motor/joints', *others, *topics}
+    assert gearkin_here('validate', out).returncode == 0
 
 
 def test_compute_uses_the_config_beside_the_bag(tmp_path):

@@ -431,7 +431,7 @@ def test_an_offset_of_the_output_angle_alone_is_named_and_accepted_on_request(re
         assert passed == (field_of(report, OUTPUT, 'position').max_error < 1e-12)
     refused = validate(change_all(recorded, OUTPUT, add('position', 0.125)), config)
     assert texts(refused) == [
-        'the recorded output angle is off by a constant 0.125 rad; allow_offset accepts it'
+        'the recorded output angle is off by a constant 0.125 rad; --allow-offset accepts it'
     ]
 
 
