@@ -194,6 +194,25 @@ def test_viewers_show_the_node_of_their_namespace(launched, side):
     assert not rviz.condition.evaluate(launched)
 
 
+@pytest.mark.parametrize(
+    ('there', 'missing'), [([], 'robot_state_publisher'), (['robot_state_publisher'], 'rviz2')]
+)
+def test_missing_viewer_ends_the_launch_before_the_node_starts(
+    launched, there, missing, tmp_path, monkeypatch
+):
+    index = tmp_path / 'share/ament_index/resource_index/packages'
+    index.mkdir(parents=True)
+    for package in there:
+        (index / package).touch()
+    monkeypatch.setenv('AMENT_PREFIX_PATH', str(tmp_path))
+    launched.launch_configurations['rviz'] = 'true'
+    with pytest.raises(LookupError, match=missing):
+        described(launched, 'view.launch.py', 'check')
+    entities = runpy.run_path(str(ROOT / 'launch/view.launch.py'))['generate_launch_description']()
+    kinds = [type(entity).__name__ for entity in entities.entities]
+    assert kinds.index('OpaqueFunction') < kinds.index('IncludeLaunchDescription')
+
+
 def test_prefix_that_was_given_prevails_over_that_of_the_file(launched):
     launched.launch_configurations['frame_prefix'] = 'my_'
     _, rviz = described(launched, 'view.launch.py', 'start_viewers')
