@@ -12,7 +12,6 @@ import numpy as np
 
 from gear_kinematics.bag import Bag, BagError, ReportProgress
 from gear_kinematics.bag.roles import Topics, corrected_beside
-from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.parameters import NodeParameters
@@ -84,6 +83,8 @@ def compute(
             target cannot be written.
         ValueError: if the parameters are invalid, or two topics have the same name.
     """
+    from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, needs an extra
+
     messages_of = state_messages(parameters)
     rotor_input = RotorInput(parameters)
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
