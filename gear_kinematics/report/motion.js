@@ -1,3 +1,4 @@
+/* Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0 */
 // Moves each mechanism with its slider, its play button and the cursor of its plots. The poses are
 // in page.css. A position counts samples; between them, angles are interpolated linearly.
 'use strict';

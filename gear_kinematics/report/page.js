@@ -1,3 +1,4 @@
+/* Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0 */
 // Draws each plot when it comes into view: the page of a fleet has hundreds.
 'use strict';
 (() => {

@@ -1,3 +1,4 @@
+/* Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0 */
 // Shows what the server sends, and sends it what the buttons ask for; page.css poses the bodies.
 'use strict';
 (() => {

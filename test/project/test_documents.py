@@ -47,6 +47,16 @@ def test_readme_is_one_screen():
     assert len(README.splitlines()) <= 120
 
 
+def test_scripts_and_styles_state_copyright_and_license():
+    """As ruff makes each Python file do."""
+    folders = ('bin/*', '.ci/*', 'docs/*.css', 'gear_kinematics/*/*.css', 'gear_kinematics/*/*.js')
+    files = [path for folder in folders for path in ROOT.glob(folder)]
+    assert files
+    for path in files:
+        head = path.read_text('utf-8').splitlines()[:2]
+        assert any('Copyright 2026' in line and 'Apache-2.0' in line for line in head), path
+
+
 def test_every_page_is_in_the_one_index_and_a_how_to_has_its_picture():
     docs = ROOT / 'docs'
     index = (docs / 'index.md').read_text('utf-8')
