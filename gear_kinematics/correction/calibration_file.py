@@ -22,6 +22,7 @@ UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 _RATIO = re.compile(r'-?[0-9]{1,9}(/(?P<denominator>[0-9]{1,9}))?', re.ASCII)
 _GREATEST = 1e30  # no number of a real gear is near it
 _STEEPEST = 1e6  # the products with the greatest velocities of the rotor are finite
+_LONGEST_CAUSE = 1000  # characters; a value in it may be as long as the file
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
 
 
@@ -176,7 +177,7 @@ class Calibration:
             if gear is not None:
                 calibration.check(gear)
         except CalibrationError as error:
-            raise CalibrationError(f'{path}: {error}') from error
+            raise CalibrationError(f'{path}: {str(error)[:_LONGEST_CAUSE]}') from error
         return calibration
 
     def text(self) -> str:

@@ -109,6 +109,7 @@ class _Pairs(tuple[tuple[Any, Any], ...]):
 class _RosLoader(Loader):
     """Keeps repeated keys, which ROS merges. The file may be of many nodes."""
 
+    max_bytes = 2**20
     max_events = 2**17
 
 

@@ -17,7 +17,7 @@ _TEXT = 'tag:yaml.org,2002:str'
 class Loader(getattr(yaml, 'CSafeLoader', yaml.SafeLoader)):  # type: ignore[misc]
     """Reads 15e-4 as a number and 1:30 as a text, as ROS does."""
 
-    max_bytes: ClassVar[int] = 2**20
+    max_bytes: ClassVar[int] = 2**18
     max_events: ClassVar[int] = 2**13
     """Values, and begins and ends of lists. They load within 50 ms, and are twice as many as in a
     calibration of 60 coefficients, which is the largest that is ever fitted."""
@@ -37,7 +37,7 @@ class Dumper(yaml.SafeDumper):
 for _either in (Loader, Dumper):
     _either.add_implicit_resolver(
         'tag:yaml.org,2002:float',
-        re.compile(r'[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)[eE][-+]?[0-9]+$'),
+        re.compile(r'[-+]?([0-9]+(\.[0-9]*)?|\.[0-9]+)[eE][-+]?[0-9]+$'),
         list('-+.0123456789'),
     )
 
@@ -85,6 +85,8 @@ def load_yaml(text: str, loader: type[Loader] = Loader) -> Any:
         Exception: of any kind if it cannot be loaded.
     """
     depth = 0
+    if '%TAG' in text:  # libyaml compares each with all others
+        raise ValueError('%TAG is not supported')
     for number, event in enumerate(yaml.parse(text, loader), start=1):
         depth += isinstance(event, yaml.CollectionStartEvent)
         depth -= isinstance(event, yaml.CollectionEndEvent)

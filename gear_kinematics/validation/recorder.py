@@ -38,6 +38,7 @@ _MAX_STAMPS = 32_768  # of inputs
 _MAX_RESETS = 64  # of the stamps
 _MAX_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
 _ALWAYS = -(2**62)  # ns
+_APART = 2**40  # ns between the clocks before and after a reset of the stamps
 
 
 class Inputs(NamedTuple):
@@ -214,8 +215,10 @@ class RecordedInputs:
         self._strict = strict
         self._ages: list[list[int]] = []
         """Time of reception - stamp of the first and the last input since each reset, ns."""
+        self._clock: list[int] = []
+        """What is added to the stamps since each reset, ns, so that those of two never mix."""
         self._known = np.zeros(0, np.int64)
-        """The latest stamps, with the age of the first input since the reset: on one clock."""
+        """The latest stamps on that clock."""
         self._complete = True
         self._last = np.zeros(0, np.int64)
 
@@ -231,13 +234,15 @@ class RecordedInputs:
                 first, last = ages[rows[[0, -1]]].tolist()
                 if not self._ages or resets[rows[0]]:
                     self._ages.append([first, last])
+                    moved = self._clock[-1] - self._ages[-2][0] if self._clock else 0
+                    self._clock.append(first + moved + _APART)
                 self._ages[-1][1] = last
             if self._ages:
-                added += [stamp[rows] + self._ages[-1][0], rejected + self._ages[-1][0]]
+                added += [stamp[rows] + self._clock[-1], rejected + self._clock[-1]]
         known = np.concatenate(added)
         self._complete = self._complete and len(known) <= _MAX_STAMPS
         self._known = known[-_MAX_STAMPS:]
-        del self._ages[:-_MAX_RESETS]
+        del self._ages[:-_MAX_RESETS], self._clock[:-_MAX_RESETS]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Whether the inputs of outputs (n,), ns, were not recorded."""
@@ -247,14 +252,16 @@ class RecordedInputs:
             return np.ones(len(stamp), bool)
         age, ages = received - stamp, np.array(self._ages)
         low, high = ages.min(axis=1)[:, None], ages.max(axis=1)[:, None]
-        clock = np.argmin(np.abs(age - np.clip(age, low, high)), axis=0)
-        stamp = stamp + ages[clock, 0]
+        distance = np.abs(age - np.clip(age, low, high))
+        stamp = stamp + np.array(self._clock)[np.argmin(distance, axis=0)]
         known = np.unique(self._known)
         after = np.searchsorted(known, stamp)
         bounds = np.concatenate([[known[0]], known, [known[-1]]])
         period = np.diff(known)
         longest = HOLE * float(np.median(period)) if len(period) else np.inf
-        in_hole = (bounds[after + 1] - bounds[after] > longest) & (bounds[after + 1] != stamp)
+        gap = bounds[after + 1] - bounds[after]
+        in_hole = (gap > longest) & (bounds[after + 1] != stamp)
+        in_hole &= (gap < _APART // 2) | (distance.min(axis=0) < _MAX_DELAY)
         too_early = (after == 0) & self._complete & (stamp < known[0])
         too_late = after == len(known)
         return np.asarray(

@@ -169,7 +169,9 @@ def test_fault_of_a_file_is_named_with_the_file(file, changes, fault):
         (b'schema: [', 'not YAML'),
         (b'a: &a [1]\nb: *a\n', 'aliases are not supported'),
         (b'\xff\xfe\x00', 'codec'),
-        (2**20 * b'#' + b'\n', 'longer than 1048576 bytes'),
+        (2**18 * b'#' + b'\n', 'longer than 262144 bytes'),
+        (b'a: ' + 250_000 * b'1' + b'e', 'no calibration: its `schema` is not'),
+        (b''.join(b'%%TAG !%x! !\n' % k for k in range(15_000)) + b'--- a', 'is not supported'),
         (b'a: [' + 10_000 * b'0, ' + b']', 'more than 8192 values'),
         (b'a: !!bool maybe', 'does not fit its tag'),
         (b'a: !!int ""', 'does not fit its tag'),
@@ -183,6 +185,12 @@ def test_anything_else_is_no_calibration(tmp_path, content, fault):
     with pytest.raises(CalibrationError, match=r'calibration\.yaml: ') as error:
         Calibration.load(path)
     assert fault in str(error.value)
+
+
+def test_long_value_is_not_shown_whole(file):
+    with pytest.raises(CalibrationError, match='constant must be a finite number') as error:
+        Calibration.load(file(constant=100_000 * 'x'))
+    assert len(str(error.value)) < 2000
 
 
 def test_missing_file_is_named(tmp_path):

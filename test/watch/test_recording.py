@@ -5,7 +5,7 @@ import struct
 import threading
 from dataclasses import replace
 from pathlib import Path
-from types import MappingProxyType
+from types import MappingProxyType, SimpleNamespace
 
 import pytest
 from blocked_bags import wait_until
@@ -140,6 +140,14 @@ def test_topic_that_appears_later_is_recorded_from_then_on(source, tmp_path):
     assert ongoing.stop().counts == {'/a': 1, '/b': 0, '/later': 2}
     with Bag(tmp_path / 'bag') as bag:
         assert len(list(bag.messages(['/later']))) == 2
+
+
+def test_topic_on_which_nothing_came_is_told(source, tmp_path):
+    stopped = Watcher()
+    stopped._gear = SimpleNamespace(heard=['/a', '/b'])
+    stopped._recording = begin(tmp_path / 'bag')
+    put(source, '/a', 1)
+    assert stopped._stop().text == 'Recorded 1 messages, 0 lost; nothing came on /b:'
 
 
 @pytest.mark.parametrize('broken', [Source, LiveBagWriter], ids=['take', 'write_all'])
