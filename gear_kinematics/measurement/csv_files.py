@@ -137,7 +137,8 @@ def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
         found = {'angle': angles[0], **others}
     else:
         unknown = ', '.join(filter(None, (_split(name)[2] for name in header)))
-        hint = f'; unknown units: {unknown}; known: {_listed("angle")}' if unknown else ''
+        listed = f'{_listed("angle")}, {_listed("torque")}'
+        hint = f'; unknown units: {unknown}; known: {listed}' if unknown else f'; units: {listed}'
         raise ValueError(
             'neither an angle and a torque nor a rotor and an output among the columns '
             f'{", ".join(header)}; name them with --angle-column, --torque-column, '
@@ -151,6 +152,7 @@ def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
 
 def _column(role: str, name: str, given: Sources, common: str) -> Column:
     plain, unit, unknown = _split(name)
+    unknown = unknown or ('' if unit in _UNITS[role] else unit)
     if unknown and not (given.unit and role in _ANGULAR):
         raise ValueError(f'{name}: the unit {unknown} is not known; known: {_listed(role)}')
     if role in _ANGULAR:
@@ -205,6 +207,10 @@ def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
     remarks = [f'one row of {every} is used: no more are kept in memory'] if every > 1 else []
     if left_out := int(np.count_nonzero(~usable)):
         remarks.append(f'{left_out} rows were left out: not finite, or too large')
+    stray = usable & np.any([_stray(data[role]) for role in _ANGULAR if role in data], axis=0)
+    if left_out := int(np.count_nonzero(stray)):
+        remarks.append(f'{left_out} rows were left out: turns away from those around them')
+        usable &= ~stray
     data['segment'] = np.cumsum(~usable)  # the motion in rows that are left out is unknown
     data = {
         role: np.where(np.abs(rows := values[usable]) < _LEAST, 0.0, rows)
@@ -242,6 +248,15 @@ def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
         tuple(remarks), lacking='not both a rotor and an output among the columns; name them with '
         '--rotor-column and --output-column',
     )  # fmt: skip
+
+
+def _stray(angle: Array) -> Array:
+    """Whether a row is turns away from both that before and that after it, which agree."""
+    around = np.pad(angle, 1, mode='reflect')
+    with np.errstate(invalid='ignore'):  # of infinite numbers
+        away = np.minimum(np.abs(angle - around[:-2]), np.abs(angle - around[2:]))
+        stray: Array = (away > 2.0 * TURN) & (np.abs(around[2:] - around[:-2]) < 0.01 * away)
+    return stray
 
 
 def _encoders(data: Mapping[str, Array], sources: Sources, ratio: Fraction) -> Encoders:

@@ -110,14 +110,24 @@ def test_real_recordings_need_no_renaming(shared_path, config):
 
 @pytest.mark.parametrize(
     'name',
-    ['angle [µrad]', 'angle_urad', 'winkel_grad', 'angle_mdeg', 'angleDeg', 'angle_arcmin'],
-)
+    [
+        'angle [µrad]', 'angle_urad', 'winkel_grad', 'angle_mdeg', 'angleDeg', 'angle_arcmin',
+        'angle_sec', 'angle [nm]',
+    ],
+)  # fmt: skip
 def test_units_that_are_not_known_are_refused_with_the_list(tmp_path, config, name):
     path = write_csv(tmp_path / 'r.csv', **{name: [1.0, 2.0], 'torque': [1.0, 2.0]})
     with pytest.raises(RecordingError, match=r'known: .*deg, .*mrad, .*rad, rev'):
         read(path, config)
     with pytest.raises(RecordingError, match=r'the unit .* is not known'):
         read(path, config, Sources(angle=name))
+
+
+@pytest.mark.parametrize('name', ['torque_Ncm', 'torque_counts', 'torque [kNm]', 'torque_rad'])
+def test_units_of_torque_that_are_not_known_are_refused_with_the_list(tmp_path, config, name):
+    path = write_csv(tmp_path / 'r.csv', angle=[1.0, 2.0], **{name: [1.0, 2.0]})
+    with pytest.raises(RecordingError, match=r'(units|known): .*mnm, .*nm'):
+        read(path, config)
 
 
 @pytest.mark.parametrize('on_rotor', [False, True])
@@ -213,6 +223,20 @@ def test_rows_that_are_not_finite_are_left_out_and_reported(tmp_path, config, an
     recording = read(write_csv(tmp_path / 'r.csv', angle=holes, torque=TORQUE), config)
     assert len(recording.locked.angle) == len(angle) - 2
     assert recording.remarks == ('2 rows were left out: not finite, or too large',)
+
+
+@pytest.mark.parametrize('row', [0, 700, 1999])
+@pytest.mark.parametrize('name', ['rotor', 'output'])
+@pytest.mark.parametrize('value', [1e9, -100.0])
+def test_a_row_that_is_turns_away_is_left_out_and_reported(tmp_path, config, row, name, value):
+    columns = {'rotor': 40.0 * np.sin(0.01 * np.arange(2000))}
+    columns['output'] = columns['rotor'] / -19.0 + 0.01
+    columns[name] = columns[name].copy()
+    columns[name][row] = value
+    recording, both = read_encoders(write_csv(tmp_path / 'r.csv', **columns), config)
+    np.testing.assert_allclose(both.error(Fraction(-19)), 0.01, rtol=0, atol=1e-9)
+    assert len(both.measured) == 1999
+    assert recording.remarks == ('1 rows were left out: turns away from those around them',)
 
 
 @pytest.mark.parametrize(
