@@ -4,6 +4,8 @@
 import argparse
 from collections.abc import Callable, Iterator, Mapping
 
+from rich.text import Text
+
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.roles import described
@@ -55,10 +57,12 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 
 def _print_summary(name: str, summary: Summary, *, verbose: bool) -> None:
-    print(printable(f'{name}: {"; ".join(_parts_of_line(summary))}'))
+    console = Console()
+    line = Text(printable(f'{name}: {"; ".join(_parts_of_line(summary))}'))
+    console.print(line, soft_wrap=not console.is_terminal)
     if verbose:
         table = Table.of_items(_TOPIC, summary.topics, words=('', 'part', 'joints', 'type'))
-        render(Document('gearkin info', (Section(printable(name), (table,)),)), Console())
+        render(Document('gearkin info', (Section(printable(name), (table,)),)), console)
 
 
 def _parts_of_line(summary: Summary) -> Iterator[str]:

@@ -54,8 +54,8 @@ def roses(mechanism: Mechanism, file: ImageFile, trajectory: Trajectory | None =
             if moved is not None:
                 axes.plot(*moved[:, k].T, color=colour, linewidth=1.0)
             axes.set_aspect('equal')
-            axes.set_xlabel('x, mm')
-        plots[0].set_ylabel('y, mm')
+            axes.set_xlabel('x [mm]')
+        plots[0].set_ylabel('y [mm]')
         return file.encode(figure)
 
 
@@ -90,13 +90,15 @@ def slides(
         for column, moved in enumerate(parts):
             x = np.degrees(moved.turns * TURN + moved.angle) if by_angle else moved.time
             _draw_slides(plots[:, column], mechanism, moved, x, band=long and column == 0)
-        label = f'rotor angle, °, at {trajectory.velocity[0]:.4g} rad/s' if by_angle else 'time, s'
+        label = (
+            f'rotor angle [°] at {trajectory.velocity[0]:.4g} rad/s' if by_angle else 'time [s]'
+        )
         for speeds in plots[1]:
             speeds.set_xlabel(label)
             if by_angle:
                 speeds.set_xticks(np.arange(x[0], x[-1] + 1.0, 45.0))
-        plots[0, 0].set_ylabel('slide, mm')
-        plots[1, 0].set_ylabel('sliding speed, mm/s')
+        plots[0, 0].set_ylabel('slide [mm]')
+        plots[1, 0].set_ylabel('sliding speed [mm/s]')
         # One row; else one column per branch; else as many columns as fit the width.
         handles, names = plots[0, -1].get_legend_handles_labels()
         add_legend(figure, handles, names, (len(names), *range(len(mechanism.branches), 0, -1)))
@@ -133,13 +135,13 @@ def output(
     """
     turns, rest = gear.gear_ratio.output_angle(trajectory.turns, trajectory.angle, np)
     values = {
-        'output angle, °': np.degrees(TURN * turns + rest),
-        'output rate, °/s': np.degrees(gear.gear_ratio.output_rate(trajectory.velocity)),
+        'output angle [°]': np.degrees(TURN * turns + rest),
+        'output rate [°/s]': np.degrees(gear.gear_ratio.output_rate(trajectory.velocity)),
     }
     half_width = None
     if calibration:
         correction = trajectory.correction(calibration)
-        deviation = values['deviation, mrad'] = _MRAD * correction.deviation
+        deviation = values['deviation [mrad]'] = _MRAD * correction.deviation
         half_width = _MRAD * correction.half_width
     window = abs(float(gear.gear_ratio)) * _OUTPUT_TURNS
     long = trajectory.travel[-1] > _MANY_WINDOWS * window
@@ -168,7 +170,7 @@ def output(
                 if column == 0:
                     text = f'{100.0 * COVERAGE:g} % interval of the deviation'
                     add_legend(figure, [band], [text])
-            plots[-1, column].set_xlabel('time, s')
+            plots[-1, column].set_xlabel('time [s]')
         return file.encode(figure)
 
 

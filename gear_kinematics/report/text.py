@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import compress
 
 from rich import box
 from rich.columns import Columns
@@ -57,22 +58,29 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
         return
     document = document.in_order()
     several = len(document.sections) > 1
-    for section in document.sections:
-        shortened = brief and bool(section.answer or section.verdict == Verdict.UNUSABLE)
-        if not (several and shortened and section.verdict == Verdict.PASS):  # in the summary
-            _render_section(section, console, brief=shortened)
     if several and document.totals:
         console.print(Text(document.totals, 'bold'))
         console.print()
-    if several and document.summary:
-        console.print(_rows(document.summary, console))
+    unsaid = []  # whether a row of the summary tells more
+    for section in document.sections:
+        shortened = brief and bool(section.answer or section.verdict == Verdict.UNUSABLE)
+        left = several and shortened and section.verdict == Verdict.PASS
+        if not left:
+            _render_section(section, console, brief=shortened)
+        if not section.leads:
+            unsaid.append(left or not shortened)
+    if several and document.summary and any(unsaid):
+        rows = tuple(compress(document.summary.rows, unsaid))
+        console.print(_rows(replace(document.summary, rows=rows), console))
+        console.print()
+    if several and document.totals:
+        console.print(Text(document.totals, 'bold'))
 
 
 def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
     """Yield a row of a table per line, each with the section it belongs to; see `render`."""
-    summary = [f'summary: {document.totals}'] if document.totals else []
-    compared = any(section.leads for section in document.sections)
-    yield from summary if compared else ()
+    if document.totals:
+        yield f'summary: {document.totals}'
     for section in document.in_order().sections:
         name = f'{section.name}: ' if section.name else ''
         findings = [finding.text for finding in section.findings]
@@ -83,7 +91,6 @@ def lines(document: Document, *, brief: bool = False) -> Iterator[str]:
             yield f'{name}verdict: {"; ".join(said)}'
         else:
             yield from section_lines(section, brief=brief)
-    yield from () if compared else summary
 
 
 def section_lines(section: Section, *, brief: bool = False) -> Iterator[str]:

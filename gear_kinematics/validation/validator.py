@@ -138,7 +138,7 @@ class Validator:
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
-            error = 'no outputs in it'
+            error = 'no outputs in it: gearkin compute writes a bag with them'
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
         passed = not any(finding.fails for finding in checked) and all(t.passed for t in topics)
         start = rotor.first_stamp or 0

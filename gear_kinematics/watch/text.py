@@ -113,15 +113,17 @@ def table(view: View, answer: Answer | None = None) -> RenderableType:
     state = (f'{view.state} {view.duration}', _STYLES.get(view.tone, _BAD))
     title = Text.assemble(('gearkin watch ', 'bold'), f'{view.node} ', state)
     grid = RichTable.grid(padding=(0, 2))
+    grid.add_column(no_wrap=True)
     parts: list[RenderableType] = [title, Text(printable(view.message)), grid, Text()]
     for entry in (*view.values, *view.diagnostics):
         name, value, detail = map(printable, (entry.name, entry.value, entry.detail))
         style = _STYLES.get(entry.tone, _BAD)
-        grid.add_row(Text(name, 'dim'), Text(value, style), Text(detail, 'dim'))
+        shown = Text.assemble((f'{value:<12}', style), '  ' * bool(detail), (detail, 'dim'))
+        grid.add_row(Text(name, 'dim'), shown)
     if view.state == 'no node':
         for driver in view.drivers:
-            joints = Text(printable(', '.join(driver.joints)))
-            grid.add_row(Text(driver.topic), joints, Text(f'{driver.rate:.0f} Hz'))
+            joints = printable(', '.join(driver.joints))
+            parts.append(Text(f'{driver.topic}  {joints}  {driver.rate:.0f} Hz'))
         parts.append(Text('gearkin init writes a parameter file for one.'))
     if view.recording:
         parts.append(Text.assemble(('● ', 'red'), f'recording to {view.recording}'))

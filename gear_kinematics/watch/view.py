@@ -103,6 +103,8 @@ def _state_of(gear: GearNode | None, rotor: Latest | None) -> tuple[State, str, 
     output = gear.joint(topics.OUTPUT_STATE)
     if output and _freshness(output):  # the topic of a driver that has ended is gone
         return 'no output' if rotor else 'no input', _duration(output.age), ''
+    if not (output or rotor):
+        return 'no input', '', ''
     return 'connected', '', ''
 
 

@@ -31,8 +31,9 @@ OUT_OF_ORDER = 'out of order'
 CLOCK_RESET = 1_000_000_000
 """ns: a stamp that is older than the last by more is in order; the clock has been set back."""
 
-GREATEST = 1e300
-"""Greatest velocity or effort; beyond, results could be infinite, so it counts as not finite."""
+GREATEST = 1e280
+"""Greatest velocity or effort; beyond, it counts as not finite. A gear ratio multiplies it by up to
+2^53, and the slope of a calibration by up to 1e6, which is less than the greatest float64."""
 _MAX_KEPT = 65_536  # bytes of a message whose layout is kept; drivers send far less
 
 

@@ -23,6 +23,17 @@ def test_a_bag_is_a_line(capsys):
     assert told.err == ''
 
 
+def test_a_terminal_breaks_no_word(capsys):
+    narrow = {**ENVIRONMENT, 'COLUMNS': '40'}
+    with Terminal() as terminal:
+        gearkin('info', 'constant_speed_3000rpm', stdout=terminal.other, env=narrow, cwd=BAGS)
+        shown = terminal.text()
+    assert max(map(len, shown.splitlines())) <= 40
+    assert main(['info', str(CONSTANT)]) == 0
+    told = capsys.readouterr().out
+    assert ' '.join(shown.split()) == told.removeprefix(f'{BAGS}/').strip()
+
+
 def test_every_bag_is_a_line_even_if_others_are_unreadable(tmp_path, monkeypatch, capsys):
     for name in ('driver_faults', 'single_turn_encoder'):
         shutil.copytree(BAGS / name, tmp_path / name)

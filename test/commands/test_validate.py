@@ -80,7 +80,7 @@ def test_the_worst_verdict_of_many_counts_and_failed_bags_come_first(options, ba
         ('garbage.mcap', 'unusable'),
         ('good', 'passed'),
     ]
-    assert done.stdout.endswith('\nsummary: 3 bags: 1 passed, 1 failed, 1 unusable\n')
+    assert done.stdout.startswith('summary: 3 bags: 1 passed, 1 failed, 1 unusable\n')
     assert gearkin('validate', *options, 'wrong', 'good', cwd=bags).returncode == 1
 
 
@@ -191,7 +191,8 @@ def test_every_form_is_written_beside_the_plain_lines(bags, schema, tmp_path):
     options = [word for form, path in files.items() for word in (f'--{form}', path)]
     done = gearkin('validate', 'good', 'wrong', *options, cwd=bags)
     assert (done.returncode, done.stderr) == (1, '')
-    assert done.stdout.startswith('wrong: verdict: failed\n')
+    summary = 'summary: 2 bags: 1 passed, 1 failed, 0 unusable'
+    assert done.stdout.startswith(f'{summary}\nwrong: verdict: failed\n')
     assert sorted(tmp_path.iterdir()) == sorted(files.values())
     schema.validate(json.loads(files['json'].read_text('utf-8')))
     suites = ET.parse(files['junit']).getroot()  # noqa: S314, our own

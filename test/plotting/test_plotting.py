@@ -139,7 +139,7 @@ def test_slides_are_those_of_the_matrix_method(actuator, figures, by_angle):
     expected = matrix_method.solve(actuator, -20.0 * moved.time, -20.0)
     along = np.degrees(-20.0 * moved.time) if by_angle else moved.time
     slides, speeds = figures[0].axes
-    assert speeds.get_xlabel() == ('rotor angle, °, at -20 rad/s' if by_angle else 'time, s')
+    assert speeds.get_xlabel() == ('rotor angle [°] at -20 rad/s' if by_angle else 'time [s]')
     for axes, kinds in (
         (slides, ('satellite_slide', 'arm_slide')),
         (speeds, ('satellite_slide_velocity', 'arm_slide_velocity')),

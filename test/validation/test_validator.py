@@ -96,6 +96,12 @@ def test_shipped_recordings_pass(name, messages, compared):
     assert report.mechanism is None
 
 
+def test_a_bag_without_outputs_is_unusable_and_what_writes_them_is_named(recorded, config):
+    report = validate([m for m in recorded if m[0] == ROTOR], config)
+    assert report.verdict == Verdict.UNUSABLE
+    assert report.error == 'no outputs in it: gearkin compute writes a bag with them'
+
+
 def test_the_input_is_described(config):
     rotor = validate(read_bag(BAGS / 'driver_faults'), config).rotor
     assert rotor.rejected == {

@@ -186,6 +186,8 @@ def test_driver_that_has_stopped_is_no_connection(age, duration):
 def test_driver_whose_topic_is_gone_gives_no_input():
     told = state_of(gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 9.0)}.get), None, [])
     assert (told['state'], told['duration']) == ('no input', '9.0 s')
+    told = state_of(gear_node(joint={}.get), None, [])
+    assert (told['state'], told['duration']) == ('no input', '')
 
 
 def test_status_is_described_with_what_to_do():
@@ -217,11 +219,9 @@ FULL = View(
 )
 
 
-def printed(renderable, **options) -> str:
+def printed(renderable, width: int = 120) -> str:
     stream = io.StringIO()
-    Console(file=stream, width=120, force_terminal=True, color_system=None, **options).print(
-        renderable
-    )
+    Console(file=stream, width=width, force_terminal=True, color_system=None).print(renderable)
     return stream.getvalue()
 
 
@@ -245,6 +245,17 @@ def test_table_shows_values_and_keys_and_without_a_node_the_drivers():
     alone = printed(table(View(drivers=DRIVERS)))
     assert re.search(r'/motor/joint_states +brake, m1 +1000 Hz', alone)
     assert 'gearkin init' in alone
+
+
+def test_narrow_table_cuts_nothing():
+    status = Entry(
+        'transmission error', 'warning: no output_encoder', 'Check that the driver runs.'
+    )
+    value = Entry('transmission error', '-20.105″', 'limit 10′ 18.794″')
+    text = printed(table(View(values=(value,), diagnostics=(status,), drivers=DRIVERS)), width=40)
+    assert '…' not in text
+    for entry in (value, status):
+        assert set(f'{entry.name} {entry.value} {entry.detail}'.split()) <= set(text.split())
 
 
 def test_names_do_not_reach_the_terminal_raw():
