@@ -29,6 +29,7 @@ from gear_kinematics.kinematics import (
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import StateMessages, state_messages
+from gear_kinematics.wire.joint_reader import GREATEST
 
 STAMP = 12_345_678_901
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
@@ -280,3 +281,12 @@ def test_corrected_state_is_the_output_state_and_the_correction(
     assert list(interval.position) == [half_width]
     assert not interval.velocity
     assert not interval.effort
+
+
+@pytest.mark.parametrize('ratio', ['-9007199254740992', '1/9007199254740992'])
+def test_corrected_state_is_finite_for_every_ratio_and_slope(ratio):
+    states = state_messages(replace(PARAMETERS, gear_ratio=ratio))
+    sample = sample_at(1.0, GREATEST, -GREATEST)
+    encoded = dict(states.encode_corrected(sample, Correction(0.1, 1e6, 0.1, 0.0)))
+    corrected = deserialize_message(encoded['corrected_state'], JointState)
+    assert all(map(math.isfinite, [*corrected.velocity, *corrected.effort]))
