@@ -141,7 +141,8 @@ class Reporter:
             figure = document.sections[-1].figure  # of several, the last compares the others
             if not figure:
                 raise ValueError(f'{plot}: there is nothing to plot')
-            write_file(plot, to_image(figure, self._image))
+            image = to_image(figure, self._image)
+            write_file(plot, image)
         for form, target in self._forms.items():
             write_text(target, _FORMS[form](document))
 

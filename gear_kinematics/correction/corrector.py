@@ -7,15 +7,12 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.stops import StopOperators
+from gear_kinematics.correction.stops import Array, StopOperators
 from gear_kinematics.kinematics import RotorPosition, RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.wire.cdr import SECOND
-
-Array = NDArray[Any]
 
 MAX_GAP = SECOND
 """ns between samples beyond which the plays are unknown again, as motion was missed."""

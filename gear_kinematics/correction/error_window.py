@@ -5,14 +5,11 @@ from array import array
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_fit import CalibrationFit
-from gear_kinematics.correction.reversals import Pair, Reversals, separate
+from gear_kinematics.correction.reversals import Array, Pair, Reversals, separate
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
-
-Array = NDArray[np.float64]
 
 _MOST = 2**20
 """Samples that are kept at most: 60 s, the longest window, at 17 kHz."""

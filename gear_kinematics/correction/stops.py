@@ -19,7 +19,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 
 Array = NDArray[Any]
 
-_FAR = 1024  # rotor turns from the reference; angles x stay small, and keep their precision
+_MAX_TURNS = 1024  # rotor turns from the reference; angles x stay small, and keep their precision
 _CHUNK = 4096  # samples, so that the arrays of a chunk fit into the processor's cache
 
 
@@ -93,7 +93,7 @@ class StopOperators:
         start = 0
         while start < len(turns):
             self._count_from(int(turns[start]))
-            near = np.abs(turns[start : start + _CHUNK] - self._reference) <= _FAR
+            near = np.abs(turns[start : start + _CHUNK] - self._reference) <= _MAX_TURNS
             rows = slice(start, start + (len(near) if near.all() else int(np.argmin(near))))
             x = self._output_angle(turns[rows], angle[rows])
             before = np.array([self._least, self._most])[:, np.newaxis]
@@ -113,7 +113,7 @@ class StopOperators:
         """Count the output angle from near here, so that it does not lose precision."""
         if self._reference is None:
             self._reference = turns
-        elif abs(turns - self._reference) > _FAR:
+        elif abs(turns - self._reference) > _MAX_TURNS:
             shift = (turns - self._reference) * TURN * self._per_rotor
             self._least = [play - shift for play in self._least]
             self._most = [play - shift for play in self._most]

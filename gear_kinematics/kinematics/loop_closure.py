@@ -9,10 +9,10 @@ coupling in the arm) and the mesh of satellite and ring gear.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from gear_kinematics.kinematics.mechanism import Mechanism
-from gear_kinematics.kinematics.motion import MotionState, solve
+from gear_kinematics.kinematics.motion import Array, MotionState, solve
 from gear_kinematics.kinematics.transforms import (
     cam_translation,
     output_turn,
@@ -20,8 +20,6 @@ from gear_kinematics.kinematics.transforms import (
     satellite_turn,
     translation,
 )
-
-Array = NDArray[np.float64]
 
 
 def residual(mechanism: Mechanism, rotor_angle: ArrayLike, state: MotionState) -> Array:

@@ -29,7 +29,7 @@ _COARSER = 1.9
 _FITS = 0.15
 """Greatest root mean square distance from multiples of a step, in steps. It is 0.29 without any
 step, and 0.15 where the readings are rounded to half a step."""
-_NEAR = 100.0
+_MAX_STEPS = 100.0
 """Steps between levels that are counted without an error."""
 _CHANCE = 1e-3
 """Greatest probability with which readings that have no step fit one."""
@@ -131,7 +131,7 @@ def _common_divisor(levels: Array, resolution: float) -> float:
         wholes = np.round(gaps / step)
         rest = np.abs(gaps - wholes * step)
         gaps = rest[rest > resolution * (1.0 + wholes)]
-    near = between[(between > 0.5 * step) & (between < _NEAR * step)]
+    near = between[(between > 0.5 * step) & (between < _MAX_STEPS * step)]
     return float(np.sum(near) / np.sum(np.round(near / step))) if len(near) else 0.0
 
 

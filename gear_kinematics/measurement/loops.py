@@ -22,7 +22,7 @@ _MIN_SIGNAL_TO_NOISE = 5.0
 """Of the torque in a half cycle, in standard deviations of the noise."""
 _MIN_SHARE = 0.01
 """Of the largest torque, that a half cycle exceeds."""
-_NEAR = 3.0
+_EQUAL_TORQUES = 3.0
 """Standard deviations of the noise within which two torques count as equal."""
 _SMOOTHED = 0.01
 """Share of a ramp's amplitude to which a moving mean reduces the noise."""
@@ -78,7 +78,7 @@ class HalfLoop:
     def reaches(self, torque: float) -> bool:
         """Whether the half loop includes a torque, within the noise."""
         low, high = sorted((self.start, self.end))
-        near = _NEAR * self.noise
+        near = _EQUAL_TORQUES * self.noise
         return low - near <= torque <= high + near
 
     def at(self, torque: Array | float, values: Array) -> Array:

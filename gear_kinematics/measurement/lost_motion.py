@@ -107,7 +107,7 @@ def measure(
     fitted, found, wrong = None, None, ''
     if request.fit_ratio:
         if not encoders:
-            raise RecordingError('--fit-ratio needs the angles of rotor and output')
+            raise RecordingError('a fit of the ratio needs the angles of rotor and output')
         fitted = fit_ratio(encoders, gear.gear_ratio)
         gear = fitted.ratio if fitted.ratio != gear.gear_ratio else gear
     if encoders:

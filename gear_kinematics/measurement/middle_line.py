@@ -23,7 +23,7 @@ _ANGLES = 400
 """At which a loop is known."""
 _LOADS = 40
 """At which the angle is read for a line through one side."""
-_SIDE, _NEAR, _FAR = (0.1, 0.9), (0.1, 0.35), (0.35, 0.9)
+_SIDE, _LOWER_HALF, _UPPER_HALF = (0.1, 0.9), (0.1, 0.35), (0.35, 0.9)
 """Parts of either side of the curve, as shares of the greatest load: of all of it that friction
 at the reversals leaves, and of its two halves, between which a bent spring differs."""
 _EXTRAPOLATED = 2.0
@@ -194,7 +194,7 @@ def backlash_of(
         return Backlash(0.0, most, Cause.REPEATS)
     side, near, far = (
         np.array([line.dead_band(low * reach, high * reach) for line in lines])
-        for low, high in (_SIDE, _NEAR, _FAR)
+        for low, high in (_SIDE, _LOWER_HALF, _UPPER_HALF)
     )
     stiffness = 1.0 / float(np.mean(side[:, 1]))
     reading = resolution(step) + resolution(_spacing(ramps)) / stiffness

@@ -70,7 +70,7 @@ def grouped(names: Sequence[str], patterns: Sequence[str]) -> tuple[list[Group],
     groups = _by_label([label for label in labels if label])
     if len(groups) < 2:  # noqa: PLR2004, nothing to compare
         only = f'only the group {groups[0].name}' if groups else 'no recording that matches'
-        raise ValueError(f'--group {", ".join(patterns)}: there is {only}')
+        raise ValueError(f'group {", ".join(patterns)}: there is {only}')
     return groups, [number for number, label in enumerate(labels) if not label]
 
 
@@ -84,11 +84,11 @@ def positions_of(names: Sequence[str], pattern: str) -> tuple[list[Group], list[
     Raises:
         ValueError: if the pattern is wrong, or if a name contains no position.
     """
-    position = _expression('--positions', pattern)
+    position = _expression('positions', pattern)
     gears, positions = [], []
     for name in names:
         if not (match := position.search(name)):
-            raise ValueError(f'--positions {pattern}: there is no position in the name {name}')
+            raise ValueError(f'positions {pattern}: there is no position in the name {name}')
         positions.append(match[1])
         gears.append(name[: match.start()].rstrip('_- ') + name[match.end() :])
     return _by_label(gears), positions
@@ -97,7 +97,7 @@ def positions_of(names: Sequence[str], pattern: str) -> tuple[list[Group], list[
 def _label(name: str, pattern: str) -> str | None:
     if '(' not in pattern:
         return pattern if fnmatch.fnmatchcase(name, pattern) else None
-    return match[1] if (match := _expression('--group', pattern).search(name)) else None
+    return match[1] if (match := _expression('group', pattern).search(name)) else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,20 +133,20 @@ def settings_of(
     needed = 'one group in parentheses, or three for pins'
     patterns = [re.compile(own) for own in _SETTINGS]
     if pattern:
-        patterns = [_expression('--preloads', pattern, needed, (1, _PINS))]
+        patterns = [_expression('preloads', pattern, needed, (1, _PINS))]
     matches = [[own.search(name) for name in names] for own in patterns]
     complete = next((found for found in matches if all(found)), None)
     if complete is None:
         without = next(n for n in names if not any(e.search(n) for e in patterns))
-        raise ValueError(f'--preloads: there is no setting in the name {without}')
+        raise ValueError(f'preloads: there is no setting in the name {without}')
     found = [match.groups('') for match in complete if match]
     if bad := next((t for groups in found for t in groups if not _NUMBER.fullmatch(t)), None):
-        raise ValueError(f'--preloads {pattern}: {bad!r} is no setting')
+        raise ValueError(f'preloads {pattern}: {bad!r} is no setting')
     pinned = len(found[0]) == _PINS
     if not pinned and unit is None:
         return [float(text) for (text,) in found], Scale('', 1.0, None)
     if not isinstance(gear, Mechanism):
-        raise ValueError('--preloads: turns of a ring gear need its teeth')  # noqa: TRY004
+        raise ValueError('preloads: turns of a ring gear need its teeth')  # noqa: TRY004
     scale = Scale(unit or 'deg', UNITS[unit or 'deg'], gear.ring_teeth / gear.satellite_teeth)
     if not pinned:
         return [float(text) * scale.size for (text,) in found], scale
@@ -156,9 +156,9 @@ def settings_of(
 
 
 def _expression(
-    option: str, text: str, needed: str = 'one group in parentheses', counts: Sequence[int] = (1,)
+    name: str, text: str, needed: str = 'one group in parentheses', counts: Sequence[int] = (1,)
 ) -> re.Pattern[str]:
-    """Compile the regular expression of an option.
+    """Compile a regular expression, which an error names.
 
     Raises:
         ValueError: if it is none, or if the count of its groups is not among `counts`.
@@ -166,11 +166,9 @@ def _expression(
     try:
         found = re.compile(text)
     except re.error as error:
-        raise ValueError(f'{option} {text}: {error}') from error
+        raise ValueError(f'{name} {text}: {error}') from error
     if found.groups not in counts:
-        raise ValueError(
-            f'{option} {text}: a regular expression needs {needed}, not {found.groups}'
-        )
+        raise ValueError(f'{name} {text}: a regular expression needs {needed}, not {found.groups}')
     return found
 
 

@@ -28,15 +28,15 @@ _CYCLES = 2.0
 """Turns of the rotor from which on its periodic error is fitted."""
 _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
-_FAR = 2.0
+_MAX_DISTANCE = 2.0
 """Expanded uncertainties within which a fraction or a tooth pair may be the true ratio."""
-_WRONG = 3.0
+_MIN_WRONG = 3.0
 """Expanded uncertainties from which on an assumed ratio is wrong."""
 _ECCENTRICITY = 0.01
 """Slope of the error that an eccentricity may have over less than a turn: no more is made."""
 _SHOWN = 10
 """Tooth pairs that are named."""
-_NEAR = 1e-3
+_ROUNDED = 1e-3
 """Expanded uncertainties within which the estimate itself is rounded to a fraction."""
 
 
@@ -70,7 +70,7 @@ class RatioEstimate:
         """The simplest fraction, unless it may be there by coincidence; else the estimate."""
         if self.chance < _BY_CHANCE:
             return GearRatio(self.simplest)
-        return GearRatio(simplest_fraction(*_interval(self.measured, _NEAR)))
+        return GearRatio(simplest_fraction(*_interval(self.measured, _ROUNDED)))
 
 
 def fit_ratio(
@@ -121,7 +121,7 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
 
 
 def _within(measured: Estimate, ratio: Fraction) -> bool:
-    return abs(measured.value - ratio) <= _WRONG * (measured.uncertainty or 0.0)
+    return abs(measured.value - ratio) <= _MIN_WRONG * (measured.uncertainty or 0.0)
 
 
 def _other_ratio(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
@@ -140,7 +140,7 @@ def _other_ratio(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
     steep = _ECCENTRICITY
     if travel * abs(assumed) < TURN:  # an error of the rotor's order may be as steep as that
         steep *= max(1.0, abs(float(assumed)))
-    if abs(slope) <= steep or abs(slope) * travel <= _WRONG * rest:
+    if abs(slope) <= steep or abs(slope) * travel <= _MIN_WRONG * rest:
         return None
     value = float(assumed) / (1.0 + slope)
     standard = abs(value) * _ECCENTRICITY / student_t(_BLOCKS)
@@ -197,7 +197,7 @@ def estimate_ratio(rotor: Array, output: Array, *, eccentric: bool = True) -> Ra
     slope, scatter = fits[0], deviation(pseudo_values(fits).tolist()) / math.sqrt(_BLOCKS)
     rounding = float(np.spacing(max(np.abs(output).max(), abs(slope))))
     standard, freedom = math.hypot(scatter, rounding), _BLOCKS - len(columns)
-    if not _FAR * student_t(freedom) * standard < abs(slope):
+    if not _MAX_DISTANCE * student_t(freedom) * standard < abs(slope):
         raise RecordingError('the output does not follow the rotor: no ratio fits')
     value = travel / slope
     return _with_candidates(Estimate(value, abs(value / slope) * standard, freedom, _BLOCKS))
@@ -205,7 +205,7 @@ def estimate_ratio(rotor: Array, output: Array, *, eccentric: bool = True) -> Ra
 
 def _with_candidates(measured: Estimate) -> RatioEstimate:
     """Find the simple fraction and the tooth pairs that fit a measured ratio."""
-    low, high = _interval(measured, _FAR)
+    low, high = _interval(measured, _MAX_DISTANCE)
     simplest = simplest_fraction(low, high)
     small, width = simplest.denominator, high - low
     if abs(simplest) < 1:  # a gear to a higher speed is judged by the inverse of its ratio

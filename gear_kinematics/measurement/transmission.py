@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 _ANGLES = 200
 """At which two runs over the same range are compared."""
-_LONG = 0.5
+_MIN_SHARE = 0.5
 """Runs of at least this share of the longest one are repeats of it."""
 _MIN_CYCLES = 2.0
 """Of an order in a run."""
@@ -127,7 +127,7 @@ class _Motion:
         """Return the runs in a direction that are repeats of the longest."""
         runs = [run for sign, run in self.runs() if sign == way]
         longest = max((run.turns for run in runs), default=0.0)
-        return [run for run in runs if run.turns >= _LONG * longest]
+        return [run for run in runs if run.turns >= _MIN_SHARE * longest]
 
 
 def bodies(output: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:

@@ -18,7 +18,6 @@ from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, Mecha
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import ConfigError, given_parameters
 from gear_kinematics.parameters.yaml_file import Dumper
-from gear_kinematics.shape.urdf import urdf
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
 
@@ -236,6 +235,8 @@ class NodeParameters:
         Raises:
             ValueError: if there is none, or `output_joint` is empty or the name of another joint.
         """
+        from gear_kinematics.shape.urdf import urdf  # noqa: PLC0415, of few programs
+
         mechanism, module = self.mechanism, self.module
         return urdf(
             mechanism,

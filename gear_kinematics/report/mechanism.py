@@ -6,9 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.shape.outlines import NAMES, Array, bodies
+
+Array = NDArray[np.float64]
 
 _RADIUS = 500.0
 """Radius of the drawing, in units of which no screen shows a tenth."""
@@ -54,6 +56,8 @@ class Drawings:
 
         The module of the teeth is in m.
         """
+        from gear_kinematics.shape.outlines import NAMES, bodies  # noqa: PLC0415, of pages alone
+
         drawn = [bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
         scale = _RADIUS / float(np.max(np.abs(drawn[0]['stator'][0])))
         yield f'<div class="branches" style="--e: {scale * mechanism.eccentricity:.3f}px">\n'

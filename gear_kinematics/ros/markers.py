@@ -13,18 +13,15 @@ from functools import cached_property
 
 import numpy as np
 from geometry_msgs.msg import Point, Pose, Vector3
-from numpy.typing import NDArray
 from rclpy.serialization import serialize_message
 from std_msgs.msg import ColorRGBA, Header
 from visualization_msgs.msg import Marker, MarkerArray
 
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.shape import teeth
-from gear_kinematics.shape.outlines import roses, turned
+from gear_kinematics.shape.outlines import Array, roses, turned
 from gear_kinematics.shape.solids import FACE_WIDTH
 from gear_kinematics.shape.visuals import COLOURS
-
-Array = NDArray[np.float64]
 
 _REPEAT_BANDWIDTH = 5e3  # bytes/s on average
 _OUTLINE_WIDTH = 0.2  # modules

@@ -8,12 +8,11 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.wire.batches import decode_joint_states
+from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST
 from gear_kinematics.wire.joint_reader import (
     CLOCK_RESET,
@@ -28,8 +27,6 @@ from gear_kinematics.wire.joint_reader import (
     JointReader,
     RejectedInputError,
 )
-
-Array = NDArray[Any]
 
 
 class RotorSamples(NamedTuple):

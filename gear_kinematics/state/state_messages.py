@@ -7,7 +7,6 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.correction.corrector import Correction
 from gear_kinematics.correction.transmission_error import ErrorSample
@@ -17,7 +16,7 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.urdf import joint_names
 from gear_kinematics.state.rotor_input import RotorSamples
-from gear_kinematics.wire.batches import encode
+from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import JointStateTemplate, PoseArrayTemplate
 from gear_kinematics.wire.topics import (
     BODY_POSES,
@@ -27,8 +26,6 @@ from gear_kinematics.wire.topics import (
     OUTPUT_STATE,
     STATE_TOPICS,
 )
-
-Array = NDArray[Any]
 
 
 class OutputMessages:

@@ -6,19 +6,16 @@ accepted, until the output has travelled far enough; see `Correction.unknown_his
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.state.rotor_input import RotorSamples
-from gear_kinematics.validation.output_topics import STATE_UNITS, Bounds, JointStateTopic
+from gear_kinematics.validation.output_topics import STATE_UNITS, Array, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
-
-Array = NDArray[Any]
 
 
 class RecomputedCorrection:

@@ -15,11 +15,10 @@ from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_v
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.validation.occurrences import Occurrences
+from gear_kinematics.validation.occurrences import Occurrences, Stamps
 from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
-Stamps = NDArray[np.int64]
 
 _REMEDY = 'validate with the parameters of the recorded node'
 _MAX_TEETH = 1000

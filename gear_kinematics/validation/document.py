@@ -15,7 +15,7 @@ from gear_kinematics.report.document import (
     printable,
 )
 from gear_kinematics.validation.figure import figure, moving
-from gear_kinematics.validation.findings import answer, faults, field_name, findings, told
+from gear_kinematics.validation.findings import answer, described, faults, field_name, findings
 from gear_kinematics.validation.report import BagReport
 from gear_kinematics.validation.tables import bag_name, summary, tables
 
@@ -65,9 +65,9 @@ def _bag(report: BagReport) -> dict[str, Any]:
     for left_out in ('series', 'lanes', 'mechanism', 'module', 'elapsed'):
         del content[left_out]
     content['findings'] = [one.text for one in findings(report) if one.kind == 'finding']
-    content['causes'] = [told(finding, report) for finding in report.causes]
+    content['causes'] = [described(finding, report) for finding in report.causes]
     for topic, written in zip(report.topics, content['topics'], strict=True):
-        written['faults'] = [told(fault, report) for fault in topic.faults]
+        written['faults'] = [described(fault, report) for fault in topic.faults]
         written['passed'] = topic.passed
         for field, values in zip(topic.fields, written['fields'], strict=True):
             values |= {'passed': field.passed, 'budget_used': field.budget_used}
@@ -85,5 +85,5 @@ def _cases(report: BagReport) -> Iterator[Case]:
         yield Case(printable(f'input {report.rotor.topic}'))
     for topic in report.topics:
         for name in (topic.topic, *(field_name(topic, field) for field in topic.fields)):
-            at_fault = (told(one, report) for one in faults(report) if one.topic == name)
+            at_fault = (described(one, report) for one in faults(report) if one.topic == name)
             yield Case(printable(name), tuple(at_fault))

@@ -24,7 +24,7 @@ def findings(report: BagReport) -> list[document.Finding]:
     return damage + [
         document.Finding(
             'finding',
-            printable(f'{found.topic}: ' if found.topic else '') + told(found, report),
+            printable(f'{found.topic}: ' if found.topic else '') + described(found, report),
             None if found.stamp is None else report.seconds(found.stamp),
         )
         for found in (*wrong, *notes, *_left_out(report))
@@ -36,7 +36,7 @@ def explain(report: BagReport) -> str:
     return '\n'.join(found.text for found in findings(report))
 
 
-def told(found: Finding, report: BagReport) -> str:
+def described(found: Finding, report: BagReport) -> str:
     """Write a finding with its moment, without its topic."""
     if found.stamp is None or not found.when:
         return printable(found.text)

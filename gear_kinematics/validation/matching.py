@@ -7,14 +7,13 @@ message is looked up only where a run ends. Memory is bounded by a window of sam
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.kinematics import Gear, MotionState
 from gear_kinematics.report.document import counted
-from gear_kinematics.validation.fields import FieldErrors, FieldSamples, SeriesRecorder
+from gear_kinematics.validation.fields import Array, FieldErrors, FieldSamples, SeriesRecorder
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
@@ -23,7 +22,6 @@ from gear_kinematics.validation.unseen_turns import UnseenTurns
 from gear_kinematics.wire.cdr import Layout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
-Array = NDArray[Any]
 Solver = Callable[..., MotionState]
 
 WINDOW = 16_384

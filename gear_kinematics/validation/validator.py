@@ -5,10 +5,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.bag import Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
@@ -38,8 +36,6 @@ from gear_kinematics.validation.report import BagReport, Finding, Lane
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.unseen_turns import UnseenTurns
 from gear_kinematics.wire.cdr import MalformedMessageError
-
-Array = NDArray[Any]
 
 _FRAME = 'stator'
 _TOPICS = Topics()

@@ -48,7 +48,7 @@ def test_pins_turn_the_ring_gear(actuator, pattern):
     [
         (['preload_1.csv', 'other.csv'], '', 'no setting in the name other.csv'),
         (['a1.csv'], r'a\d', 'one group in parentheses, or three for pins, not 0'),
-        (['a1.csv'], '(', r'--preloads \(: '),
+        (['a1.csv'], '(', r'preloads \(: '),
         (['abc.csv'], '(b)', "'b' is no setting"),
         (['pins_80_0_0.csv'], '', '80'),
     ],

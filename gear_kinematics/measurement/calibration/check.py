@@ -19,7 +19,7 @@ from gear_kinematics.wire.cdr import SECOND
 
 _BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left
-_OFTEN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
+_PER_TURN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
 _MOST = 0.5  # share of the variance that makes an order what is left of the error
 _VARIES = 0.05  # scatter of the speed over the greatest one that tells a delay from a zero
 
@@ -104,7 +104,7 @@ def left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
     """What is left of the error if it is mostly one order: its amplitude, rad, and how often."""
     found = [(_MOST * np.var(left), 0.0, '')]
     for body, angle in (('output', samples.output), ('rotor', TURN * samples.rotor_turns)):
-        for multiple, often in enumerate(_OFTEN, start=1):
+        for multiple, often in enumerate(_PER_TURN, start=1):
             phase = multiple * angle
             if np.ptp(phase) >= TURN:
                 design = np.stack([np.ones(len(phase)), np.cos(phase), np.sin(phase)], axis=1)

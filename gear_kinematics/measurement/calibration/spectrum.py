@@ -15,7 +15,7 @@ from gear_kinematics.measurement.recording import Array
 _HIGHEST = 256.0  # cycles per turn of the rotor that are looked for
 _BINS = 4.0  # bins of the rotor's angle in the shortest cycle
 _LARGEST = 2**22  # bins in all
-_NEAR = 0.25  # share of the resolution within which an order counts as a multiple
+_MULTIPLE = 0.25  # share of the resolution within which an order counts as a multiple
 _LARGEST_DENOMINATOR = 64
 _NEIGHBOURS = 64  # orders whose median is taken as noise
 _FALSE = 0.01  # probability that noise looks like an order
@@ -101,7 +101,7 @@ def as_fraction(cycles: float, resolution: float, output: Fraction) -> Fraction:
     Multiples of the rotor come first, then those of the output, then simple fractions; all are in
     cycles per turn of the rotor.
     """
-    near = _NEAR * resolution
+    near = _MULTIPLE * resolution
     for unit in (Fraction(1), output, Fraction(1, output.denominator)):
         multiple = round(cycles / unit) * unit
         if multiple > 0 and abs(float(multiple) - cycles) <= near:

@@ -99,7 +99,7 @@ def over_time(reports: Sequence[LostMotion], times: Sequence[float], source: str
     names = [group.name for group in named]
     found = judged([best for q in common.quantities if (best := trend(q, times, names))])
     if not found:
-        raise ValueError(f'--trend needs {FEWEST} recordings with the same figures')
+        raise ValueError(f'a trend needs {FEWEST} recordings with the same figures')
 
     def since(change: Change) -> str:
         slope = (change.first, change.second) == (names[0], names[-1])

@@ -49,7 +49,7 @@ def over_preload(
             break
     else:
         fewest = f'{FEWEST} settings, not at {count}'
-        raise ValueError(f'--preloads needs ramps of about one amplitude at {fewest}')
+        raise ValueError(f'preloads: there must be ramps of about one amplitude at {fewest}')
     advice = advise(readings, scale.play, load)
     sentence = _fall(advice, name, scale)
     if load and advice.least:
