@@ -55,7 +55,9 @@ def answer(report: BagReport) -> str:
         return text
     error, unit = worst.max_error, printable(f' {worst.unit}')
     largest = f'largest error {number(error)}{unit if error else ""}'
-    return f'{text}, {largest} (tolerance {number(worst.tolerance)}{unit if error else ""})'
+    text = f'{text}, {largest} (tolerance {number(worst.tolerance)}{unit if error else ""})'
+    wild = sum(field.non_finite for topic in report.topics for field in topic.fields)
+    return f'{text}, {counted(wild, "value")} not finite' if wild else text
 
 
 def worst_field(report: BagReport) -> FieldReport | None:

@@ -12,7 +12,7 @@ from rich.console import Console
 from gear_kinematics.report.document import Verdict, number
 from gear_kinematics.report.text import lines, render
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.findings import faults, field_name, findings
+from gear_kinematics.validation.findings import answer, faults, field_name, findings
 
 ESCAPES = re.compile(r'\x1b\[[0-9;]*m')
 
@@ -89,7 +89,7 @@ def test_a_brief_report_is_verdict_findings_and_one_line_of_numbers():
         *(f'{failing.bag}: finding: {finding.text}' for finding in findings(failing)),
         (
             f'{failing.bag}: result: 4008 inputs, 3997 outputs compared, largest error 0.002 rad '
-            '(tolerance 1e-9 rad)'
+            '(tolerance 1e-9 rad), 5 values not finite'
         ),
         f'{unusable.bag}: verdict: unusable',
         f'{unusable.bag}: error: {unusable.error}',
@@ -199,6 +199,10 @@ def test_not_a_number_is_the_worst_of_all():
     (row,) = document([replace(samples.NOT_FINITE, topics=(topic,))]).summary.rows
     assert [cell.text for cell in row][:4] == ['logs/nan', 'failed', '4000', 'nan']
     assert any(fault.topic == '/output_state effort' for fault in faults(samples.NOT_FINITE))
+
+
+def test_values_that_are_no_numbers_are_counted_beside_the_largest_error():
+    assert answer(samples.NOT_FINITE).endswith(', 4000 values not finite')
 
 
 def test_worst_verdict_counts():
