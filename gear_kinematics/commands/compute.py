@@ -5,7 +5,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.bag import Bag, BagError, TopicError
+from gear_kinematics.bag import Bag, BagError, DamagedBagError, TopicError
 from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
@@ -65,6 +65,8 @@ def run(options: argparse.Namespace) -> ExitCode:
             result = write(config)
         except TopicError as error:
             raise TopicError(f'{error}; --topics says which topics to copy') from error
+        except DamagedBagError:
+            raise
         except BagError:
             joint = only_joint(bag, rotor, config.rotor_joint)
             if options.joint is not None or joint == config.rotor_joint:
