@@ -56,10 +56,9 @@ def animate(
     *,
     fps: int,
     width: int,
-    branch: int = 0,
     progress: Callable[[int], None] = lambda _: None,
 ) -> bytes:
-    """Animate a branch, and its magnified centres with the rose of O4.
+    """Animate the first branch, and its magnified centres with the rose of O4.
 
     Args:
         mechanism: the mechanism.
@@ -68,7 +67,6 @@ def animate(
         frames: rotor positions to draw.
         fps: frames per second; a GIF rounds their duration to hundredths of a second.
         width: px; the height is two thirds of it.
-        branch: index of the branch.
         progress: called with the number of each frame.
 
     Raises:
@@ -85,14 +83,13 @@ def animate(
 
     with canvas((_WIDTH, _HEIGHT * _WIDTH)) as figure:
         figure.set_dpi(width / _WIDTH)
-        return write(figure, _moving(figure, mechanism, module, branch, frames, progress), fps)
+        return write(figure, _moving(figure, mechanism, module, frames, progress), fps)
 
 
 def _moving(
     figure: Any,
     mechanism: Mechanism,
     module: float,
-    branch: int,
     frames: Trajectory,
     progress: Callable[[int], None],
 ) -> Iterator[None]:
@@ -100,7 +97,7 @@ def _moving(
     figure.set_layout_engine('none')
     left = figure.add_axes((0.0, 0.0, _HEIGHT, 1.0))
     right = figure.add_axes((0.725, 0.385, 0.225, 0.225 / _HEIGHT))
-    x, y = rose(mechanism)[:, branch].T / mechanism.eccentricity
+    x, y = rose(mechanism)[:, 0].T / mechanism.eccentricity
     right.plot(x, y, color=FAINT, linewidth=0.3)
     middle = 0.5 * (1.0 + _HEIGHT)
     style = {'va': 'center', 'color': INK, 'fontsize': 7}
@@ -112,11 +109,11 @@ def _moving(
     ):
         figure.text(middle, height, text, ha='center', **style)
     moments = [figure.text(0.735, height, '', **style) for height in (0.88, 0.82, 0.76)]
-    bodies = Bodies(left, mechanism, module, branch)
+    bodies = Bodies(left, mechanism, module, 0)
     names = [NAMES[body] for body in bodies.patches]
     handles = list(bodies.patches.values())
     figure.legend(handles, names, loc=(0.72, 0.02), fontsize=7, handlelength=0.8)
-    artists = bodies, Centres(right, mechanism, branch)
+    artists = bodies, Centres(right, mechanism, 0)
     output = frames.state(mechanism).output_angle
     for number, (time, turns, angle, turned) in enumerate(
         zip(frames.time, frames.turns, frames.angle, output, strict=True), start=1
