@@ -90,7 +90,7 @@ def _files(options: argparse.Namespace, config: NodeParameters) -> dict[str, byt
     files = {}
     if calibration := bags.calibration_path(options, config, options.bag):
         files[bags.CALIBRATION] = calibration.read_bytes()
-    used = replace(config, calibration=bags.CALIBRATION if calibration else '')
+    used = replace(config, calibration=bags.CALIBRATION if calibration else '', home_file='')
     return {default_config().name: used.as_file().encode(), **files}
 
 

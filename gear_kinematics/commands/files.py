@@ -4,7 +4,6 @@
 import argparse
 import errno
 import os
-import stat
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from gear_kinematics.bag.finding import is_recording
 from gear_kinematics.commands.arguments import group
 from gear_kinematics.commands.output import closed_pipe_ignored
 from gear_kinematics.correction.calibration_file import is_calibration
+from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.report.mark import is_report
 
 _INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check', 'measured')
@@ -101,21 +101,11 @@ def write_file(target: str, content: bytes) -> None:
     Raises:
         ValueError: if the file cannot be written, naming it.
     """
-    given = Path(target)
-    path = given.resolve()
-    unfinished = path.with_name(f'.gearkin.{os.getpid()}.tmp')  # never too long a name
+    path = Path(target)
     try:
-        if given.exists() and not given.is_file():  # such as a pipe, which must not be replaced
-            given.write_bytes(content)
-            return
-        file = unfinished.open('xb')  # follows no existing link
-        try:
-            with file:
-                if path.exists():
-                    os.fchmod(file.fileno(), stat.S_IMODE(path.stat().st_mode))
-                file.write(content)
-            unfinished.replace(path)
-        finally:
-            unfinished.unlink(missing_ok=True)
+        if path.exists() and not path.is_file():  # such as a pipe, which must not be replaced
+            path.write_bytes(content)
+        else:
+            replace_file(path, content)
     except OSError as error:
         raise ValueError(f'{target}: {error.strerror}') from error

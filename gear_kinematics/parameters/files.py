@@ -12,6 +12,9 @@ from gear_kinematics.wire.nearest import nearest
 _NODE_PATTERN = re.compile(r'(/(\*\*?|[A-Za-z_]\w*))+', re.ASCII)
 """A node's name in a parameter file, as in rcl; `*` is any token, `**` any number of tokens."""
 
+FILES = 'calibration', 'home_file'
+"""Parameters that name files, relative to the parameter file."""
+
 
 class ConfigError(ValueError):
     """A parameter file that cannot be used; the text names the file and the cause."""
@@ -28,20 +31,21 @@ def require_any(paths: Collection[Path], node: str) -> dict[str, Path]:
     raise ConfigError.
 
     Returns:
-        The paths of calibrations by the values of the parameter in the files, to which relative
-        ones are relative.
+        The paths of calibrations and home files by the values of the parameters in the files, to
+        which relative ones are relative.
     """
     useless = []
-    calibrations: dict[str, Path] = {}
+    files: dict[str, Path] = {}
     for path in paths:
         try:
-            if value := given_parameters(path, node).get('calibration'):
-                calibrations.setdefault(str(value), path.parent / str(value))
+            given = given_parameters(path, node)
+            for value in filter(None, map(given.get, FILES)):
+                files.setdefault(str(value), path.parent / str(value))
         except _OtherNodesError as error:
             useless.append(str(error))
     if paths and len(useless) == len(paths):
         raise ConfigError('; '.join(useless))
-    return calibrations
+    return files
 
 
 def given_parameters(path: Path, node: str) -> dict[str, Any]:

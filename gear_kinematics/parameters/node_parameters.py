@@ -16,7 +16,7 @@ import yaml
 
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
 from gear_kinematics.parameters import meshes
-from gear_kinematics.parameters.files import ConfigError, given_parameters
+from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
@@ -137,6 +137,14 @@ class NodeParameters:
         "Path of a calibration file, from which corrected_state is computed; '' takes none"
     )
     home_angle: float = _parameter('Output angle that ~/home sets, rad', -1e9, 1e9)
+    home_max_speed: float = _parameter(
+        'Speed of the output above which ~/home is refused, rad/s', 0.0, 1e6
+    )
+    home_file: str = _parameter(
+        'Path of the file that keeps rotor_zero when ~/home or a change sets it, and from which '
+        "it is restored at the start; '': none",
+        read_only=True,
+    )
     frame_prefix: str = _parameter('Prefix of every frame id and joint name')
     markers_rate: float = _parameter(
         'Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True
@@ -157,7 +165,7 @@ class NodeParameters:
     def load(cls, path: Path | None = None, node: str = NODE) -> Self:
         """Read a node's parameters from a file as the node would; others have their defaults.
 
-        A relative path of a calibration is relative to the file.
+        A relative path in it is relative to the file.
 
         Args:
             path: a parameter file of ROS: blocks of parameters below names of nodes. None: the
@@ -177,8 +185,7 @@ class NodeParameters:
             faults += unknown_parameters(given, branches)
         if faults:
             raise ConfigError(f'{path}: {"; ".join(faults)}')
-        if calibration := given.get('calibration'):
-            given['calibration'] = str(path.parent / calibration)
+        given |= {name: str(path.parent / given[name]) for name in FILES if given.get(name)}
         return cls.of(given)
 
     @classmethod

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The node gear_state_publisher: parameters, topics, homing and diagnostics; no mathematics."""
+"""The node gear_state_publisher: parameters, topics and diagnostics; no mathematics."""
 
 import time
 import traceback
@@ -18,7 +18,6 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
 from sensor_msgs.msg import JointState
-from std_srvs.srv import Trigger
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
@@ -30,6 +29,7 @@ from gear_kinematics.parameters.node_parameters import branch_parameters, unknow
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
+from gear_kinematics.ros.homing import Homing
 from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
@@ -54,10 +54,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         Raises:
             ParameterException: if a parameter is refused.
             ValueError: if the parameters describe no gear, one is unknown, the files have none
-                for this node, or the calibration cannot be used.
+                for this node, or the calibration or the home file cannot be used.
         """
         super().__init__(NODE, **options)
-        self._calibrations = require_any(parameter_files, self.get_fully_qualified_name())
+        self._files = require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
         declare(self, PARAMETERS)
         branches = self.get_parameter('branches').value
@@ -67,7 +67,9 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         if faults := unknown_parameters(given, branches):
             raise ValueError('; '.join(faults))
         values = {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
-        self._settings = parameters = NodeParameters.of(values)
+        parameters = NodeParameters.of(values)
+        self._homing = Homing(self, self._file(parameters.home_file))
+        self._settings = parameters = self._homing.restored(parameters)
         self._gear = parameters.gear
         self._input = RotorInput(parameters)
         self._encoder = OutputEncoder(parameters)
@@ -93,7 +95,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._display = Display(self, parameters, self._outputs)
             self._display.update(parameters)
         self.add_post_set_parameters_callback(self._configure)
-        self.create_service(Trigger, '~/home', self._home)
+        self._homing.serve(self._input, self._monitor)
         # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)
@@ -163,12 +165,14 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _corrector_of(self, value: str) -> Corrector | None:
         """Load the calibration that a value of the parameter names, if any."""
-        if not value:
-            return None
-        path = self._calibrations.get(value, Path(value))
-        return Corrector(Calibration.load(path, self._gear))
+        path = self._file(value)
+        return Corrector(Calibration.load(path, self._gear)) if path else None
 
-    def _configure(self, _changed: Collection[Parameter] = ()) -> None:
+    def _file(self, value: str) -> Path | None:
+        """Return the file that a value of a parameter names, if any."""
+        return self._files.get(value, Path(value)) if value else None
+
+    def _configure(self, changed: Collection[Parameter] = ()) -> None:
         """Apply what was prepared, at the start and after every change."""
         before = self._corrector
         self._settings, self._messages, self._corrector = self._prepared
@@ -183,6 +187,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._corrector.max_acceleration = self._settings.max_rotor_acceleration
         if self._display:
             self._display.update(self._settings)
+        if any(parameter.name == 'rotor_zero' for parameter in changed):
+            self._homing.keep()
 
     def _on_rotor_state(self, data: bytes) -> None:
         self._monitor.last_input = time.monotonic()
@@ -191,6 +197,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
+        self._monitor.last_valid = self._monitor.last_input
         self._outputs.send(self._messages.encode(sample, self._subscribed_states))
         correction = None
         if self._corrector:  # also without a listener, to follow the motion
@@ -235,23 +242,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
     def wait_for_delivery(self, timeout: float) -> None:
         """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
         self._outputs.wait_for_delivery(timeout)
-
-    def _home(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        home_angle = self._settings.home_angle
-        rotor_angle = self._gear.gear_ratio.rotor_angle(home_angle)
-        try:
-            zero = self._input.zero_for(rotor_angle)
-        except RuntimeError:
-            response.message = f'there was no valid {topics.ROTOR_STATE} yet'
-            return response
-        result = self.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
-        response.success = result.successful
-        if result.successful:
-            self._input.home(rotor_angle)
-        response.message = (
-            result.reason or f'output shaft at {home_angle} rad: rotor_zero is {zero} rad'
-        )
-        return response
 
     def _report(self) -> None:
         for driver in self._drivers:

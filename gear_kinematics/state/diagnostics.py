@@ -102,6 +102,10 @@ class InputMonitor(DriverMonitor):
     published: int = 0
     unsent: int = 0
     """Messages that the middleware failed to send."""
+    last_valid: float | None = None
+    """Time of the last message that was not rejected."""
+    zero_kept: str = ''
+    """Where `rotor_zero` is kept until the next start, or why it is not."""
     graph: GraphFaults = field(default_factory=GraphFaults)
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
@@ -147,6 +151,8 @@ class InputMonitor(DriverMonitor):
             'clock resets': str(rotor_input.resets),
             'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
             'referenced': str(rotor_input.referenced).lower(),
+            'rotor zero (rad)': f'{rotor_input.parameters.rotor_zero:.9g}',
+            'home file': self.zero_kept,
             'loop-closure residual (m)': _residual(rotor_input),
         }
         return self._report(errors, warnings, values)

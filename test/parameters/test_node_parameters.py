@@ -36,6 +36,8 @@ CONTRACT = {
     'rotor_direction': 1,
     'rotor_zero': 0.0,
     'home_angle': 0.0,
+    'home_max_speed': 0.05,
+    'home_file': '',
     'rotor_encoder': 'multi_turn',
     'max_rotor_speed': 650.0,
     'input_timeout': 1.0,
@@ -125,6 +127,7 @@ REFUSED = [
     ('rotor_encoder', 'absolute', ('multi_turn', 'single_turn')),
     ('max_rotor_speed', 0.0, ('0.001', '1000000.0')),
     ('home_angle', 1e10, ('-1000000000.0', '1000000000.0')),
+    ('home_max_speed', -0.01, ('0.0', '1000000.0')),
     ('a.cam_phase', 7.0, ('-6.28', '6.28')),
     ('b.axial_position', math.nan, ('-10.0', '10.0')),
 ]

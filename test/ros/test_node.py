@@ -43,7 +43,7 @@ TYPES = dict(zip(STATES, (JointState, PoseArray, JointState), strict=True))
 READ_ONLY = {
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
-    'meshes', 'executor',
+    'meshes', 'executor', 'home_file',
 }  # fmt: skip
 
 
@@ -415,7 +415,7 @@ def test_unexpected_error_in_a_change_refuses_it_and_is_logged(node, monkeypatch
 def test_home_that_is_refused_changes_nothing(make):
     node = make('refused_home', rotor_encoder='single_turn', home_angle=1e9, gear_ratio='2000000')
     node._on_rotor_state(rotor_bytes(1, position=[1.0]))
-    response = node._home(None, Trigger.Response())
+    response = node._homing.answer(None, Trigger.Response())
     assert not response.success
     assert 'rotor_zero' in response.message
     assert not node._input.referenced
@@ -487,7 +487,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeyp
     node._subscribed_states = ['output_state']
     node._subscribed_corrections = ['corrected_state']
     node._on_rotor_state(rotor_bytes(1, position=[1457.0]))
-    assert node._home(None, SimpleNamespace()).success
+    assert node._homing.answer(None, SimpleNamespace()).success
     node._on_rotor_state(rotor_bytes(2, position=[1457.0]))
     positions = [deserialize_message(data, JointState).position[0] for _, data in published]
     error = AMPLITUDE * math.cos(1457.0)
@@ -524,7 +524,7 @@ def test_nothing_is_compared_before_there_is_an_encoder_or_a_reference(make, mon
     node._on_output_encoder(rotor_bytes(1, position=[1.0]))
     node._on_rotor_state(rotor_bytes(2, position=[1.0]))
     assert not followed
-    assert node._home(None, SimpleNamespace()).success
+    assert node._homing.answer(None, SimpleNamespace()).success
     node._on_rotor_state(rotor_bytes(3, position=[1.0]))  # homing has reset the comparison
     node._on_output_encoder(rotor_bytes(3, position=[1.0]))
     node._on_rotor_state(rotor_bytes(4, position=[1.0]))

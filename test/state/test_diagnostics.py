@@ -188,6 +188,8 @@ def test_values_count_what_happened(bench):
         'clock resets': '1',
         'age of last input (s)': '0.250',
         'referenced': 'true',
+        'rotor zero (rad)': '0',
+        'home file': '',
         'loop-closure residual (m)': values['loop-closure residual (m)'],
         'advice': 'docs/diagnostics.md explains why messages are rejected.',
     }

@@ -1,0 +1,84 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The home file: the zero that the node keeps until its next start."""
+
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+from gear_kinematics.parameters.node_parameters import PARAMETERS, NodeParameters
+from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
+
+SCHEMA = 'gear_kinematics/home/1'
+"""Identifies the files and their version."""
+_DATE = '%Y-%m-%d %H:%M UTC'
+_KEPT = 'rotor_zero', 'home_angle'
+_LONGEST_CAUSE = 1000  # characters; a value in it may be as long as the file
+
+
+class HomeFileError(ValueError):
+    """A home file that cannot be used; the text names it and the cause."""
+
+
+class Home(NamedTuple):
+    """What a home file says."""
+
+    rotor_zero: float
+    """rad."""
+    homed: str
+    """When this was set."""
+
+
+def home_text(parameters: NodeParameters) -> str:
+    """Return the content of the file for the zero that is set now."""
+    kept = {name: getattr(parameters, name) for name in _KEPT}
+    homed = f'{datetime.now(UTC):{_DATE}}'
+    document = {'schema': SCHEMA, 'homed': homed, **_gear(parameters), **kept}
+    return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
+
+
+def read_home(path: Path, parameters: NodeParameters) -> Home | None:
+    """Read a file, of at most 256 KiB; None if there is none.
+
+    Raises:
+        HomeFileError: if it cannot be used, or its zero is of another gear than that of the
+            parameters, of another joint or of another kind of encoder.
+    """
+    try:
+        document = read_yaml(path, HomeFileError)
+    except HomeFileError as error:
+        if isinstance(error.__cause__, FileNotFoundError):
+            return None
+        raise
+    try:
+        return _home(document, _gear(parameters))
+    except ValueError as error:
+        raise HomeFileError(f'{path}: {str(error)[:_LONGEST_CAUSE]}') from error
+
+
+def _gear(parameters: NodeParameters) -> dict[str, Any]:
+    """What the zero depends on, by names of parameters."""
+    return {
+        'gear_ratio': str(parameters.gear.gear_ratio),
+        'rotor_joint': parameters.rotor_joint,
+        'rotor_direction': parameters.rotor_direction,
+        'rotor_encoder': parameters.rotor_encoder,
+    }
+
+
+def _home(document: Any, gear: dict[str, Any]) -> Home:
+    names = 'schema', 'homed', *gear, *_KEPT
+    if not isinstance(document, dict) or document.get('schema') != SCHEMA:
+        raise ValueError(f'no home file: its `schema` is not {SCHEMA}')
+    if document.keys() != set(names):
+        raise ValueError(f'no home file: it must have {", ".join(names)}')
+    for name, value in gear.items():
+        if document[name] != value:
+            raise ValueError(f'homed with {name} {document[name]!r}, not with {value!r}')
+    for name in _KEPT:
+        if fault := PARAMETERS[name].fault(name, document[name]):
+            raise ValueError(fault)
+    homed = str(document['homed'])
+    datetime.strptime(homed, _DATE).replace(tzinfo=UTC)  # raises ValueError for anything else
+    return Home(document['rotor_zero'], homed)

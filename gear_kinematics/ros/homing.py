@@ -1,0 +1,107 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The service ~/home, and the zero that is kept in the home file."""
+
+import math
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.atomic_file import replace_file
+from gear_kinematics.parameters.home_file import home_text, read_home
+from gear_kinematics.state.diagnostics import InputMonitor
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.wire import topics
+
+
+class Homing:
+    """Sets the zero of a node on request, keeps it, and restores it at the start."""
+
+    def __init__(self, node: Node, path: Path | None) -> None:
+        """Take the path of the home file, if there is to be one."""
+        self._node = node
+        self._path = path and path.absolute()
+        self._kept = f'not kept: {"not homed yet" if path else "set home_file"}'
+
+    def restored(self, parameters: NodeParameters) -> NodeParameters:
+        """Return the parameters with the zero of the home file, if there is one, and set it.
+
+        Raises:
+            HomeFileError: if the file cannot be used.
+        """
+        if not self._path or not (home := read_home(self._path, parameters)):
+            return parameters
+        self._node.set_parameters([Parameter('rotor_zero', value=home.rotor_zero)])
+        given, self._kept = parameters.rotor_zero, f'kept in {self._path}'
+        instead = '' if given == home.rotor_zero else f'; the parameter was {given} rad'
+        self._node.get_logger().info(
+            f'rotor_zero {home.rotor_zero:.3f} rad restored from {self._path}, '
+            f'homed {home.homed}{instead}'
+        )
+        return replace(parameters, rotor_zero=home.rotor_zero)
+
+    def serve(self, rotor_input: RotorInput, monitor: InputMonitor) -> None:
+        """Open the service."""
+        self._input, self._monitor = rotor_input, monitor
+        monitor.zero_kept = self._kept
+        self._node.create_service(Trigger, '~/home', self.answer)
+
+    def keep(self) -> None:
+        """Write the zero that was set to the home file."""
+        if not self._path:
+            return
+        try:
+            replace_file(self._path, home_text(self._input.parameters).encode())
+            self._monitor.zero_kept = f'kept in {self._path}'
+        except OSError as error:  # the zero holds until the node ends
+            self._monitor.zero_kept = f'not kept: {self._path}: {error.strerror}'
+            self._node.get_logger().error(f'rotor_zero is {self._monitor.zero_kept}')
+
+    def answer(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Declare that the output shaft is at `home_angle` now, or tell why not."""
+        parameters = self._input.parameters
+        ratio = parameters.gear.gear_ratio
+        rotor_angle = ratio.rotor_angle(parameters.home_angle)
+        try:
+            zero = self._input.zero_for(rotor_angle)
+        except RuntimeError:
+            response.message = f'there was no valid {topics.ROTOR_STATE} yet'
+            return response
+        if refusal := self._refusal(parameters):
+            response.message = refusal
+            return response
+        whole, rest = ratio.output_angle(*self._input.position, math)
+        before = 360.0 * whole + math.degrees(rest)
+        result = self._node.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
+        response.success, response.message = result.successful, result.reason
+        if result.successful:
+            self._input.home(rotor_angle)
+            response.message = (
+                f'the shaft was at {_degrees(before)} and is now '
+                f'{_degrees(math.degrees(parameters.home_angle))} '
+                f'(rotor_zero {zero:.3f} rad, {self._monitor.zero_kept})'
+            )
+        return response
+
+    def _refusal(self, parameters: NodeParameters) -> str:
+        """Why the output shaft is not known to be where it is said to be; '' if it is."""
+        age = time.monotonic() - (self._monitor.last_valid or 0.0)
+        if age > parameters.input_timeout:
+            last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+            return f'{last}: where the shaft is now is not known'
+        # Of a single message without a velocity, no speed is known, nor that the shaft turns.
+        speed = abs(parameters.gear.gear_ratio.output_rate(self._input.speed or 0.0))
+        if speed <= parameters.home_max_speed:
+            return ''
+        return (
+            f'the shaft turns at {speed:.3g} rad/s; home_max_speed is '
+            f'{parameters.home_max_speed:g} rad/s'
+        )
+
+
+def _degrees(angle: float) -> str:
+    return f'{round(angle, 1) + 0.0:.1f}°'  # no -0.0
