@@ -3,7 +3,7 @@
 
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import yaml
 
@@ -21,25 +21,17 @@ class HomeFileError(ValueError):
     """A home file that cannot be used; the text names it and the cause."""
 
 
-class Home(NamedTuple):
-    """What a home file says."""
-
-    rotor_zero: float
-    """rad."""
-    homed: str
-    """When this was set."""
-
-
 def home_text(parameters: NodeParameters) -> str:
     """Return the content of the file for the zero that is set now."""
     kept = {name: getattr(parameters, name) for name in _KEPT}
-    homed = f'{datetime.now(UTC):{_DATE}}'
-    document = {'schema': SCHEMA, 'homed': homed, **_gear(parameters), **kept}
-    return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
+    document = {'schema': SCHEMA, 'homed': f'{datetime.now(UTC):{_DATE}}', **_gear(parameters)}
+    return str(yaml.dump(document | kept, Dumper=Dumper, sort_keys=False))
 
 
-def read_home(path: Path, parameters: NodeParameters) -> Home | None:
-    """Read a file, of at most 256 KiB; None if there is none.
+def read_home(path: Path, parameters: NodeParameters) -> tuple[float, str] | None:
+    """Read `rotor_zero`, rad, from a file of at most 256 KiB, and when it was set.
+
+    None if there is no file.
 
     Raises:
         HomeFileError: if it cannot be used, or its zero is of another gear than that of the
@@ -47,27 +39,23 @@ def read_home(path: Path, parameters: NodeParameters) -> Home | None:
     """
     try:
         document = read_yaml(path, HomeFileError)
+        return _check(document, _gear(parameters))
     except HomeFileError as error:
         if isinstance(error.__cause__, FileNotFoundError):
             return None
         raise
-    try:
-        return _home(document, _gear(parameters))
     except ValueError as error:
         raise HomeFileError(f'{path}: {str(error)[:_LONGEST_CAUSE]}') from error
 
 
 def _gear(parameters: NodeParameters) -> dict[str, Any]:
     """What the zero depends on, by names of parameters."""
-    return {
-        'gear_ratio': str(parameters.gear.gear_ratio),
-        'rotor_joint': parameters.rotor_joint,
-        'rotor_direction': parameters.rotor_direction,
-        'rotor_encoder': parameters.rotor_encoder,
-    }
+    names = 'rotor_joint', 'rotor_direction', 'rotor_encoder'
+    own = {name: getattr(parameters, name) for name in names}
+    return {'gear_ratio': str(parameters.gear.gear_ratio), **own}
 
 
-def _home(document: Any, gear: dict[str, Any]) -> Home:
+def _check(document: Any, gear: dict[str, Any]) -> tuple[float, str]:
     names = 'schema', 'homed', *gear, *_KEPT
     if not isinstance(document, dict) or document.get('schema') != SCHEMA:
         raise ValueError(f'no home file: its `schema` is not {SCHEMA}')
@@ -81,4 +69,4 @@ def _home(document: Any, gear: dict[str, Any]) -> Home:
             raise ValueError(fault)
     homed = str(document['homed'])
     datetime.strptime(homed, _DATE).replace(tzinfo=UTC)  # raises ValueError for anything else
-    return Home(document['rotor_zero'], homed)
+    return document['rotor_zero'], homed

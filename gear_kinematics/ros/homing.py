@@ -35,14 +35,14 @@ class Homing:
         """
         if not self._path or not (home := read_home(self._path, parameters)):
             return parameters
-        self._node.set_parameters([Parameter('rotor_zero', value=home.rotor_zero)])
+        zero, homed = home
+        self._node.set_parameters([Parameter('rotor_zero', value=zero)])
         given, self._kept = parameters.rotor_zero, f'kept in {self._path}'
-        instead = '' if given == home.rotor_zero else f'; the parameter was {given} rad'
+        instead = '' if given == zero else f'; that of the parameters, {given:g} rad, is not used'
         self._node.get_logger().info(
-            f'rotor_zero {home.rotor_zero:.3f} rad restored from {self._path}, '
-            f'homed {home.homed}{instead}'
+            f'rotor_zero {zero:.3f} rad restored from {self._path}, homed {homed}{instead}'
         )
-        return replace(parameters, rotor_zero=home.rotor_zero)
+        return replace(parameters, rotor_zero=zero)
 
     def serve(self, rotor_input: RotorInput, monitor: InputMonitor) -> None:
         """Open the service."""

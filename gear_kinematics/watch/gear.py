@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from diagnostic_msgs.msg import DiagnosticArray
 from rclpy.node import Node
-from rclpy.parameter import parameter_value_to_python
+from rclpy.parameter import Parameter, parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from rclpy.qos import ReliabilityPolicy
 from rclpy.task import Future
@@ -23,6 +23,7 @@ from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
 _PATIENCE = 2.0  # s: a service that has not found this client yet loses the request
+_ZERO = 'rotor zero (rad)'  # in diagnostics
 _SHOWN = topics.OUTPUT_STATE, *topics.CORRECTED_TOPICS, topics.TRANSMISSION_ERROR
 
 
@@ -56,6 +57,9 @@ class GearNode:
         self.known = False  # whether it has told its parameters since it started
         self.fault = ''  # why these cannot be used
         self.restarts = -1  # how often it has been seen to start again
+        self.homed_zero: float | None = None  # rotor_zero after its last change that was seen
+        self.earlier_zero: float | None = None  # before that, to go back to
+        self.lost_zero: float | None = None  # `homed_zero`, if the node came back with another
         self.outputs: dict[str, str] = {}  # names of its topics by those without remapping
         self.heard: list[str] = []  # names of the topics that it hears
         self.inputs: dict[str, str] = {}  # those of them that are known, as in `outputs`
@@ -95,6 +99,10 @@ class GearNode:
                 if status.hardware_id == self.name:
                     subject = status.name.rpartition(': ')[2]
                     values = {pair.key: pair.value for pair in status.values}
+                    known = self.statuses.get(subject)
+                    if known and known.values.get(_ZERO) != values.get(_ZERO):
+                        self.look()  # else it may be another process
+                        self.reread()
                     self.statuses[subject] = Status(
                         subject, status.level[0], status.message, values, time.monotonic()
                     )
@@ -110,6 +118,10 @@ class GearNode:
         except RejectedInputError:
             return None
         return Joint(position, velocity, latest.age or 0.0)
+
+    def set_zero(self, zero: float) -> Future:
+        """Set `rotor_zero`, rad."""
+        return self._client.set_parameters([Parameter('rotor_zero', value=zero)])
 
     def reread(self) -> None:
         """Read the parameters once more."""
@@ -167,5 +179,15 @@ class GearNode:
         except ValueError as error:
             self.fault = str(error)
         else:
+            self._follow_zero(parameters.rotor_zero)
             self.parameters, self.fault, self.known = parameters, '', True
             self._deadline = math.inf
+
+    def _follow_zero(self, zero: float) -> None:
+        """See whether the zero has changed, or was lost when the node started again."""
+        if not (self.known and self.parameters):
+            self.earlier_zero = None
+            self.lost_zero = self.homed_zero if zero != self.homed_zero else None
+        elif zero != (before := self.parameters.rotor_zero):
+            self.earlier_zero = before if zero != self.earlier_zero else None  # that undoes it
+            self.homed_zero, self.lost_zero = zero, None

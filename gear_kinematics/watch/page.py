@@ -33,7 +33,11 @@ _BODY = """\
 <th scope="col" class="words">topic</th><th scope="col" class="number">rate</th><td></td></tr>
 </thead><tbody></tbody></table></div></details></section>
 </main><div id="messages">
-<p id="message"></p><p id="answer" role="status"></p>
+<p id="message"></p>
+<p id="question" role="group" aria-label="home" hidden><span></span>
+<button type="button">Cancel</button> <button type="button">Set it</button></p>
+<p id="answer" role="status"></p>
+<p id="undo" hidden><button type="button">Undo Home</button></p>
 <p id="command" hidden><code></code> <button type="button">Copy</button></p>
 <p id="recording"></p>
 </div>

@@ -138,7 +138,7 @@ class _Live(_Guarded, WebSocketHandler):
             match command['do']:
                 case 'configure':
                     asked = watcher.configure(str(command['topic']), str(command['joint']))
-                case 'home' | 'record' | 'stop' as name:
+                case 'home' | 'undo' | 'record' | 'stop' as name:
                     asked = getattr(watcher, name)()
                 case other:
                     raise ValueError(other)

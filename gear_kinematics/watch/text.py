@@ -95,21 +95,30 @@ def line(view: View) -> str:
 
 def _show_table(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
     asked: Future[Answer] | None = None
+    asking = False  # whether to home
     with _keys() as key, Live(console=console, auto_refresh=False, transient=True) as live:
         while not stopped():
             match key(_REFRESH):
-                case 'h':
+                case 'h' if watcher.view.question:
+                    asked, asking = None, True
+                case 'y' if asking:
+                    asked, asking = watcher.home(), False
+                case 'h':  # is refused, and why
                     asked = watcher.home()
+                case 'u':
+                    asked, asking = watcher.undo(), False
                 case 'r':
                     asked = watcher.stop() if watcher.view.recording else watcher.record()
                 case 'q':
                     return
+                case other if other:
+                    asking = False
             answer = asked.result() if asked and asked.done() else None
-            live.update(table(watcher.view, answer), refresh=True)
+            live.update(table(watcher.view, answer, asking=asking), refresh=True)
 
 
-def table(view: View, answer: Answer | None = None) -> RenderableType:
-    """Show a view, and the answer to the last command, as a table."""
+def table(view: View, answer: Answer | None = None, *, asking: bool = False) -> RenderableType:
+    """Show a view, the question before homing, and the answer to a command, as a table."""
     state = (f'{view.state} {view.duration}', _STYLES.get(view.tone, _BAD))
     title = Text.assemble(('gearkin watch ', 'bold'), f'{view.node} ', state)
     grid = RichTable.grid(padding=(0, 2))
@@ -131,8 +140,11 @@ def table(view: View, answer: Answer | None = None) -> RenderableType:
         parts.append(Text(printable(view.failure), _BAD))
     if answer:
         parts.append(Text(printable(str(answer)), '' if answer.done else _BAD))
+    if asking and view.question:
+        parts.append(Text(f'{view.question}   y yes   n no', 'bold'))
     record = 'stop recording' if view.recording else 'record'
-    parts += [Text(), Text(f'h home   r {record}   q end', 'dim')]
+    undo = 'u undo home   ' if view.undo else ''
+    parts += [Text(), Text(f'h home   {undo}r {record}   q end', 'dim')]
     return Group(*parts)
 
 

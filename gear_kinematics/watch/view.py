@@ -61,6 +61,8 @@ class View:
     failure: str = ''  # why the last recording ended by itself, if it did
     rotor: float | None = None  # angle within the turn, degrees
     output: float | None = None
+    question: str = ''  # to ask before homing; '' where there is nothing to home
+    undo: bool = False  # whether the last homing can be undone
     gear: int = 0  # raised when the drawing of the gear may have changed
 
 
@@ -71,6 +73,7 @@ def view_of(gear: GearNode, rotor: Latest | None, others: Sequence[str]) -> View
         diagnostics=tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values()),
         **state_of(gear, rotor, others),
         **_angles(gear),
+        **_homing(gear),
     )
 
 
@@ -120,11 +123,25 @@ def _angles(gear: GearNode) -> dict[str, Any]:
     }
 
 
+def _homing(gear: GearNode) -> dict[str, Any]:
+    if not (gear.running and gear.known and gear.parameters):
+        return {}
+    output, home = gear.joint(topics.OUTPUT_STATE), math.degrees(gear.parameters.home_angle)
+    where = 'Set the output'
+    if output and not _freshness(output):
+        where = f'The output is at {_degrees(output.position, 1)}. Set it'
+    # Homing forgets the turns of a single-turn encoder.
+    undo = gear.earlier_zero is not None and not gear.parameters.single_turn
+    return {'question': f'{where} to {home:.1f}°?', 'undo': undo}
+
+
 def values_of(gear: GearNode, rotor: Latest | None) -> Iterator[Entry]:
     """Describe the latest values; `rotor` are the driver's messages, if their topic is known."""
     output = gear.joint(topics.OUTPUT_STATE)
     if output and gear.gear:
         yield from _motion(output, gear.gear)
+    if gear.parameters:
+        yield _zero(gear, gear.parameters.rotor_zero)
     if rotor:
         age = rotor.age
         timeout = gear.parameters.input_timeout if gear.parameters else 1.0
@@ -165,6 +182,15 @@ def _motion(output: Joint, gear: Gear) -> Iterator[Entry]:
         yield Entry('output speed', f'{speed:.2f} rpm', detail, tone, _curve(' rpm', speed, tone))
 
 
+def _zero(gear: GearNode, zero: float) -> Entry:
+    status = gear.statuses.get('rotor input')
+    kept = status.values.get('home file', '') if status else ''
+    if gear.lost_zero is None:
+        return Entry('zero', f'{zero:.3f} rad', kept)
+    lost = f'homed before; the zero is lost: it was {gear.lost_zero:.3f} rad; {kept}'
+    return Entry('zero', f'{zero:.3f} rad', lost, 'notable')
+
+
 def _curve(unit: str, value: float, tone: Tone) -> Curve:
     return Curve(unit, value if math.isfinite(value) and not tone else None)
 
@@ -187,8 +213,8 @@ def _freshness(joint: Joint) -> Tone:
     return 'stale' if joint.age > _MAX_OUTPUT_AGE else ''
 
 
-def _degrees(angle: float) -> str:
-    return f'{math.degrees(angle):.3f}°'
+def _degrees(angle: float, digits: int = 3) -> str:
+    return f'{math.degrees(angle):.{digits}f}°'
 
 
 def _duration(seconds: float) -> str:

@@ -5,8 +5,8 @@
   const RETRY = 1000; // ms
   const SPAN = 10; // s of a curve
   const find = id => document.getElementById(id);
-  const [mechanism, drivers, home, record, command] =
-    ['mechanism', 'drivers', 'home', 'record', 'command'].map(find);
+  const [mechanism, drivers, home, record, command, question, undo] =
+    ['mechanism', 'drivers', 'home', 'record', 'command', 'question', 'undo'].map(find);
   let server;
   let frame; // the latest one that is not shown yet
   let recording = false;
@@ -104,7 +104,10 @@
     set(find('recording'), now.recording ? `Recording to ${now.recording}` : now.failure,
       now.recording ? '' : 'bad');
     set(record, recording ? 'Stop recording' : 'Record', recording ? 'on' : '');
-    home.disabled = !running || recording;
+    home.disabled = !now.question;
+    undo.hidden = !now.undo;
+    if (home.disabled) question.hidden = true;
+    else fill(question, [now.question]);
     record.disabled = !recording && !running && !now.drivers.length;
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
@@ -138,12 +141,29 @@
     });
     server.addEventListener('close', () => {
       showState('no connection', 'fail', '', 'gearkin watch has ended, or cannot be reached. Trying again.');
-      home.disabled = record.disabled = true;
+      home.disabled = record.disabled = question.hidden = undo.hidden = true;
       setTimeout(connect, RETRY);
     });
   }
 
-  home.addEventListener('click', () => send({do: 'home'}));
+  const [, cancel, confirm] = question.children;
+
+  function ask(asking) {
+    question.hidden = !asking;
+    if (asking) showAnswer({text: '', done: true});
+    (asking ? cancel : home).focus(); // a key held down homes nothing
+  }
+
+  home.addEventListener('click', () => ask(true));
+  cancel.addEventListener('click', () => ask(false));
+  confirm.addEventListener('click', () => {
+    ask(false);
+    send({do: 'home'});
+  });
+  question.addEventListener('keydown', ({key}) => {
+    if (key === 'Escape') ask(false);
+  });
+  undo.addEventListener('click', () => send({do: 'undo'}));
   record.addEventListener('click', () => send({do: recording ? 'stop' : 'record'}));
   command.querySelector('button').addEventListener('click', async ({target}) => {
     await navigator.clipboard.writeText(command.querySelector('code').textContent);

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 from rclpy.executors import SingleThreadedExecutor
 from std_srvs.srv import Trigger
@@ -90,6 +91,10 @@ class Watcher:
         """Call ~/home of the node."""
         return self._do(self._home)
 
+    def undo(self) -> 'Future[Answer]':
+        """Set the zero of the node to that before its last change."""
+        return self._do(partial(self._home, undo=True))
+
     def record(self, path: Path | None = None) -> 'Future[Answer]':
         """Begin to record to a folder, by default to a new one in the working directory."""
         return self._do(lambda answer: answer.set_result(self._record(path)))
@@ -163,7 +168,7 @@ class Watcher:
             if self._recording:
                 recorded = self._recording.status()
                 about = f'{recorded.path}: {recorded.seconds:.1f} s, {recorded}'
-                view = replace(view, recording=about)
+                view = replace(view, recording=about, question='', undo=False)
             self.view = replace(view, drivers=self._found, failure=self._failed)
 
     def _look(self) -> None:
@@ -202,20 +207,22 @@ class Watcher:
             self._drawing += 1
         return replace(view_of(gear, rotor, others), gear=self._drawing)
 
-    def _home(self, answer: 'Future[Answer]') -> None:
+    def _home(self, answer: 'Future[Answer]', *, undo: bool = False) -> None:
+        """Home the node, or set the zero that it had before."""
         gear = self._gear
         if self._recording:
             raise ValueError('Stop the recording first: Home would move the zero within it.')
         if not (gear and gear.running and gear.home.service_is_ready()):
             raise ValueError('There is no node to home.')
-        asked, before = gear.home.call_async(Trigger.Request()), gear.parameters
+        if undo and not self.view.undo:
+            raise ValueError('There is no homing to undo.')
+        zero = gear.earlier_zero if undo else None
+        asked = gear.home.call_async(Trigger.Request()) if zero is None else gear.set_zero(zero)
         deadline = time.monotonic() + _ANSWER
 
         def pending() -> bool:
             if asked.done():
-                result = asked.result()
-                was = f'; it was {before.rotor_zero} rad' if result.success and before else ''
-                answer.set_result(Answer(f'{result.message}{was}.', result.success))
+                answer.set_result(_homed(asked.result(), zero))
                 gear.reread()
             elif time.monotonic() > deadline:
                 answer.set_result(Answer('The node does not answer.', done=False))
@@ -280,11 +287,21 @@ class Watcher:
         return Answer(f'{path} is written. Start:', done=True, command=command)
 
 
+def _homed(result: Any, zero: float | None) -> Answer:
+    """Tell what came of homing, or of setting an earlier zero, rad, again."""
+    if zero is None:
+        return Answer(f'{result.message}.', result.success)
+    [outcome] = result.results
+    done = f'rotor_zero is {zero:.3f} rad again, as before homing.'
+    return Answer(done if outcome.successful else f'{outcome.reason}.', outcome.successful)
+
+
 def _keep_parameters(parameters: NodeParameters, folder: Path) -> str:
     """Write the parameters beside the data, where `gearkin validate` looks for them."""
     note, calibration = '', parameters.calibration
     if calibration and not Path(calibration).is_absolute():
         note = f' Give its calibration to gearkin validate: {calibration}.'
         parameters = replace(parameters, calibration='')
+    parameters = replace(parameters, home_file='')  # the zero is in them
     write_new(folder / default_config().name, parameters.as_file())
     return note

@@ -186,6 +186,7 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path):
     namespace = next(names)
     command = ['--ros-args', '-r', f'__ns:={namespace}', *PATIENT]
     command += parameter('rotor_encoder', 'single_turn')
+    command += parameter('home_max_speed', 100.0)
     environment = os.environ | {'ROS_LOG_DIR': str(tmp_path)}
     with closing(Peer(namespace)) as peer:
         home = peer.node.create_client(Trigger, 'gear_state_publisher/home')

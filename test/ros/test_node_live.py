@@ -270,7 +270,7 @@ def test_another_node_with_the_same_topics_is_a_warning_of_both_as_long_as_it_ru
 
 
 def test_home_makes_the_position_the_home_angle(start):
-    peer = start(*parameter('home_angle', -12.5), *parameter('rotor_direction', -1),
+    peer = start(*parameter('home_angle', -12.5), *parameter('rotor_direction', -1), *PATIENT,
                  connect=False).peer  # fmt: skip
     answer = peer.home()
     assert not answer.success

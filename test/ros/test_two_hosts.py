@@ -57,7 +57,7 @@ class Run(NamedTuple):
     sent: int
     """Messages of the driver to each line."""
     zeros: dict[str, list[float]]
-    """What each homing answered."""
+    """After each homing."""
     begin: dict[str, Report]
     """After the first homing, before any loss."""
     lossy: dict[str, Report]
@@ -107,10 +107,8 @@ class Bench:
         return sent
 
     def home(self, name) -> float:
-        """Home a node and give the zero that it answers with."""
-        *_, zero, unit = self.listeners[name].home().split()
-        assert unit == 'rad'
-        return float(zero)
+        """Home a node, whose shaft may turn, and give its new zero."""
+        return self.listeners[name].home()
 
     def cut(self, length) -> Cut:
         """Pull the cable for some messages."""
@@ -135,7 +133,8 @@ def node(name, folder):
     log = folder / f'{name}.log'
     arguments = ['--ros-args', '-r', f'__ns:=/{name}',
                  '-p', f'rotor_encoder:={LINES[name].encoder}',
-                 '-p', f'max_rotor_speed:={MAX_ROTOR_SPEED}']  # fmt: skip
+                 '-p', f'max_rotor_speed:={MAX_ROTOR_SPEED}',
+                 '-p', 'home_max_speed:=10.0', '-p', 'input_timeout:=10.0']  # fmt: skip
     with (
         log.open('w', encoding='utf-8') as stream,
         running_node(arguments, stdout=stream, stderr=stream) as process,

@@ -15,6 +15,7 @@ import rclpy
 from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
 from live import DEADLINE, SECOND, START, rotor_bytes, stamp_of
+from rcl_interfaces.srv import GetParameters
 from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
@@ -136,6 +137,7 @@ class Listener(Endpoint):
             self._node.create_subscription(kind, f'/{name}/{topic}', keep, qos, raw=True)
         self._node.create_subscription(DiagnosticArray, '/diagnostics', keep_report, qos)
         self._homing = self._node.create_client(Trigger, f'{node_name}/home')
+        self._asking = self._node.create_client(GetParameters, f'{node_name}/get_parameters')
         self._executor = SingleThreadedExecutor()
         self._executor.add_node(self._node)
         self._thread = Thread(target=self._executor.spin)
@@ -156,10 +158,14 @@ class Listener(Endpoint):
         """Return the node's newest report."""
         return self._report
 
-    def home(self) -> str:
-        """Home the node and give its answer."""
+    def home(self) -> float:
+        """Home the node and give its new zero, rad."""
         assert self._homing.wait_for_service(DEADLINE)
-        return self._homing.call(Trigger.Request()).message
+        answer = self._homing.call(Trigger.Request())
+        assert answer.success, answer.message
+        assert self._asking.wait_for_service(DEADLINE)
+        [zero] = self._asking.call(GetParameters.Request(names=['rotor_zero'])).values
+        return zero.double_value
 
     def close(self) -> None:
         self._executor.shutdown()

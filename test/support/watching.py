@@ -73,7 +73,7 @@ def node(folder: Path, name: str = NODE):
     """Run the node for the driver, under a full name."""
     arguments = ['--ros-args', '-r', f'__ns:={name.rpartition("/")[0]}', '-p', 'rotor_joint:=m1']
     arguments += ['-r', f'rotor_state:={MOTOR}', '-r', f'output_encoder:={ENCODER}']
-    arguments += ['-p', 'transmission_error_window:=2.0']
+    arguments += ['-p', 'transmission_error_window:=2.0', '-p', 'home_max_speed:=10.0']
     with (
         (folder / 'node.log').open('a', encoding='utf-8') as stream,
         running_node(arguments, stdout=stream, stderr=stream) as process,

@@ -161,23 +161,52 @@ def test_node_has_to_compute_only_what_is_shown():
         listener.close()
 
 
-def test_home_is_called_with_the_keyboard_and_answered(connected):
-    connected.locator('body').click(position={'x': 5, 'y': 5})
-    connected.keyboard.press('Tab')
-    connected.expect(connected.locator('#home')).to_be_focused()
-    connected.keyboard.press('Enter')
-    answer = connected.locator('#answer')
-    connected.expect(answer).to_contain_text('output shaft at 0.0 rad: rotor_zero is')
-    zero = float(re.search(r'rotor_zero is (\S+) rad; it was 0\.0 rad', answer.inner_text())[1])
+def rotor_zero() -> float:
+    """Ask the node."""
     listener = Listener(NAMESPACE, 'asking')
     try:
         client = AsyncParameterClient(listener.node, NODE)
         listener.wait_until(client.services_are_ready, 'the parameter services')
         future = client.get_parameters(['rotor_zero'])
         listener.wait_until(future.done, 'the parameter')
-        assert future.result().values[0].double_value == zero
+        return future.result().values[0].double_value
     finally:
         listener.close()
+
+
+def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
+    expect, question = connected.expect, connected.locator('#question')
+    home, answer = connected.locator('#home'), connected.locator('#answer')
+    connected.locator('body').click(position={'x': 5, 'y': 5})
+    connected.keyboard.press('Tab')
+    expect(home).to_be_focused()
+    connected.keyboard.press('Enter')
+    expect(question).to_have_text(
+        re.compile(r'The output is at -?\d+\.\d°\. Set it to 0\.0°\?\s+Cancel\s+Set it')
+    )
+    connected.keyboard.press('Escape')
+    expect(question).to_be_hidden()
+    expect(home).to_be_focused()
+    for _ in range(2):  # as a key that is held down
+        connected.keyboard.press('Enter')
+    expect(question).to_be_hidden()
+    assert answer.inner_text() == ''
+    for key in ('Enter', 'Tab', 'Enter'):
+        connected.keyboard.press(key)
+    expect(answer).to_have_text(
+        re.compile(
+            r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero -?\d+\.\d{3} rad, '
+            r'not kept: set home_file\)\.'
+        )
+    )
+    shown = float(re.search(r'rotor_zero (\S+) rad', answer.inner_text())[1])
+    assert shown == pytest.approx(rotor_zero(), abs=6e-4) != 0.0
+    expect(reading(connected, 'zero')).to_have_text(f'zero{shown:.3f} radnot kept: set home_file')
+    connected.get_by_role('button', name='Undo Home').focus()
+    connected.keyboard.press('Enter')
+    expect(answer).to_have_text('rotor_zero is 0.000 rad again, as before homing.')
+    expect(connected.locator('#undo')).to_be_hidden()
+    assert rotor_zero() == 0.0
 
 
 def test_recording_loses_nothing_and_is_validated(connected, folder):
@@ -284,6 +313,9 @@ def test_names_are_text_on_the_page(connected, browser):
 
 def test_page_connects_again_after_the_node_was_restarted(connected, folder):
     expect = connected.expect
+    connected.locator('#home').click()
+    connected.get_by_role('button', name='Set it').click()
+    expect(connected.locator('#undo')).to_be_visible()
     connected.node.terminate()
     expect(connected.locator('#state')).to_have_text('ended')
     expect(connected.locator('#message')).to_contain_text('Waiting for it to start again.')
@@ -291,6 +323,9 @@ def test_page_connects_again_after_the_node_was_restarted(connected, folder):
     with node(folder):
         expect(connected.locator('#state')).to_have_text('connected')
         expect(connected.locator('#diagnostics')).to_contain_text('rotor inputhealthy')
+        lost = re.compile(r'homed before; the zero is lost: it was -?\d+\.\d{3} rad')
+        expect(reading(connected, 'zero')).to_contain_text(lost)
+        expect(connected.locator('#undo')).to_be_hidden()
         rotor, _ = angles(connected)
         connected.wait_for_function(
             'before => document.getElementById("mechanism").style'

@@ -97,7 +97,15 @@ def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
         terminal.type('r')
         terminal.wait_for(r'Recorded \d+ messages, 0 lost')
         terminal.type('h')
-        terminal.wait_for('output shaft at 0.0 rad: rotor_zero is')
+        terminal.wait_for(r'The output is at -?\d+\.\d°\. Set it to 0\.0°\?   y yes   n no')
+        terminal.type('ny')  # which no question precedes
+        terminal.type('h')
+        terminal.wait_for('y yes   n no')
+        terminal.type('y')
+        terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero ')
+        terminal.wait_for('u undo home')
+        terminal.type('u')
+        terminal.wait_for('rotor_zero is 0.000 rad again, as before homing.')
         terminal.type('q')
         assert terminal.end() == 0
 

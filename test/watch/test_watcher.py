@@ -85,6 +85,7 @@ def gear_node(**changes):
         topics.TRANSMISSION_ERROR: Joint(math.radians(-1.5 / 60.0), None, 0.001),
     }
     values = {'peak to peak (rad)': str(math.radians(3.0 / 60.0))}
+    kept = {'home file': 'not kept: set home_file'}
     node = {
         'name': '/left/gear_state_publisher',
         'running': True,
@@ -94,9 +95,12 @@ def gear_node(**changes):
         'gear': GearRatio(-19),
         'parameters': replace(NodeParameters.load(), transmission_error_limit=math.radians(0.1)),
         'statuses': {
-            'transmission error': Status('transmission error', 0, 'ok', values, time.monotonic())
+            'rotor input': Status('rotor input', 0, 'ok', kept, time.monotonic()),
+            'transmission error': Status('transmission error', 0, 'ok', values, time.monotonic()),
         },
         'joint': joints.get,
+        'earlier_zero': None,
+        'lost_zero': None,
     }
     return SimpleNamespace(**{**node, **changes})
 
@@ -111,6 +115,7 @@ def test_values_are_those_of_the_topics():
         Entry('output angle', '-370.000°', '-6.45772 rad', '', curve(-370.0, '°')),
         Entry('rotor angle', '7030.000°', '19.528 turns'),
         Entry('output speed', '-9.55 rpm', 'rotor 181.4 rpm', '', curve(-30.0 / math.pi, ' rpm')),
+        Entry('zero', '0.000 rad', 'not kept: set home_file'),
         Entry('input', '1000 Hz', 'last message 2 ms ago'),
         Entry('corrected angle', '-370.250°', '± 30.000″ (95 %)'),
         Entry(
@@ -173,6 +178,50 @@ def test_parameters_of_an_odd_type_are_a_fault():
     node._take_parameters(['thick', 'output'])
     assert node.fault == "module must be of type float, not 'thick'"
     assert not node.known
+
+
+@pytest.mark.parametrize(
+    ('zeros', 'earlier', 'lost'),
+    [
+        ([0.0], None, None),
+        ([0.0, 28.969], 0.0, None),
+        ([0.0, 28.969, 0.0], None, None),  # undone
+        ([0.0, 28.969, None, 0.0], None, 28.969),
+        ([0.0, 28.969, None, 28.969], None, None),  # kept
+        ([0.0, 28.969, None, 0.0, None, 0.0], None, 28.969),
+        ([0.0, 28.969, None, 0.0, 3.0], 0.0, None),  # homed again
+        ([0.0, None, 1.0], None, None),  # another parameter file, never homed
+    ],
+)
+def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
+    """Zeros as they are read, and None where the node starts again."""
+    node = object.__new__(GearNode)
+    node.known, node.parameters = False, None
+    node.homed_zero = node.earlier_zero = node.lost_zero = None
+    for zero in zeros:
+        node._names, node.known = ['rotor_zero'], zero is not None and node.known
+        if zero is not None:
+            node._take_parameters([zero])
+    assert (node.earlier_zero, node.lost_zero) == (earlier, lost)
+    shown = {'earlier_zero': earlier, 'lost_zero': lost, 'parameters': node.parameters}
+    view = view_of(gear_node(**shown), None, ())
+    [entry] = [entry for entry in view.values if entry.name == 'zero']
+    assert view.undo == (earlier is not None)
+    words = 'homed before; the zero is lost: it was 28.969 rad; not kept: set home_file'
+    assert entry.tone == ('notable' if lost else '')
+    assert entry.detail == (words if lost else 'not kept: set home_file')
+
+
+def test_question_before_homing_says_where_the_output_is():
+    parameters = replace(NodeParameters.load(), home_angle=math.radians(12.25))
+    assert view_of(gear_node(parameters=parameters), None, ()).question == (
+        'The output is at -370.0°. Set it to 12.2°?'
+    )
+    silent = {topics.OUTPUT_STATE: Joint(0.1, None, 90.0)}.get
+    assert view_of(gear_node(joint=silent), None, ()).question == 'Set the output to 0.0°?'
+    assert view_of(gear_node(known=False), None, ()).question == ''
+    single = replace(parameters, rotor_encoder='single_turn')
+    assert not view_of(gear_node(parameters=single, earlier_zero=0.0), None, ()).undo
 
 
 @pytest.mark.parametrize(('age', 'duration'), [(0.9, None), (5.74, '5.7 s'), (None, '')])
@@ -240,6 +289,11 @@ def test_table_shows_values_and_keys_and_without_a_node_the_drivers():
     for part in ('output angle', '12.5°', '● recording to monday', 'Recording to monday.'):
         assert part in text
     assert 'h home   r stop recording   q end' in text
+    asked = View(question='The output is at 61.5°. Set it to 0.0°?', undo=True)
+    text = printed(table(asked, asking=True))
+    assert 'The output is at 61.5°. Set it to 0.0°?   y yes   n no' in text
+    assert 'h home   u undo home   r record   q end' in text
+    assert 'Set it' not in printed(table(asked))
     ended = View(state='ended', failure='monday: No space left on device')
     assert 'No space left' in printed(table(ended))
     alone = printed(table(View(drivers=DRIVERS)))
@@ -476,6 +530,7 @@ async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(addres
 def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
     commands = {
         '{"do": "home"}': ('home',),
+        '{"do": "undo"}': ('undo',),
         '{"do": "record"}': ('record',),
         '{"do": "stop"}': ('stop',),
         '{"do": "configure", "topic": "/m", "joint": "m1"}': ('configure', '/m', 'm1'),

@@ -1,0 +1,120 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The home file: read by what was written to it, whole whatever happens, and else refused."""
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+
+import pytest
+import yaml
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters.atomic_file import replace_file
+from gear_kinematics.parameters.home_file import HomeFileError, home_text, read_home
+
+HOMED = replace(NodeParameters.load(), rotor_zero=28.969, rotor_joint='0x1: é')
+OLD = """\
+schema: gear_kinematics/home/1
+homed: 2026-03-01 12:00 UTC
+gear_ratio: '-19'
+rotor_joint: rotor
+rotor_direction: 1
+rotor_encoder: multi_turn
+rotor_zero: 28.969
+home_angle: 0.0
+"""
+"""As the first version has written it: what is on the disks of users must be read for ever."""
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / 'home.yaml'
+
+
+def test_what_is_read_is_what_was_written(path):
+    assert read_home(path, HOMED) is None
+    path.write_text(home_text(HOMED), 'utf-8')
+    zero, homed = read_home(path, HOMED)
+    assert (zero, homed[-4:]) == (28.969, ' UTC')
+    path.write_text(OLD, 'utf-8')
+    assert read_home(path, NodeParameters.load()) == (28.969, '2026-03-01 12:00 UTC')
+
+
+@pytest.mark.parametrize(
+    ('entries', 'cause'),
+    [
+        ({'gear_ratio': '1457/26'}, "homed with gear_ratio '1457/26', not with '-19'"),
+        ({'rotor_joint': 'm2'}, "homed with rotor_joint 'm2', not with 'rotor'"),
+        ({'rotor_direction': -1}, 'homed with rotor_direction -1, not with 1'),
+        ({'rotor_encoder': 'single_turn'}, "homed with rotor_encoder 'single_turn'"),
+        ({'rotor_zero': float('nan')}, 'rotor_zero must be between'),
+        ({'rotor_zero': '28.969'}, 'rotor_zero must be of type float'),
+        ({'home_angle': 1e10}, 'home_angle must be between'),
+        ({'homed': 'yesterday'}, 'does not match'),
+        ({'schema': 'gear_kinematics/home/2'}, 'its `schema` is not gear_kinematics/home/1'),
+        ({'more': 1}, 'it must have schema, homed, gear_ratio'),
+        ({'rotor_joint': 'm' * 200_000}, 'homed with rotor_joint'),
+    ],
+    ids=str,
+)
+def test_other_gear_or_odd_value_is_refused_in_a_line(path, entries, cause):
+    path.write_text(yaml.safe_dump(yaml.safe_load(OLD) | entries), 'utf-8')
+    with pytest.raises(HomeFileError) as refusal:
+        read_home(path, NodeParameters.load())
+    text = str(refusal.value)
+    assert text.startswith(f'{path}: ')
+    assert cause in text
+    assert len(text) < 1500
+    assert '\n' not in text
+
+
+@pytest.mark.parametrize('length', range(0, len(OLD) - 1, 7))
+def test_truncated_file_is_refused(path, length):
+    path.write_text(OLD[:length], 'utf-8')
+    with pytest.raises(HomeFileError):
+        read_home(path, NodeParameters.load())
+
+
+@pytest.mark.parametrize(
+    ('make', 'cause'),
+    [
+        (lambda path: path.write_bytes(10_000_000 * b'#'), 'longer than 262144 bytes'),
+        (lambda path: path.mkdir(), 'Is a directory'),
+        (os.mkfifo, 'not a regular file'),
+        (lambda path: path.symlink_to('/dev/zero'), 'not a regular file'),
+        (lambda path: path.symlink_to(path), 'symbolic links'),
+    ],
+    ids=['10 MB', 'folder', 'pipe', 'device', 'loop'],
+)
+def test_what_is_no_file_of_such_a_size_is_refused(path, make, cause):
+    make(path)
+    with pytest.raises(HomeFileError, match=cause):
+        read_home(path, NodeParameters.load())
+
+
+def test_link_remains_and_leads_to_the_new_content(path, tmp_path):
+    path.symlink_to('elsewhere.yaml')
+    assert read_home(path, HOMED) is None  # it leads nowhere yet
+    for zero in (1.0, 2.0):
+        replace_file(path, home_text(replace(HOMED, rotor_zero=zero)).encode())
+        assert path.is_symlink()
+        assert read_home(tmp_path / 'elsewhere.yaml', HOMED)[0] == zero
+
+
+@pytest.mark.parametrize('moment', ['os.fsync', 'pathlib.Path.replace'])
+def test_process_that_is_killed_leaves_the_old_file_and_hinders_no_other(path, moment):
+    path.write_text(OLD, 'utf-8')
+    program = (
+        'import os, pathlib, signal, sys\n'
+        'from gear_kinematics.parameters.atomic_file import replace_file\n'
+        'def kill(*_): os.kill(os.getpid(), signal.SIGKILL)\n'
+        f'{moment} = kill\n'
+        "replace_file(pathlib.Path(sys.argv[1]), b'new')\n"
+    )
+    process = subprocess.run([sys.executable, '-c', program, path], check=False)
+    assert process.returncode == -signal.SIGKILL
+    assert path.read_text('utf-8') == OLD
+    replace_file(path, b'newer')
+    assert path.read_bytes() == b'newer'

@@ -1,0 +1,183 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""~/home and the zero that it keeps, also over a restart of the node."""
+
+import math
+import re
+import time
+
+import pytest
+from live import PATIENT, SECOND, live_node, rotor_bytes, rotor_state
+from rclpy.parameter import Parameter
+from std_srvs.srv import Trigger
+
+from gear_kinematics.parameters.home_file import HomeFileError
+from gear_kinematics.ros.live import running_node
+from gear_kinematics.ros.node import GearStatePublisher
+
+pytestmark = pytest.mark.live
+
+MILLISECOND = SECOND // 1000
+
+
+@pytest.fixture
+def make(context):
+    """Return a function that creates a node with parameters; all are destroyed at the end."""
+    nodes = []
+
+    def make(**values):
+        overrides = [Parameter(name, value=value) for name, value in values.items()]
+        nodes.append(
+            GearStatePublisher(context=context, namespace='homing', parameter_overrides=overrides)
+        )
+        return nodes[-1]
+
+    yield make
+    for node in nodes:
+        node.destroy_node()
+
+
+def drive(node, positions, period=MILLISECOND, velocity=()):
+    for number, position in enumerate(positions, start=1):
+        node._on_rotor_state(rotor_bytes(number * period, position=[position], velocity=velocity))
+
+
+def home(node):
+    return node._homing.answer(None, Trigger.Response())
+
+
+def values_of(node):
+    return node._monitor.report(node._input, time.monotonic()).values
+
+
+# With the ratio -19: φ5 = -(position - zero)/19, so 61.5° is -20.394 rad at the rotor.
+TURNED = -20.394
+
+
+def test_answer_can_be_checked_by_a_person(make, tmp_path):
+    node = make(input_timeout=1000.0)
+    drive(node, [TURNED])
+    answer = home(node)
+    words = 'the shaft was at 61.5° and is now 0.0° (rotor_zero -20.394 rad, '
+    assert (answer.success, answer.message) == (True, words + 'not kept: set home_file)')
+    path = tmp_path / 'home.yaml'
+    node = make(input_timeout=1000.0, home_file=str(path))
+    assert values_of(node)['home file'] == 'not kept: not homed yet'
+    drive(node, [TURNED])
+    assert home(node).message == f'{words}kept in {path})'
+    again = 'the shaft was at 0.0° and is now 0.0° (rotor_zero -20.394 rad, '
+    assert home(node).message == f'{again}kept in {path})'
+
+
+@pytest.mark.parametrize(
+    ('positions', 'period', 'velocity', 'refused'),
+    [
+        # 0.95 rad/s at the rotor is 0.05 rad/s at the output.
+        ([0.0], MILLISECOND, [1.0], '0.0526'),
+        ([0.0], MILLISECOND, [-0.9], ''),
+        ([0.0], MILLISECOND, (), ''),
+        ([0.0, 0.5], SECOND, (), ''),
+        ([0.0, 1.9], SECOND, (), '0.1'),
+        ([2e-3 * k for k in range(500)], MILLISECOND, (), '0.105'),
+        ([3.0, *(2e-4 * k for k in range(500))], MILLISECOND, (), ''),  # has come to rest
+        ([1.5e-3 * (k % 2) for k in range(500)], MILLISECOND, (), ''),  # a count of 4096
+        ([0.0, 0.0], 0, (), ''),
+    ],
+)
+def test_shaft_that_turns_is_not_homed(make, positions, period, velocity, refused):
+    node = make(input_timeout=1000.0)
+    drive(node, positions, period, velocity)
+    answer = home(node)
+    assert answer.success != bool(refused), answer.message
+    if refused:
+        assert answer.message == (
+            f'the shaft turns at {refused} rad/s; home_max_speed is 0.05 rad/s'
+        )
+        assert node.get_parameter('rotor_zero').value == 0.0
+
+
+def test_after_homing_a_single_turn_encoder_the_dropped_turns_are_no_speed(make):
+    node = make(input_timeout=1000.0, rotor_encoder='single_turn')
+    turns = [0.01 * min(k, 1500) for k in range(2000)]  # more than two, then at rest
+    drive(node, [math.remainder(angle, math.tau) for angle in turns])
+    assert home(node).success
+    node._on_rotor_state(rotor_bytes(2001 * MILLISECOND, position=[15.0]))
+    assert home(node).success
+
+
+def test_position_that_is_old_is_not_homed(make):
+    node = make(input_timeout=0.05)
+    drive(node, [1.0])
+    time.sleep(0.06)
+    node._on_rotor_state(b'no message')
+    assert re.fullmatch(
+        r'the last valid rotor_state came 0\.\d s ago: where the shaft is now is not known',
+        home(node).message,
+    )
+
+
+def test_zero_that_cannot_be_written_holds_and_the_answer_says_why(make, tmp_path, monkeypatch):
+    path = tmp_path / 'home.yaml'
+    node = make(input_timeout=1000.0, home_file=str(path))
+    drive(node, [TURNED])
+
+    def refuse(*_):
+        raise OSError(30, 'Read-only file system')
+
+    with monkeypatch.context() as patch:
+        patch.setattr('gear_kinematics.parameters.atomic_file.os.fsync', refuse)
+        answer = home(node)
+        assert answer.success
+        words = f'not kept: {path}: Read-only file system'
+        assert answer.message.endswith(f'(rotor_zero -20.394 rad, {words})')
+        assert values_of(node)['home file'] == words
+    assert not list(tmp_path.iterdir())
+    assert node.get_parameter('rotor_zero').value == TURNED
+    assert f'kept in {path}' in home(node).message
+
+
+def test_restored_zero_wins_over_the_parameter_and_follows_what_is_set(make, tmp_path, capfd):
+    path = tmp_path / 'home.yaml'
+    node = make(input_timeout=1000.0, home_file=str(path))
+    drive(node, [TURNED])
+    assert home(node).success
+    node = make(home_file=str(path), rotor_zero=1.5)
+    log = (
+        rf'rotor_zero -20\.394 rad restored from {path}, homed [\d-]{{10}} \d\d:\d\d UTC; '
+        r'that of the parameters, 1\.5 rad, is not used'
+    )
+    assert re.search(log, capfd.readouterr().err)
+    assert node.get_parameter('rotor_zero').value == TURNED
+    node.set_parameters([Parameter('rotor_zero', value=2.5)])  # as Undo of gearkin watch
+    assert make(home_file=str(path)).get_parameter('rotor_zero').value == 2.5
+    with pytest.raises(HomeFileError, match="homed with rotor_joint 'rotor', not with 'm1'"):
+        make(home_file=str(path), rotor_joint='m1')
+
+
+def test_output_angle_is_the_same_after_the_node_was_killed(tmp_path):
+    config = tmp_path / 'actuator.yaml'
+    config.write_text('/**: {ros__parameters: {home_file: home.yaml, rotor_zero: 0.0}}\n')
+    arguments = [*PATIENT, '--params-file', str(config)]
+    angles = []
+    with live_node(tmp_path, *arguments) as first:
+        first.peer.connect()
+        first.peer.answer(rotor_state(first.peer.stamp(), position=[TURNED]))
+        answer = first.peer.home()
+        assert f'kept in {tmp_path}/home.yaml' in answer.message, answer.message
+        angles.append(first.peer.answer(rotor_state(first.peer.stamp(), position=[3.3]))[0])
+        first.process.kill()
+        first.process.wait()
+        first.process.returncode = 0  # that is no failure here
+    with live_node(tmp_path, *arguments) as second:
+        second.peer.connect()
+        angles.append(second.peer.answer(rotor_state(second.peer.stamp(), position=[3.3]))[0])
+        assert 'restored from' in second.text()
+    # By hand: φ5 = -(3.3 + 20.394)/19.
+    assert [angle.position[0] for angle in angles] == pytest.approx(2 * [-23.694 / 19.0])
+    (tmp_path / 'home.yaml').write_text('rotor_zero: 1.0')
+    with running_node(['--ros-args', *arguments], stderr=-1) as process:
+        _, error = process.communicate(timeout=60.0)
+    assert process.returncode == 2
+    assert error == (
+        f'gear_state_publisher: {tmp_path}/home.yaml: no home file: its `schema` is not '
+        'gear_kinematics/home/1\n'
+    )
