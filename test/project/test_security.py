@@ -286,7 +286,9 @@ def test_files_are_written_only_where_asked(tmp_path, monkeypatch):
     assert json.loads(Path('report.json').read_text())['verdict'] == 'pass'
 
 
-def test_a_report_is_not_written_through_a_link_laid_for_it(tmp_path, capsys, monkeypatch):
+def test_a_report_is_not_written_through_a_link_that_was_laid_for_it(
+    tmp_path, capsys, monkeypatch
+):
     monkeypatch.setattr('secrets.token_hex', lambda _: 'guessed')
     victim, target = tmp_path / 'victim', tmp_path / 'report.json'
     victim.write_text('precious')
