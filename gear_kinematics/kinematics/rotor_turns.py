@@ -28,9 +28,6 @@ _MANY_TURNS = 2**25 * TURN  # rad; products of fewer with _TURN_HIGH or _TURN_LO
 _TURN_HIGH = math.floor(TURN * 2.0**24) / 2.0**24
 _TURN_LOW = TURN - _TURN_HIGH
 _BELOW_HALF = math.nextafter(math.pi, 0.0)  # rad; any smaller angle is 0 turns, however rounded
-_SPEED_SPAN = 100_000_000
-"""ns between the positions that give a speed, at least: between messages at 1 kHz, one step of an
-encoder with 4096 counts per turn would be 1.5 rad/s."""
 
 
 class RotorPosition(NamedTuple):
@@ -157,7 +154,6 @@ class RotorTurns:
         self._reading = 0.0
         self._stamp = 0
         self._velocity: float | None = None
-        self._marks: tuple[tuple[int, RotorPosition], ...] = ()
 
     def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
         """Process the encoder's next sample.
@@ -177,24 +173,6 @@ class RotorTurns:
             split = RotorPosition(turns, split.angle)
         self.position = split
         self._reading, self._stamp, self._velocity = position, stamp, velocity
-        if not self._marks or stamp - self._marks[-1][0] >= _SPEED_SPAN:
-            self._marks = *self._marks[-1:], (stamp, split)
-
-    @property
-    def speed(self) -> float | None:
-        """Magnitude of the rotor's speed, rad/s; None after a single position.
-
-        The velocity of the last sample if it has one. Else the mean since a position that is at
-        least 0.1 s older, or the one before if that is longer ago; in the first 0.1 s, since the
-        first one.
-        """
-        if self._velocity is not None:
-            return abs(self._velocity)
-        if self.position is None or self._stamp == self._marks[0][0]:
-            return None
-        stamp, (turns, angle) = self._marks[0]
-        turned = TURN * (self.position.turns - turns) + self.position.angle - angle
-        return abs(turned) / (1e-9 * (self._stamp - stamp))
 
     def _expected_turn(self, elapsed: float, velocity: float | None) -> tuple[float, bool]:
         """Expected turn of the rotor in a gap, rad, and whether only one turn count is possible.
@@ -237,7 +215,6 @@ class RotorTurns:
         zero = self.zero_for(rotor_angle, direction)
         # Drop the turns counted so far for a single-turn encoder.
         self.position = split_turns(self._reading)
-        self._marks = ((self._stamp, self.position),)
         self.referenced = True
         return zero
 

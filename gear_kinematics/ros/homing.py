@@ -10,12 +10,18 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
+from gear_kinematics.kinematics import RotorSample, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.home_file import home_text, read_home
 from gear_kinematics.state.diagnostics import InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire import topics
+
+_SPEED_SPAN = 100_000_000
+"""ns between the positions that give a speed, at least: of messages at 1 kHz, one step of an
+encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
 
 
 class Homing:
@@ -26,6 +32,8 @@ class Homing:
         self._node = node
         self._path = path and path.absolute()
         self._kept = f'not kept: {"not homed yet" if path else "set home_file"}'
+        self._seen = 0.0  # time of the last valid input; s of a steady clock
+        self._earlier: tuple[RotorSample, ...] = ()  # the last one or two, `_SPEED_SPAN` apart
 
     def restored(self, parameters: NodeParameters) -> NodeParameters:
         """Return the parameters with the zero of the home file, if there is one, and set it.
@@ -50,8 +58,18 @@ class Homing:
         monitor.zero_kept = self._kept
         self._node.create_service(Trigger, '~/home', self.answer)
 
+    def note(self, sample: RotorSample) -> None:
+        """Take note of a valid input, which says where the shaft is, and how fast it turns."""
+        self._seen = time.monotonic()
+        elapsed = sample.stamp - self._earlier[-1].stamp if self._earlier else -1
+        if elapsed < 0:  # the first one, or the clock was reset
+            self._earlier = (sample,)
+        elif elapsed >= _SPEED_SPAN:
+            self._earlier = self._earlier[-1], sample
+
     def keep(self) -> None:
         """Write the zero that was set to the home file."""
+        self._earlier = ()  # with another zero
         if not self._path:
             return
         try:
@@ -63,45 +81,56 @@ class Homing:
 
     def answer(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Declare that the output shaft is at `home_angle` now, or tell why not."""
-        parameters = self._input.parameters
+        parameters, last = self._input.parameters, self._input.last
         ratio = parameters.gear.gear_ratio
         rotor_angle = ratio.rotor_angle(parameters.home_angle)
         try:
             zero = self._input.zero_for(rotor_angle)
         except RuntimeError:
+            last = None
+        if last is None:
             response.message = f'there was no valid {topics.ROTOR_STATE} yet'
             return response
-        if refusal := self._refusal(parameters):
+        if refusal := self._refusal(parameters, last):
             response.message = refusal
             return response
-        whole, rest = ratio.output_angle(*self._input.position, math)
-        before = 360.0 * whole + math.degrees(rest)
+        whole, rest = ratio.output_angle(*last.position, math)
         result = self._node.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
         response.success, response.message = result.successful, result.reason
         if result.successful:
             self._input.home(rotor_angle)
+            self._input.last = last._replace(position=split_turns(rotor_angle))
             response.message = (
-                f'the shaft was at {_degrees(before)} and is now '
-                f'{_degrees(math.degrees(parameters.home_angle))} '
+                f'the shaft was at {_degrees(TURN * whole + rest)} and is now '
+                f'{_degrees(parameters.home_angle)} '
                 f'(rotor_zero {zero:.3f} rad, {self._monitor.zero_kept})'
             )
         return response
 
-    def _refusal(self, parameters: NodeParameters) -> str:
+    def _refusal(self, parameters: NodeParameters, last: RotorSample) -> str:
         """Why the output shaft is not known to be where it is said to be; '' if it is."""
-        age = time.monotonic() - (self._monitor.last_valid or 0.0)
+        age = time.monotonic() - self._seen
         if age > parameters.input_timeout:
-            last = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
-            return f'{last}: where the shaft is now is not known'
-        # Of a single message without a velocity, no speed is known, nor that the shaft turns.
-        speed = abs(parameters.gear.gear_ratio.output_rate(self._input.speed or 0.0))
+            silence = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+            return f'{silence}: where the shaft is now is not known'
+        speed = abs(parameters.gear.gear_ratio.output_rate(self._speed(last)))
         if speed <= parameters.home_max_speed:
             return ''
-        return (
-            f'the shaft turns at {speed:.3g} rad/s; home_max_speed is '
-            f'{parameters.home_max_speed:g} rad/s'
-        )
+        limit = f'home_max_speed is {parameters.home_max_speed:g} rad/s'
+        return f'the shaft turns at {speed:.3g} rad/s; {limit}'
+
+    def _speed(self, last: RotorSample) -> float:
+        """Speed of the rotor, rad/s: the last velocity, or the mean since an earlier position.
+
+        That is the last one that is at least `_SPEED_SPAN` older; in the beginning the first one.
+        Of a single message nothing says that the shaft turns.
+        """
+        [earlier, *_] = self._earlier or [last]
+        if last.velocity is not None or last.stamp == earlier.stamp:
+            return last.velocity or 0.0
+        turns, angle = (b - a for a, b in zip(earlier.position, last.position, strict=True))
+        return (TURN * turns + angle) / (1e-9 * (last.stamp - earlier.stamp))
 
 
 def _degrees(angle: float) -> str:
-    return f'{round(angle, 1) + 0.0:.1f}°'  # no -0.0
+    return f'{round(math.degrees(angle), 1) + 0.0:.1f}°'  # no -0.0

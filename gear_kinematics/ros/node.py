@@ -197,7 +197,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn_of(topics.ROTOR_STATE, rejection)
             return
-        self._monitor.last_valid = self._monitor.last_input
+        self._homing.note(sample)
         self._outputs.send(self._messages.encode(sample, self._subscribed_states))
         correction = None
         if self._corrector:  # also without a listener, to follow the motion

@@ -102,8 +102,6 @@ class InputMonitor(DriverMonitor):
     published: int = 0
     unsent: int = 0
     """Messages that the middleware failed to send."""
-    last_valid: float | None = None
-    """Time of the last message that was not rejected."""
     zero_kept: str = ''
     """Where `rotor_zero` is kept until the next start, or why it is not."""
     graph: GraphFaults = field(default_factory=GraphFaults)

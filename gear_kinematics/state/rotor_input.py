@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics import RotorSample, RotorTurns, split_turns
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, RotorPosition
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.wire.batches import Array, decode_joint_states
 from gear_kinematics.wire.cdr import LATEST
@@ -99,18 +99,6 @@ class RotorInput:
     def referenced(self) -> bool:
         """Whether the rotor's turn count is known."""
         return self._turns.referenced
-
-    @property
-    def position(self) -> RotorPosition:
-        """The rotor angle by the present zero; RuntimeError before the first valid message."""
-        return self._turns.relative_to(
-            self._parameters.rotor_zero, self._parameters.rotor_direction
-        )
-
-    @property
-    def speed(self) -> float | None:
-        """Magnitude of the rotor's speed, rad/s, as `RotorTurns.speed`; None if unknown."""
-        return self._turns.speed
 
     @property
     def unknown_turns(self) -> int:

@@ -94,18 +94,20 @@ class GearNode:
         """Take what has come."""
         for latest in self._latest.values():
             latest.poll()
+        moved = False  # whether the zero has
         for taken in self._diagnostics.take() if self._diagnostics else ():
             for status in taken.data.status:
                 if status.hardware_id == self.name:
                     subject = status.name.rpartition(': ')[2]
                     values = {pair.key: pair.value for pair in status.values}
-                    known = self.statuses.get(subject)
-                    if known and known.values.get(_ZERO) != values.get(_ZERO):
-                        self.look()  # else it may be another process
-                        self.reread()
+                    if known := self.statuses.get(subject):
+                        moved |= known.values.get(_ZERO) != values.get(_ZERO)
                     self.statuses[subject] = Status(
                         subject, status.level[0], status.message, values, time.monotonic()
                     )
+        if moved:
+            self.look()  # it may be another process by now
+            self.reread()
         self._read_parameters()
 
     def joint(self, topic: str) -> Joint | None:

@@ -98,21 +98,20 @@ def _show_table(watcher: Watcher, console: Console, stopped: Callable[[], bool])
     asking = False  # whether to home
     with _keys() as key, Live(console=console, auto_refresh=False, transient=True) as live:
         while not stopped():
-            match key(_REFRESH):
-                case 'h' if watcher.view.question:
-                    asked, asking = None, True
-                case 'y' if asking:
-                    asked, asking = watcher.home(), False
-                case 'h':  # is refused, and why
+            pressed, question = key(_REFRESH), watcher.view.question
+            confirmed = asking and pressed == 'y'
+            asking = bool(question) and (pressed == 'h' or (asking and not pressed))
+            match pressed:
+                case 'y' if confirmed:
                     asked = watcher.home()
+                case 'h' if not question:
+                    asked = watcher.home()  # is refused, and why
                 case 'u':
-                    asked, asking = watcher.undo(), False
+                    asked = watcher.undo()
                 case 'r':
                     asked = watcher.stop() if watcher.view.recording else watcher.record()
                 case 'q':
                     return
-                case other if other:
-                    asking = False
             answer = asked.result() if asked and asked.done() else None
             live.update(table(watcher.view, answer, asking=asking), refresh=True)
 

@@ -214,7 +214,7 @@ def _freshness(joint: Joint) -> Tone:
 
 
 def _degrees(angle: float, digits: int = 3) -> str:
-    return f'{math.degrees(angle):.{digits}f}°'
+    return f'{round(math.degrees(angle), digits) + 0.0:.{digits}f}°'  # no -0.0
 
 
 def _duration(seconds: float) -> str:
