@@ -37,9 +37,9 @@ def read_home(path: Path, parameters: NodeParameters) -> tuple[float, str] | Non
         HomeFileError: if it cannot be used, or its zero is of another gear than that of the
             parameters, of another joint or of another kind of encoder.
     """
+    gear = _gear(parameters)
     try:
-        document = read_yaml(path, HomeFileError)
-        return _check(document, _gear(parameters))
+        return _check(read_yaml(path, HomeFileError), gear)
     except HomeFileError as error:
         if isinstance(error.__cause__, FileNotFoundError):
             return None

@@ -316,12 +316,13 @@ def test_a_live_node_publishes_what_a_real_recording_calls_for(
     assert_right(samples, found[OUTPUT], found[POSES])
 
 
-def test_live_messages_with_another_topic_joint_and_prefix_add_missing_stamps():
+def test_live_messages_with_another_topic_joint_and_prefix_add_missing_stamps(tmp_path):
     times = [SECOND + k for k in range(20)]
     little, big = (rotor_bytes(0, ['m1'], [1.0], little_endian=order) for order in (True, False))
     messages = [('/m', time, big if time % 2 else little) for time in times]
     source = Scripted(messages, types={'/m': JOINT_STATE})
-    settings = config(rotor_joint='', frame_prefix='left_')
+    (tmp_path / 'home.yaml').touch()  # which the node of the replay has to leave alone
+    settings = config(rotor_joint='', frame_prefix='left_', home_file=str(tmp_path / 'home.yaml'))
     found = by_topic(live_messages(source, settings, rotor_topic='/m'))
     for topic in (ROTOR, OUTPUT):
         assert stamps([(0.0, data) for data in found[topic]]) == times

@@ -200,7 +200,7 @@ def test_parameters_of_the_node_are_kept_beside_the_data(tmp_path, absolute):
     given = NodeParameters.load()
     calibration = str(tmp_path / 'gear.yaml') if absolute else 'gear.yaml'
     told = replace(given, ring_teeth=61, satellite_teeth=58, calibration=calibration)
-    note = watcher._keep_parameters(told, tmp_path)
+    note = watcher._keep_parameters(replace(told, home_file='home.yaml'), tmp_path)
     kept = NodeParameters.load(tmp_path / 'actuator.yaml')
     assert kept == replace(told, calibration=calibration if absolute else '')
     words = ' Give its calibration to gearkin validate: gear.yaml.'
