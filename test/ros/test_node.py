@@ -55,24 +55,6 @@ def node(context):
     node.destroy_node()
 
 
-@pytest.fixture
-def make(context):
-    """Return a function that creates a node with parameters; all are destroyed at the end."""
-    nodes = []
-
-    def make(namespace='', **values):
-        overrides = [Parameter(name, value=value) for name, value in values.items()]
-        node = GearStatePublisher(
-            context=context, namespace=namespace, parameter_overrides=overrides
-        )
-        nodes.append(node)
-        return node
-
-    yield make
-    for node in nodes:
-        node.destroy_node()
-
-
 def test_declared_parameters_are_those_of_the_shipped_file(node):
     shipped = yaml.safe_load(default_config().read_text())['/**']['ros__parameters']
     for branch in shipped['branches']:
