@@ -129,9 +129,13 @@ class RotorTurns:
     The position of a multi-turn encoder is used as it is. That of a single-turn encoder wraps once
     a turn and is unwrapped here; `referenced` is whether the number of turns is known. It
     is unknown at the start, and after a gap in which the rotor could have turned half a turn or
-    more either way from its expected angle; `home` makes it known. While it is unknown, counting
-    goes on from the nearest turn.
+    more either way from its expected angle; `home` and `refer` make it known. While it is unknown,
+    counting goes on from the nearest turn.
     """
+
+    longest_silence = 0.0
+    """ns without a sample after which a multi-turn encoder may count anew, so that its turns are
+    unknown at the start, too; 0: it never does."""
 
     def __init__(self, *, single_turn: bool, max_speed: float, max_acceleration: float) -> None:
         """Start with no position.
@@ -150,10 +154,15 @@ class RotorTurns:
     def reset(self) -> None:
         """Forget the position and the turns; the next update counts as the first."""
         self.position: RotorPosition | None = None
-        self.referenced = not self.single_turn
+        self.forget_turns()
         self._reading = 0.0
         self._stamp = 0
         self._velocity: float | None = None
+
+    def forget_turns(self) -> None:
+        """Make the turns as unknown as at the start; counting goes on."""
+        self.referenced = not (self.single_turn or self.longest_silence)
+        self.unseen_travel = math.inf  # rad, at most between the known and the counted turns
 
     def update(self, position: float, stamp: int, velocity: float | None = None) -> None:
         """Process the encoder's next sample.
@@ -165,12 +174,18 @@ class RotorTurns:
         """
         split = split_turns(position)
         if self.single_turn and self.position is not None:
-            expected, known = self._expected_turn((stamp - self._stamp) * 1e-9, velocity)
-            self.referenced = self.referenced and known
-            self.unknown_gaps += not known
+            elapsed = (stamp - self._stamp) * 1e-9
+            expected, known = self._expected_turn(elapsed, velocity)
+            if not known:
+                self.referenced = False
+                self.unknown_gaps += 1
+                self.unseen_travel += self.max_speed * elapsed + math.pi
             apparent = split.angle - self.position.angle
             turns = self.position.turns + round((expected - apparent) / TURN)
             split = RotorPosition(turns, split.angle)
+        elif self.longest_silence and self.position and stamp - self._stamp > self.longest_silence:
+            self.referenced = False
+            self.unknown_gaps += 1
         self.position = split
         self._reading, self._stamp, self._velocity = position, stamp, velocity
 
@@ -215,8 +230,14 @@ class RotorTurns:
         zero = self.zero_for(rotor_angle, direction)
         # Drop the turns counted so far for a single-turn encoder.
         self.position = split_turns(self._reading)
-        self.referenced = True
+        self.referenced, self.unseen_travel = True, 0.0
         return zero
+
+    def refer(self, turns: int) -> None:
+        """Add turns to those counted, after an update; they are known from now on."""
+        position = self._known_position()
+        self.position = position._replace(turns=position.turns + turns)
+        self.referenced, self.unseen_travel = True, 0.0
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:
         """Return the zero that `home` would give, and change nothing.

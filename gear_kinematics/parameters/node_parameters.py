@@ -121,6 +121,10 @@ class NodeParameters:
     output_encoder_zero: float = _parameter(
         "Position of the output's encoder at output angle 0, rad", -1e15, 1e15
     )
+    output_encoder_reference: str = _parameter(
+        "absolute: the encoder at the output finds the rotor's turns; none: it does not",
+        choices=('none', 'absolute'),
+    )
     transmission_error_window: float = _parameter(
         'Sliding window of the transmission error in diagnostics, s', 0.1, 60.0
     )
@@ -257,6 +261,11 @@ class NodeParameters:
     def single_turn(self) -> bool:
         """Whether the position of the rotor wraps once a turn."""
         return self.rotor_encoder == 'single_turn'
+
+    @property
+    def absolute(self) -> bool:
+        """Whether the encoder at the output finds the turns of the rotor."""
+        return self.output_encoder_reference == 'absolute'
 
 
 PARAMETERS: Mapping[str, Parameter] = {

@@ -37,6 +37,7 @@ from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
+from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
@@ -72,7 +73,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._settings = parameters = self._homing.restored(parameters)
         self._gear = parameters.gear
         self._input = RotorInput(parameters)
-        self._encoder = OutputEncoder(parameters)
+        self._reference = TurnReference(self._input)
+        self._encoder = OutputEncoder(parameters, self._reference)
         self._corrector: Corrector | None = None
         self._display: Display | None = None
         self._prepare([('calibration', parameters.calibration)])
@@ -178,7 +180,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._settings, self._messages, self._corrector = self._prepared
         self._input.parameters = self._settings
         if not self._encoder.fits(self._settings):
-            self._encoder = OutputEncoder(self._settings)  # discards earlier errors
+            # Discards earlier errors.
+            self._encoder = OutputEncoder(self._settings, self._reference)
             if self._corrector:
                 self._corrector.reset()
         elif self._corrector is not before:
@@ -207,7 +210,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             wanted = self._subscribed_corrections
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
         self._monitor.published += 1
-        if self._encoder.received and self._input.referenced:
+        if self._encoder.received and (self._input.referenced or self._settings.absolute):
             self._publish_errors(self._encoder.follow(sample, correction))
 
     def _on_output_encoder(self, data: bytes) -> None:
@@ -249,10 +252,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._missing_publisher.update(self._monitor.drivers)
         self._look_at_graph()
         now = time.monotonic()
-        reports = {
-            'rotor input': self._monitor.report(self._input, now),
-            'transmission error': self._encoder_monitor.report(self._encoder, self._settings, now),
-        }
+        errors = self._encoder_monitor.report(self._encoder, self._settings, now)
+        self._monitor.encoder_heard = bool(errors) and not self._encoder_monitor.silent
+        rotor = self._monitor.report(self._input, now, self._reference)
+        reports = {'rotor input': rotor, 'transmission error': errors}
         for driver in self._drivers:
             driver.log_silence()
         message = serialize_message(diagnostic_array(self, reports))

@@ -1,8 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The node's diagnostics of its inputs, without ROS."""
 
+import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Self
 
@@ -14,12 +15,16 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""
 
 _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
+_UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
+_AMBIGUOUS = 'Calibrate the gear, or lower transmission_error_limit to what it keeps.'
+_DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
 _NOT_COMPARED = 'Check that both drivers are running, and that their clocks agree.'
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
@@ -104,13 +109,17 @@ class InputMonitor(DriverMonitor):
     """Messages that the middleware failed to send."""
     zero_kept: str = ''
     """Where `rotor_zero` is kept until the next start, or why it is not."""
+    encoder_heard: bool = False
+    """Whether the encoder at the output was heard lately."""
     graph: GraphFaults = field(default_factory=GraphFaults)
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
     _received: int = 0
     _unsent: int = 0
 
-    def report(self, rotor_input: RotorInput, now: float) -> Report:
+    def report(
+        self, rotor_input: RotorInput, now: float, reference: TurnReference | None = None
+    ) -> Report:
         """Report on an input in the time since the last report, until now."""
         elapsed = now - max(self._reported, self.started)
         received = rotor_input.received - self._received
@@ -125,7 +134,11 @@ class InputMonitor(DriverMonitor):
         errors: list[Fault] = []
         if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
-        if not rotor_input.referenced:
+        origin = {}
+        if reference and rotor_input.parameters.absolute:
+            errors += _reference_faults(reference, encoder_heard=self.encoder_heard)
+            origin = {'reference': reference.origin}
+        elif not rotor_input.referenced:
             errors.append(Fault('not referenced', _NOT_REFERENCED))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
@@ -151,6 +164,7 @@ class InputMonitor(DriverMonitor):
             'referenced': str(rotor_input.referenced).lower(),
             'rotor zero (rad)': f'{rotor_input.parameters.rotor_zero:.9g}',
             'home file': self.zero_kept,
+            **origin,
             'loop-closure residual (m)': _residual(rotor_input),
         }
         return self._report(errors, warnings, values)
@@ -209,6 +223,30 @@ class EncoderMonitor(DriverMonitor):
             values['explained by the calibration (%)'] = _percent(fit.explained)
             values['outside the interval (%)'] = _percent(fit.outside)
         return self._report([], warnings, values)
+
+
+def _reference_faults(reference: TurnReference, *, encoder_heard: bool) -> Iterator[Fault]:
+    """Why the turns are unknown, or that the encoder at the output disagrees with them."""
+    decision = reference.decision
+    if reference.rotor.referenced:
+        if reference.disagreement:
+            encoder, rotor = (f'{math.degrees(angle):.2f}°' for angle in reference.disagreement)
+            what = f'output_encoder disagrees: {encoder} by the encoder, {rotor} by the rotor'
+            yield Fault(what, _DISAGREES)
+        return
+    if not encoder_heard:
+        cause, advice = 'output_encoder is silent', _NO_INPUT
+    elif decision is None:
+        cause = f'{reference.compared} of {SAMPLES} samples of output_encoder compared'
+        advice = _NOT_COMPARED
+    else:
+        used, margin = (f'{math.degrees(x):.3g}°' for x in (decision.used, decision.margin))
+        cause, advice = f'{used} of {margin} margin', _AMBIGUOUS
+        if decision.budget < decision.margin:
+            advice = _UNEXPLAINED
+        elif decision.budget - decision.delay < decision.margin:
+            advice = 'Stop the output.'
+    yield Fault(f'not referenced: {cause}', f'{advice} Or: {_NOT_REFERENCED}')
 
 
 def _rejections(counts: Counter[str]) -> Fault:

@@ -11,6 +11,7 @@ from gear_kinematics.correction.error_window import ErrorWindow
 from gear_kinematics.correction.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
@@ -33,9 +34,12 @@ def measured_angle(parameters: NodeParameters, position: Any) -> Any:
 
 
 class OutputEncoder:
-    """Compares the angles of output_encoder messages with the ideal output angle."""
+    """Compares the angles of output_encoder messages with the ideal output angle.
 
-    def __init__(self, parameters: NodeParameters) -> None:
+    If the parameters ask for it, the errors of unknown turns go to the reference alone.
+    """
+
+    def __init__(self, parameters: NodeParameters, reference: TurnReference | None = None) -> None:
         self.received = 0
         self.rejected: Counter[str] = Counter()
         self.window = ErrorWindow(round(parameters.transmission_error_window * SECOND))
@@ -47,6 +51,8 @@ class OutputEncoder:
             travel=parameters.transmission_error_travel,
         )
         """Counts the measured angles that were compared, and those that were not by cause."""
+        self._reference = reference if parameters.absolute else None
+        self._segment: int | None = None
 
     def fits(self, parameters: NodeParameters) -> bool:
         """Whether the errors so far are also those with other parameters."""
@@ -63,6 +69,7 @@ class OutputEncoder:
             RejectedInputError: if the message has no valid angle. It is counted.
         """
         self.received += 1
+        self._compare_one_segment()
         try:
             stamp, _, position, *_ = self._reader.read(data)
         except RejectedInputError as rejection:
@@ -74,12 +81,27 @@ class OutputEncoder:
     def follow(
         self, sample: RotorSample, correction: Correction | None = None
     ) -> Sequence[ErrorSample]:
-        """Process the rotor's next sample, with known turns; returns the same as `accept`."""
+        """Process the rotor's next sample, of known turns; returns the same as `accept`.
+
+        With a reference, the turns may be unknown.
+        """
+        self._compare_one_segment()
         ideal = self._ratio.output_angle(*sample.position, math)
         corrected = (correction.deviation, correction.half_width) if correction else ()
         return self._note(self.comparison.add_ideal(sample.stamp, *ideal, *corrected))
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
+        if self._reference and samples:
+            samples = self._reference.follow(samples)
+            self._compare_one_segment()
         for sample in samples:
             self.window.add(sample)
         return samples
+
+    def _compare_one_segment(self) -> None:
+        """Compare anew where the rotor's count has become another one."""
+        if self._reference and self._reference.rotor.segment != self._segment:
+            self._segment = self._reference.rotor.segment
+            self.comparison.reset()
+            self.window.clear()
+            self._reference.restart()

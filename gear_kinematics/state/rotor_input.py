@@ -11,9 +11,9 @@ import numpy as np
 
 from gear_kinematics.kinematics import RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.wire.batches import Array, decode_joint_states
-from gear_kinematics.wire.cdr import LATEST
+from gear_kinematics.wire.cdr import LATEST, SECOND
 from gear_kinematics.wire.joint_reader import (
     CLOCK_RESET,
     GREATEST,
@@ -46,11 +46,13 @@ class RotorSamples(NamedTuple):
     received: Array
     """Time of reception, ns."""
     segment: Array
-    """Number that rises where the turn count of a single-turn encoder restarts or is uncertain."""
+    """Number that rises where the rotor's turn count restarts, is uncertain or is referenced."""
     rejected: Array
     """(m,), ns: the stamps of rejected messages that have one."""
 
 
+_ENCODERS = tuple(n for n in PARAMETERS if n.startswith(('rotor_', 'output_encoder_')))
+"""The parameters that turns from an absolute encoder at the output rest on."""
 _COLUMNS = np.dtype('i8, f8, f8, f8, f8, i8, i8, i8')
 """Of `RotorSamples`, without the last."""
 
@@ -71,11 +73,16 @@ class RotorInput:
         self.last: RotorSample | None = None
         self._parameters = parameters
         self._reader = JointReader(parameters.rotor_joint)
+        self._zero = parameters.rotor_zero
+        self._restarts = 0
+        """Counts homing, references by the output, and parameters for another reference."""
         self._turns = RotorTurns(
             single_turn=parameters.single_turn,
             max_speed=parameters.max_rotor_speed,
             max_acceleration=parameters.max_rotor_acceleration,
         )
+        self._turns.longest_silence = _longest_silence(parameters)
+        self._turns.forget_turns()
 
     @property
     def parameters(self) -> NodeParameters:
@@ -86,7 +93,13 @@ class RotorInput:
     def parameters(self, parameters: NodeParameters) -> None:
         self._turns.max_speed = parameters.max_rotor_speed
         self._turns.max_acceleration = parameters.max_rotor_acceleration
+        self._turns.longest_silence = _longest_silence(parameters)
         before = self._parameters
+        if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
+            self._zero = parameters.rotor_zero
+            if parameters.absolute or before.absolute:
+                self._turns.forget_turns()
+                self._restarts += 1
         joint, kind = parameters.rotor_joint, parameters.rotor_encoder
         if (joint, kind) != (before.rotor_joint, before.rotor_encoder):
             self._turns.single_turn = parameters.single_turn
@@ -99,6 +112,11 @@ class RotorInput:
     def referenced(self) -> bool:
         """Whether the rotor's turn count is known."""
         return self._turns.referenced
+
+    @property
+    def unseen_travel(self) -> float:
+        """Rad, at most, since the turn count was known; infinite since the start or a reset."""
+        return self._turns.unseen_travel
 
     @property
     def unknown_turns(self) -> int:
@@ -119,8 +137,8 @@ class RotorInput:
 
     @property
     def segment(self) -> int:
-        """Number that rises where the turn count restarts or is uncertain."""
-        return self._turns.unknown_gaps + self.resets
+        """Number that rises where the turn count restarts, is uncertain or is referenced."""
+        return self._turns.unknown_gaps + self.resets + self._restarts
 
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         """Process the next message.
@@ -149,7 +167,19 @@ class RotorInput:
         Raises:
             RuntimeError: before the first valid message.
         """
-        return self._turns.home(rotor_angle, self._parameters.rotor_direction)
+        self._zero = self._turns.home(rotor_angle, self._parameters.rotor_direction)
+        self._restarts += 1
+        return self._zero
+
+    def refer(self, turns: int, angle: float = 0.0) -> None:
+        """Add 2π `turns` + `angle`, rad, to the rotor angle from the next message on.
+
+        The turns are known then, and a new segment begins; `parameters` remain.
+        """
+        direction = self._parameters.rotor_direction
+        self._turns.refer(direction * turns)
+        self._zero -= direction * angle
+        self._restarts += 1
 
     def zero_for(self, rotor_angle: float) -> float:
         """Return, or raise, what `home` would, and change nothing."""
@@ -184,7 +214,8 @@ class RotorInput:
         values[~(np.abs(values) <= GREATEST)] = np.nan
         clock = np.asarray(received, np.int64)[rows]
         rejected = states.stamp[~(usable | states.malformed)]
-        if self._parameters.single_turn or not self._in_order(stamps):
+        parameters = self._parameters
+        if parameters.single_turn or parameters.absolute or not self._in_order(stamps):
             return self._one_by_one(rows, stamps, values, clock, rejected)
         return self._all_at_once(rows, stamps, values, clock, rejected)
 
@@ -197,7 +228,7 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        zero_turns, zero_angle = split_turns(self._parameters.rotor_zero)
+        zero_turns, zero_angle = split_turns(self._zero)
         direction = self._parameters.rotor_direction
         samples = RotorSamples(
             stamps,
@@ -260,7 +291,7 @@ class RotorInput:
         direction = self._parameters.rotor_direction
         self.last = RotorSample(
             stamp,
-            self._turns.relative_to(self._parameters.rotor_zero, direction),
+            self._turns.relative_to(self._zero, direction),
             None if velocity is None else direction * velocity,
             None if effort is None else direction * effort,
         )
@@ -274,6 +305,11 @@ class RotorInput:
         else:
             self.resets += 1
             self._turns.reset()
+
+
+def _longest_silence(parameters: NodeParameters) -> float:
+    """ns; diagnostics, too, call the driver silent after so long."""
+    return parameters.input_timeout * SECOND if parameters.absolute else 0.0
 
 
 def _number_or_none(value: float) -> float | None:

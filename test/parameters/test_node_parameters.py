@@ -52,6 +52,7 @@ OUR_OWN = {
     'output_encoder_joint': '',
     'output_encoder_direction': 1,
     'output_encoder_zero': 0.0,
+    'output_encoder_reference': 'none',
     'transmission_error_window': 10.0,
     'transmission_error_limit': 0.003,
     'transmission_error_max_gap': 0.1,

@@ -1,0 +1,239 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Turns of the rotor from the encoder at the output, beside a simulated gear and real ones."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from live import SECOND, START, rotor_bytes
+
+from gear_kinematics.correction.corrector import Correction
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.diagnostics import InputMonitor
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
+
+MS = SECOND // 1000
+MULTI = replace(
+    NodeParameters.load(), output_encoder_reference='absolute', transmission_error_max_gap=0.001
+)
+SINGLE = replace(MULTI, rotor_encoder='single_turn')
+EXACT = 'turns of a single-turn encoder, exact'
+ENOUGH = SAMPLES + 3  # between the longest delays, and with a state of the new count
+GAP = {'transmission_error_max_gap': 0.015}  # s: the longest in the recordings
+LARA = {'gear_ratio': '121'} | GAP
+PRINTED = {'gear_ratio': '-36/5', 'transmission_error_limit': 0.011} | GAP  # its ratio is 1 % off
+
+
+class Bench:
+    """A gear whose output is where the test says, its encoders, and the parts of the node."""
+
+    def __init__(self, settings=SINGLE, *, switched_on_at=0.0) -> None:
+        self.settings, self.switched_on_at = settings, switched_on_at
+        self.zero = settings.rotor_zero
+        self.rotor = RotorInput(settings)
+        self.reference = TurnReference(self.rotor)
+        self.encoder = OutputEncoder(settings, self.reference)
+        self.monitor = InputMonitor(started=0.0, last_input=0.0, encoder_heard=True)
+        self.stamp, self.errors = START, []
+
+    def set(self, **changes) -> None:
+        """Change parameters as the node does."""
+        self.settings = self.rotor.parameters = replace(self.settings, **changes)
+        if not self.encoder.fits(self.settings):
+            self.encoder = OutputEncoder(self.settings, self.reference)
+
+    def turn(self, *outputs, error=0.0, step=MS, correction=None, measured=True):
+        """Send the messages at output angles, rad, and return the last one of the node."""
+        settings, ratio = self.settings, self.settings.gear.gear_ratio
+        for output in outputs:
+            self.stamp += step
+            position = settings.rotor_direction * float(output * ratio) + self.zero
+            position = (
+                position % math.tau if settings.single_turn else position - self.switched_on_at
+            )
+            data = rotor_bytes(self.stamp, position=[position])
+            sample = self.rotor.accept(data, lambda: 0)
+            self.errors += self.encoder.follow(sample, correction)
+            angle = settings.output_encoder_direction * (output + error)
+            position = (angle + settings.output_encoder_zero) % math.tau
+            data = rotor_bytes(self.stamp, ['shaft'], [position])
+            self.errors += self.encoder.accept(data, lambda: 0) if measured else []
+        turns, angle = self.rotor.last.position
+        return float((math.tau * turns + angle) / ratio)
+
+    def rest(self, output, count=ENOUGH, **how):
+        return self.turn(*[output] * count, **how)
+
+    def report(self):
+        """Return message, advice and the reference's value in diagnostics."""
+        _, message, values = self.monitor.report(self.rotor, 0.0, self.reference)
+        return message, values.get('advice', ''), values['reference']
+
+
+@pytest.mark.parametrize('ratio', ['-19', '36/5', '1457/26', '101', '1/3'])
+@pytest.mark.parametrize(('way', 'zero'), [(1, 0.0), (-1, 28.969), (1, -400.0)])
+@pytest.mark.parametrize('turns', [0.4, -0.3, 12.4])
+def test_a_single_turn_rotor_is_found_exactly(ratio, way, zero, turns):
+    settings = {'rotor_direction': way, 'output_encoder_direction': -way, 'rotor_zero': zero}
+    settings |= {'output_encoder_zero': zero, 'transmission_error_limit': 1e-3}
+    bench, output = Bench(replace(SINGLE, gear_ratio=ratio, **settings)), math.tau * turns
+    bench.rest(output, SAMPLES + 1)
+    assert bench.report()[0] == 'not referenced: 19 of 20 samples of output_encoder compared'
+    segment = bench.rotor.segment
+    found = bench.rest(output, 2)
+    assert (bench.report(), bench.rotor.segment) == (('ok', '', EXACT), segment + 1)
+    period = math.tau * Fraction(ratio).denominator
+    assert math.remainder(found - output, period) == pytest.approx(0.0, abs=1e-9)
+    assert abs(found) <= period / 2
+
+
+@pytest.mark.parametrize('position', [0.0, 1234.5, -1e9])
+def test_a_rotor_that_counts_from_its_start_is_set_to_the_measured_angle(position):
+    bench = Bench(replace(MULTI, rotor_zero=77.0), switched_on_at=position)
+    for error in 1e-3 * np.random.default_rng(1).uniform(-1.0, 1.0, 100):
+        bench.turn(2.5, error=error)
+    assert bench.rest(2.5, 1) == pytest.approx(2.5, abs=5e-4)
+    message, _, reference = bench.report()
+    assert (message, reference[:18]) == ('ok', 'output encoder, ± ')
+    assert 0.17 < float(reference[18:-1]) < 0.25  # limit and noise
+    first = bench.turn(3.0)
+    # An encoder that is silent for a while keeps its zero; one that was switched off gets another.
+    assert bench.turn(3.0, step=2 * SECOND) == first
+    assert bench.report()[0].startswith('not referenced: 0 of')
+    assert bench.rest(3.0) == first
+    bench.switched_on_at += 40.0
+    bench.turn(3.0, step=2 * SECOND)
+    assert bench.rest(3.0) == pytest.approx(3.0, abs=1e-9)
+    assert bench.report()[0] == 'ok'
+
+
+@pytest.mark.parametrize(
+    ('changes', 'error', 'speed', 'message', 'advice'),
+    [
+        ({}, math.radians(8.1), 0.0, '8.1° of 9.47° margin', 'Check gear_ratio, the directions'),
+        ({'transmission_error_limit': 0.2}, 0.0, 0.0, '11.5° of 9.47° margin', 'Calibrate'),
+        ({'gear_ratio': '1457/26'}, 0.0, 0.0, '0.172° of 0.124° margin', 'Calibrate'),
+        ({'rotor_encoder': 'multi_turn'}, 0.0, 30.0, '1.89° of 0.344° margin', 'Stop the output.'),
+        ({'transmission_error_max_gap': 0.006}, 0.0, 30.0, '10.5° of 9.47° margin', 'Stop'),
+    ],
+)
+def test_what_is_ambiguous_is_refused(changes, error, speed, message, advice):
+    bench = Bench(replace(SINGLE, **changes))
+    bench.turn(*(1e-3 * speed * k for k in range(3 * SAMPLES)), error=error)
+    assert (bench.report()[::2], bench.errors) == ((f'not referenced: {message}', 'none'), [])
+    assert bench.report()[1].startswith(advice)
+
+
+def test_a_calibration_is_subtracted_and_noise_is_added():
+    bench, correction = Bench(), Correction(0.15, 0.0, 0.01, 0.0)
+    assert bench.rest(1.0, error=0.15, correction=correction) == pytest.approx(1.0)
+    bench = Bench(replace(SINGLE, transmission_error_limit=0.05))
+    for k in range(2 * SAMPLES):
+        bench.turn(1.0, error=0.12 * (-1) ** k)
+    assert bench.report()[0] == 'not referenced: 9.74° of 9.47° margin'
+
+
+def test_when_turns_are_searched():
+    bench = Bench()
+    bench.monitor.encoder_heard = False
+    assert bench.report()[0] == 'not referenced: output_encoder is silent'
+    bench.monitor.encoder_heard = True
+    bench.rest(1.0, 10)
+    bench.rest(1.0, 5, measured=False)
+    bench.rest(1.0, 12)  # each time without the first and the last, about which motion is unknown
+    assert bench.report()[0] == 'not referenced: 18 of 20 samples of output_encoder compared'
+    assert bench.rest(1.0) == pytest.approx(1.0)
+    assert bench.turn(*np.linspace(1.0, 20.0, 4000)) == pytest.approx(20.0)  # beyond a turn
+    # In a gap the rotor turns thrice unseen; errors are those of known turns.
+    assert bench.turn(21.0, step=80 * MS) != pytest.approx(21.0)
+    assert bench.report()[::2] == (
+        'not referenced: 0 of 20 samples of output_encoder compared',
+        'none',
+    )
+    assert bench.rest(21.0) == pytest.approx(21.0, abs=1e-9)
+    assert max(abs(sample.error) for sample in bench.errors) < 1e-9
+    # In a longer one, the output could have turned as well: as after the start.
+    bench.turn(21.0, step=SECOND // 2)
+    assert bench.rest(21.0) == pytest.approx(21.0 - 3 * math.tau)
+    bench.stamp = START  # the clock is set back
+    bench.rest(2.0, 2)
+    assert bench.report()[2] == 'none'
+    assert bench.rest(2.0) == pytest.approx(2.0)
+    # Parameters of the encoders begin a search, others do not.
+    bench.set(transmission_error_window=5.0, transmission_error_limit=0.004)
+    assert bench.rotor.referenced
+    bench.set(output_encoder_zero=0.5)
+    assert not bench.rotor.referenced
+    assert bench.rest(1.0) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize('settings', [SINGLE, MULTI])
+@pytest.mark.parametrize('searched', [3, ENOUGH])
+def test_homing_ends_the_search_and_a_disagreement_moves_nothing(settings, searched):
+    bench = Bench(settings)
+    bench.rest(1.0, searched)
+    bench.set(rotor_zero=bench.rotor.zero_for(-19.0))  # as ~/home does
+    bench.rotor.home(-19.0)
+    assert bench.report() == ('ok', '', 'homed')
+    segment = bench.rotor.segment
+    for samples, found in ((SAMPLES - 1, 'ok'), (2, 'ok'), (SAMPLES - 1, 'ok'), (2, None)):
+        error = 0.0 if samples == 2 and found else -0.33
+        assert bench.rest(1.0, samples, error=error) == pytest.approx(1.0)
+        message = 'output_encoder disagrees: 38.39° by the encoder, 57.30° by the rotor'
+        assert bench.report()[0] == (found or message)
+    assert bench.rotor.segment == segment
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ('name', 'unit', 'settings'),
+    [
+        ('neura_jogging_final_joint1', math.tau / 2**24, LARA),
+        ('neura_jogging_joint_mass_joint2', math.tau / 2**24, LARA),
+        ('sspg_backlash_sine_vel_2.500tps_2.00s', 1.0, PRINTED),
+    ],
+)
+def test_a_real_gear_has_the_same_angle_from_wherever_it_is_started(
+    shared_path, name, unit, settings
+):
+    path = shared_path(f'data/dual_encoders/{name}.csv')
+    time, *angles = np.loadtxt(path, delimiter=',', skiprows=1, usecols=(0, 1, 2), unpack=True)
+    rotor, measured = np.multiply(angles, unit)
+    ideal = rotor / float(Fraction(settings['gear_ratio']))
+    zero = float(np.median(measured - ideal))
+    settings = replace(SINGLE, output_encoder_zero=zero, max_rotor_speed=200.0, **settings)
+    ratio = settings.gear.gear_ratio
+    stamps = (START + np.round(time * SECOND)).astype(int).tolist()
+    messages = [
+        tuple(rotor_bytes(stamp, position=[angle % math.tau]) for angle in both)
+        for stamp, *both in zip(stamps, rotor, measured, strict=True)
+    ]
+    for start in range(len(stamps) - 3 * SAMPLES):
+        bench, k = Bench(settings), start
+        while bench.reference.uncertainty is None:
+            assert k < start + 3 * SAMPLES
+            bench.encoder.follow(bench.rotor.accept(messages[k][0], lambda: 0))
+            bench.encoder.accept(messages[k][1], lambda: 0)
+            k += 1
+        turns, angle = bench.rotor.accept(messages[k][0], lambda: 0).position
+        error = float((math.tau * turns + angle) / ratio) - ideal[k]
+        assert abs(math.remainder(error, math.tau * ratio.denominator)) < 1e-9
+
+
+@pytest.mark.parametrize(('delay', 'start'), [(-95, 180), (60, 0), (95, 0)])  # ms
+def test_a_delay_about_the_start_and_stop_of_the_shaft_gives_no_wrong_turn(delay, start):
+    for speed in np.linspace(1.0, 15.0, 15):  # rad/s
+        bench = Bench(replace(SINGLE, transmission_error_max_gap=0.1))
+        time = np.arange(650)  # ms
+        outputs, delayed = (
+            speed / 1000 * np.clip(ms - start, 0, 200) - 1.0 for ms in (time, time - delay)
+        )
+        for output, late in zip(outputs, delayed, strict=True):
+            known = bench.rotor.referenced
+            angle = bench.turn(output, error=late - output)
+            assert not known or angle == pytest.approx(output, abs=1e-9)
+        assert bench.rotor.referenced
