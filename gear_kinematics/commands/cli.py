@@ -47,6 +47,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         'calibrate the real output, from recordings with an encoder at rotor and output',
         'calibrate encoder/monday encoder/tuesday -o calibration.yaml',
     ),
+    'commission': (
+        'write a parameter file: ratio, directions, zeros and kind of encoder from a recording',
+        'commission logs/monday -o actuator.yaml',
+    ),
     'plot': (
         'draw figures: kinematic scheme, roses, slides, output over time',
         'plot output output.svg --bag logs/monday',

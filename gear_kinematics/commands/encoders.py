@@ -18,7 +18,7 @@ _COLUMNS = {
 }
 
 
-def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
+def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: bool = True) -> None:
     """Add the recordings, and the options on how to read them.
 
     `load_config` applies `--ratio` and `--joint`, and `sources` returns the others.
@@ -26,37 +26,31 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
     Args:
         parser: of the command.
         roles: what the columns of CSV files can be, of `_COLUMNS`.
+        configured: whether the command takes parameters of the node, and a ratio.
     """
-    parser.add_argument('recordings', nargs='+', type=Path, metavar='BAG|CSV')
-    add_rotor(parser)
+    number = '+' if configured else '*'  # --live takes their place
+    parser.add_argument('recordings', nargs=number, type=Path, metavar='BAG|CSV')
+    add_rotor(parser, configured=configured)
     recording = arguments.group(parser, 'recording')
     recording.add_argument(
         '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
     )
-    arguments.add_config(parser)
-    ways = arguments.group(parser, 'gear').add_mutually_exclusive_group()
-    ways.add_argument(
-        '--ratio',
-        type=_ratio,
-        metavar='I',
-        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
-        'from the teeth)',
-    )
-    ways.add_argument(
-        '--fit-ratio', action='store_true', help='estimate the gear ratio from the recording'
-    )
+    arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
+    if configured:
+        _add_gear(parser)
     group = parser.add_argument_group('columns of a CSV', 'by default found by name')
     for role in roles:
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
     group.add_argument(
         '--angle-unit', choices=ANGLE_UNITS, help='of all angles (default: by name, or rad)'
     )
-    what = 'angle and torque are' if 'angle' in roles else 'the torque is'
-    group.add_argument(
-        '--on-rotor',
-        action='store_true',
-        help=f'{what} of the rotor, unless the name of the column says output',
-    )
+    if 'torque' in roles:
+        what = 'angle and torque are' if 'angle' in roles else 'the torque is'
+        group.add_argument(
+            '--on-rotor',
+            action='store_true',
+            help=f'{what} of the rotor, unless the name of the column says output',
+        )
     count = arguments.between(1, kind=int)
     group.add_argument(
         '--rotor-counts',
@@ -71,13 +65,28 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str) -> None:
     )
 
 
+def _add_gear(parser: argparse.ArgumentParser) -> None:
+    arguments.add_config(parser)
+    ways = arguments.group(parser, 'gear').add_mutually_exclusive_group()
+    ways.add_argument(
+        '--ratio',
+        type=ratio_text,
+        metavar='I',
+        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+        'from the teeth)',
+    )
+    ways.add_argument(
+        '--fit-ratio', action='store_true', help='estimate the gear ratio from the recording'
+    )
+
+
 def sources(options: argparse.Namespace) -> Sources:
     """The columns and topics given by the options."""
     names = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
     return Sources(
         **names,
         unit=options.angle_unit,
-        on_rotor=options.on_rotor,
+        on_rotor=getattr(options, 'on_rotor', False),
         rotor_counts=options.rotor_counts,
         output_counts=options.output_counts,
         rotor_topic=options.rotor_topic,
@@ -85,7 +94,7 @@ def sources(options: argparse.Namespace) -> Sources:
     )
 
 
-def _ratio(text: str) -> str:
+def ratio_text(text: str) -> str:
     """Check a gear ratio, and write it as the parameter `gear_ratio`."""
     try:
         return str(GearRatio.parse(text))

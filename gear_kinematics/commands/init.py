@@ -2,20 +2,14 @@
 """`gearkin init`: a parameter file for a driver that is running."""
 
 import argparse
-import sys
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from gear_kinematics.commands import ExitCode, arguments
+from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
 from gear_kinematics.parameters import default_config
 from gear_kinematics.parameters.new_config import new_config, start_command, write_new
 from gear_kinematics.report.document import printable
-from gear_kinematics.wire.nearest import nearest
-
-if TYPE_CHECKING:
-    from gear_kinematics.watch.drivers import Driver
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,7 +52,8 @@ def run(options: argparse.Namespace) -> ExitCode:
         )
     console = Console(stderr=to_stdout)
     list_drivers(drivers, console)
-    topic, joint = _choose(drivers, options)
+    given = options.topic, options.joint
+    topic, joint = choose_joint(drivers, given, 'rotor', '--topic and --joint')
     name = default_config().name if to_stdout else str(path)
     text = new_config(topic, joint, name)
     if to_stdout:
@@ -68,32 +63,3 @@ def run(options: argparse.Namespace) -> ExitCode:
         print(f'{path} is for the joint {printable(joint)} on {topic}. Start the node:')
         print(f'    {start_command(topic, name)}')
     return ExitCode.DONE
-
-
-def _choose(drivers: Sequence['Driver'], options: argparse.Namespace) -> tuple[str, str]:
-    """The topic and the joint that are given, the only ones, or those that the user names."""
-    if options.topic:
-        topic = f'/{options.topic.removeprefix("/")}'
-        known = [driver.topic for driver in drivers]
-        if topic not in known:
-            raise ValueError(f'no topic {topic} of type JointState{nearest(topic, known)}')
-        drivers = [driver for driver in drivers if driver.topic == topic]
-    joints = [(driver.topic, joint) for driver in drivers for joint in driver.joints]
-    if options.joint:
-        known = [joint for _, joint in joints]
-        if options.joint not in known:
-            hint = nearest(options.joint, known)
-            raise ValueError(f'no joint {options.joint}{hint}; there are: {", ".join(known)}')
-        joints = [(topic, joint) for topic, joint in joints if joint == options.joint]
-    if not joints:
-        raise ValueError(f'no message with joints in {options.wait:g} s')
-    if len(joints) == 1:
-        return joints[0]
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        raise ValueError('which joint is the rotor? Choose with --topic and --joint')
-    for number, (topic, joint) in enumerate(joints, 1):
-        print(f'{number:3}  {printable(joint)} on {topic}')
-    answer = input('Number of the joint of the rotor: ')
-    if not (answer.isdecimal() and 1 <= int(answer) <= len(joints)):
-        raise ValueError(f'{answer!r} is no number from 1 to {len(joints)}')
-    return joints[int(answer) - 1]

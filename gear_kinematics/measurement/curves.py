@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
+from gear_kinematics.measurement.envelope import MOST, envelope
 from gear_kinematics.measurement.figures import LOST_MOTION_SHARE, Figures
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.middle_line import middle_lines
@@ -13,7 +14,6 @@ from gear_kinematics.measurement.transmission import TransmissionFigures
 from gear_kinematics.measurement.wording import ARC_MINUTES, arc_minutes
 from gear_kinematics.report.document import Array, Line, Panel, Pen, number
 
-_MOST = 2000  # points of a line
 _TOGETHER = 1.1
 """Greatest ratio of orders that share a mark."""
 _WAYS: tuple[tuple[int, str, Pen], ...] = (
@@ -39,7 +39,7 @@ def _ramp_panel(figures: Figures) -> Panel:
     for half in (half for loop in ramps.loops for half in reversed(loop)):
         # A ramp may continue to a larger amplitude, which has its own panel.
         inside = np.flatnonzero(np.abs(half.torque) <= 1.02 * ramps.amplitude)
-        rows = inside[:: math.ceil(len(inside) / _MOST)]
+        rows = inside[:: math.ceil(len(inside) / MOST)]
         name, pen = _HALVES[half.rising]
         angle = (half.angle[rows] - centre) * ARC_MINUTES
         lines.append(Line(name, pen, half.torque[rows], angle))
@@ -106,18 +106,7 @@ def _marks(orders: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:
     return [(group[0][0], ', '.join(name for _, name in group)) for group in groups]
 
 
-def envelope(x: Array, y: Array) -> tuple[Array, Array]:
-    """Reduce points that are too dense for a plot to their minima and maxima."""
-    order = np.argsort(x, kind='stable')
-    x, y = x[order], y[order]
-    if len(x) <= _MOST:
-        return x, y
-    starts = np.linspace(0, len(x), _MOST // 2, endpoint=False, dtype=np.intp)
-    bounds = np.stack([np.minimum.reduceat(y, starts), np.maximum.reduceat(y, starts)], axis=1)
-    return np.repeat(x[starts], 2), bounds.ravel()
-
-
 def _peaks(x: Array, y: Array) -> tuple[Array, Array]:
     """Reduce points that are too dense for a logarithmic axis to their maxima."""
-    starts = np.unique(np.geomspace(1, len(x), _MOST).astype(np.intp) - 1)
+    starts = np.unique(np.geomspace(1, len(x), MOST).astype(np.intp) - 1)
     return x[starts], np.maximum.reduceat(y, starts)

@@ -109,7 +109,8 @@ def measure(
         if not encoders:
             raise RecordingError('a fit of the ratio needs the angles of rotor and output')
         fitted = fit_ratio(encoders, gear.gear_ratio)
-        gear = fitted.ratio if fitted.ratio != gear.gear_ratio else gear
+        ratio = fitted.ratio()
+        gear = ratio if ratio != gear.gear_ratio else gear
     if encoders:
         wrong = check_ratio(encoders, gear.gear_ratio)
         travel = parameters.transmission_error_travel

@@ -4,13 +4,15 @@
 import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.correction.uncertainty import Estimate, deviation, pseudo_values, student_t
+from gear_kinematics.correction.transmission_error import Direction
+from gear_kinematics.correction.uncertainty import Component, Estimate, combined, pseudo_values
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
@@ -18,26 +20,36 @@ from gear_kinematics.report.document import number
 
 Array = NDArray[np.float64]
 
+ENCODER_ERROR = math.radians(1.0)
+"""rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
+printed gears by about as much."""
 MOST_TEETH = 200
 """Teeth of the ring gears that are considered; any pair can be multiplied."""
 _BLOCKS = 23
 """Prime, as blocks of whole cycles of an error would not differ."""
-_LEAST_SAMPLES = 10
-"""Samples in a block."""
-_CYCLES = 2.0
-"""Turns of the rotor from which on its periodic error is fitted."""
+_SAMPLES = 230, 10_000
+"""At least and at most: more tell no more of errors that are correlated."""
+_ORDERS = 48, 4
+"""Of output and rotor: as 1/k, they add up to a random walk, as of pitch errors. With 24, 3 of 200
+simulated recordings of 340° were outside of twice the interval."""
+_ROTOR_SHARE = 0.1
+"""Of the error, at the output, that the gear may have once per turn of the rotor."""
+_TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
+"""Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
+_WIDE, _PLAY, _DELAY = 1.0, 0.1, 0.05
+"""Standard deviations, rad, rad and s, that hardly bind slope and offset, play, and delay."""
+_SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
+"""After a reversal, left out, as play is crossed: share of the whole travel, and at most, rad."""
+_STEP = 0.01
+"""s around a sample, for its speed; of a row without times."""
+_TURNS = (*(n / 12 for n in (*range(1, 12), *range(13, 25))), 2.5, 3, 4, 5, 7, 10, 20, 50, 100)
+"""Of the output, that may be advised."""
 _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
-_MAX_DISTANCE = 2.0
+_MAX_DISTANCE = 2
 """Expanded uncertainties within which a fraction or a tooth pair may be the true ratio."""
-_MIN_WRONG = 3.0
-"""Expanded uncertainties from which on an assumed ratio is wrong."""
-_ECCENTRICITY = 0.01
-"""Slope of the error that an eccentricity may have over less than a turn: no more is made."""
-_SHOWN = 10
-"""Tooth pairs that are named."""
-_ROUNDED = 1e-3
-"""Expanded uncertainties within which the estimate itself is rounded to a fraction."""
+_SHOWN, _COMPLEX = 10, 20
+"""Candidates and tooth pairs that are named; denominators of others over that of the simplest."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +58,23 @@ class RatioEstimate:
 
     measured: Estimate
     simplest: Fraction
-    """The fraction of the least denominator within twice the expanded uncertainty."""
+    """The first candidate."""
     chance: float
     """Probability that one as simple or simpler is there by coincidence, at most 1."""
+    candidates: tuple[Fraction, ...]
+    """Fractions within twice the expanded uncertainty by denominator, the nearest first."""
     tooth_pairs: tuple[tuple[int, int], ...]
     """Teeth (zk, zs) of ring gear and satellite that have a ratio within twice the expanded
     uncertainty, by rising zk up to `MOST_TEETH`."""
+    advice: str
+    """How far to turn the output to tell the ratio; empty if it is taken."""
+
+    @property
+    def taken(self) -> GearRatio | None:
+        """The simplest fraction, if it is in the interval and alone there and around it."""
+        distance = abs(self.measured.value - self.simplest)
+        alone = self.chance < _BY_CHANCE and distance <= (self.measured.uncertainty or 0.0)
+        return GearRatio(self.simplest) if alone else None
 
     @property
     def plus_minus(self) -> str:
@@ -62,35 +85,29 @@ class RatioEstimate:
 
     @property
     def teeth(self) -> str:
-        """The first tooth pairs, in words; empty without any."""
-        return ', '.join(f'{ring}/{satellite}' for ring, satellite in self.tooth_pairs[:_SHOWN])
+        """The first tooth pairs of the simplest ratio, in words; empty without any."""
+        pairs = ((zk, zs) for zk, zs in self.tooth_pairs if zs == self.simplest * (zs - zk))
+        return ', '.join(f'{zk}/{zs}' for zk, zs in islice(pairs, _SHOWN))
 
-    @property
     def ratio(self) -> GearRatio:
-        """The simplest fraction, unless it may be there by coincidence; else the estimate."""
-        if self.chance < _BY_CHANCE:
-            return GearRatio(self.simplest)
-        return GearRatio(simplest_fraction(*_interval(self.measured, _ROUNDED)))
+        """The ratio that is taken; raises RecordingError if the recording leaves it open."""
+        if self.taken is None:
+            raise RecordingError(
+                f'the recording leaves the ratio open: {self.plus_minus}, such as '
+                f'{", ".join(map(str, self.candidates))}; {self.advice}, or give it with --ratio'
+            )
+        return self.taken
 
 
-def fit_ratio(
-    encoders: Encoders, assumed: Fraction, eccentric_turns: float = 0.0
-) -> RatioEstimate:
-    """Estimate the ratio from a recording.
+def fit_ratio(encoders: Encoders, assumed: Fraction) -> RatioEstimate:
+    """Estimate the ratio from a recording, as `estimate_ratio` does.
 
-    Args:
-        encoders: of rotor and output.
-        assumed: a ratio that is near. Between samples, the output may turn at most half a turn
-            more or less than by this ratio.
-        eccentric_turns: turns of the output from which on an error once per turn is fitted.
-
-    Raises:
-        RecordingError: see `estimate_ratio`.
+    It must be so near to the assumed one that, between samples, the output turns at most half a
+    turn more or less than by that.
     """
     ideal = encoders.at_measured(encoders.ideal(assumed))
-    output = ideal + encoders.error(assumed)
-    eccentric = bool(np.ptp(output) >= eccentric_turns * TURN)
-    return estimate_ratio(ideal * float(assumed), output, eccentric=eccentric)
+    time = encoders.seconds if encoders.timed else None
+    return estimate_ratio(ideal * float(assumed), ideal + encoders.error(assumed), time)
 
 
 def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
@@ -110,8 +127,10 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
 
 def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     """Say in a clause which ratio a recording has, if it is clearly not the assumed one."""
-    found = _other_ratio(encoders, assumed)
-    if found is None:
+    found = None
+    with suppress(RecordingError):
+        found = fit_ratio(encoders, assumed)
+    if found is None or _within(found.measured, assumed):
         return ''
     measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
     if _within(found.measured, -assumed):
@@ -121,110 +140,167 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
 
 
 def _within(measured: Estimate, ratio: Fraction) -> bool:
-    return abs(measured.value - ratio) <= _MIN_WRONG * (measured.uncertainty or 0.0)
+    low, high = _interval(measured)
+    return low <= ratio <= high
 
 
-def _other_ratio(encoders: Encoders, assumed: Fraction) -> RatioEstimate | None:
-    """The ratio of a recording if it is not the assumed one; rough over less than a turn."""
-    ideal = encoders.at_measured(encoders.ideal(assumed))
-    ideal, error = ideal - np.mean(ideal), encoders.error(assumed)
-    travel = float(np.ptp(ideal))
-    slope = float(ideal @ error / (ideal @ ideal)) if travel else 0.0
-    rest = float(np.ptp(np.quantile(error - slope * ideal, [0.01, 0.99])))
-    if abs(slope) * travel <= rest or slope == -1.0:
-        return None
-    if travel * abs(1.0 + slope) >= TURN:
-        with suppress(RecordingError):
-            found = fit_ratio(encoders, assumed)
-            return None if _within(found.measured, assumed) else found
-    steep = _ECCENTRICITY
-    if travel * abs(assumed) < TURN:  # an error of the rotor's order may be as steep as that
-        steep *= max(1.0, abs(float(assumed)))
-    if abs(slope) <= steep or abs(slope) * travel <= _MIN_WRONG * rest:
-        return None
-    value = float(assumed) / (1.0 + slope)
-    standard = abs(value) * _ECCENTRICITY / student_t(_BLOCKS)
-    return _with_candidates(Estimate(value, standard, _BLOCKS, 1))
+def estimate_ratio(
+    rotor: Array, output: Array, time: Array | None = None, encoder_error: float = ENCODER_ERROR
+) -> RatioEstimate:
+    """Estimate the ratio by least squares that expect errors of a bounded size.
 
-
-def estimate_ratio(rotor: Array, output: Array, *, eccentric: bool = True) -> RatioEstimate:
-    """Estimate the ratio by least squares, and its uncertainty by leaving out block after block.
-
-    Play and the errors once per turn of the output and of the rotor are fitted as well. Blocks are
-    contiguous in time, so that the uncertainty is right for errors that are correlated over less
-    than a block. Below about one turn of the output it is large, as an error once per turn can
-    hardly be told from another ratio.
+    The output angle is slope · rotor angle + offset + play by direction + delay · speed + errors
+    that repeat with each turn of output or rotor: for k cycles a turn, their amplitude is at most
+    `encoder_error`/k, with a probability of 95 %. What less than a turn leaves open of them is in
+    the uncertainty; over more, they are fitted. All else is in the scatter of the estimates with
+    one block of successive samples left out.
 
     Args:
         rotor: (n,), rad, counting turns, in the order of time.
         output: (n,), rad, counting turns.
-        eccentric: whether an error once per turn of the output is fitted; otherwise it becomes
-            part of the ratio.
+        time: (n,), s.
+        encoder_error: rad, of the output's encoder and the gear, and of the rotor's encoder.
 
     Raises:
-        RecordingError: if there are too few samples, or the output does not follow the rotor.
+        RecordingError: if there are too few samples, or the output hardly turns with the rotor.
     """
-    if len(rotor) < _BLOCKS * _LEAST_SAMPLES:
-        raise RecordingError(
-            f'{len(rotor)} samples are too few to estimate the ratio, which takes at least '
-            f'{_BLOCKS * _LEAST_SAMPLES}'
-        )
-    travel = float(np.ptp(rotor))
-    if not travel:
-        raise RecordingError('the rotor does not turn')
-    x, y = (rotor - np.mean(rotor)) / travel, output - np.mean(output)
-    # The measured angle must not explain itself, as its sine would over less than a turn.
-    phase = x * float(x @ y / (x @ x))
-    columns = [x, np.ones(len(x))]
-    if eccentric:
-        columns += [np.cos(phase), np.sin(phase)]
-    if travel >= _CYCLES * TURN:
-        columns += [np.cos(rotor), np.sin(rotor)]
-    sign = np.sign(np.diff(rotor, prepend=rotor[0]))
-    moving = np.where(sign, np.arange(len(sign)), 0)
-    direction = sign[np.maximum.accumulate(moving)]  # at a standstill that of the last motion
-    if np.ptp(direction):
-        columns.append(direction)
-    sums = np.array([
-        [[left[part] @ right[part] for right in (*columns, y)] for left in columns]
-        for part in np.array_split(np.arange(len(x)), _BLOCKS)
-    ])  # fmt: skip
-    whole = sums.sum(axis=0)
-    fits = [
-        float(np.linalg.lstsq(rows[:, :-1], rows[:, -1], rcond=None)[0][0])
-        for rows in (whole, *(whole - sums))
-    ]
-    slope, scatter = fits[0], deviation(pseudo_values(fits).tolist()) / math.sqrt(_BLOCKS)
-    rounding = float(np.spacing(max(np.abs(output).max(), abs(slope))))
-    standard, freedom = math.hypot(scatter, rounding), _BLOCKS - len(columns)
-    if not _MAX_DISTANCE * student_t(freedom) * standard < abs(slope):
-        raise RecordingError('the output does not follow the rotor: no ratio fits')
-    value = travel / slope
-    return _with_candidates(Estimate(value, abs(value / slope) * standard, freedom, _BLOCKS))
+    for angle, body in ((rotor, 'rotor'), (output, 'output')):
+        if not np.ptp(angle):
+            raise RecordingError(f'the {body} does not turn')
+    centred = (rotor - np.mean(rotor)) / np.ptp(rotor)
+    slope = float(centred @ (output - np.mean(output)) / (centred @ centred) / np.ptp(rotor))
+    times = np.asarray(_STEP * np.arange(len(rotor)) if time is None else time, float)
+    way, late = _directions(slope * rotor), 0.0
+    for _ in range(2):  # again with the slope and the delay that were found
+        kept = np.flatnonzero(way * (times - late >= times[0]) * (times - late <= times[-1]))
+        kept = kept[:: -(-len(kept) // _SAMPLES[1]) or 1]
+        if len(kept) < _SAMPLES[0]:
+            few = f'{len(kept)} samples in motion are too few to estimate the ratio'
+            raise RecordingError(f'{few}, which takes at least {_SAMPLES[0]}')
+        around = [times[kept] - late + step for step in (-_STEP, 0.0, _STEP)]
+        early, at, after = (np.interp(when, times, rotor) for when in around)
+        # The measured angle must not explain itself: errors are periodic in that of the rotor.
+        columns = _columns(at, slope, encoder_error, way[kept], slope * (after - early))
+        fit = _Fit(columns, output[kept] - slope * at, float(np.spacing(np.abs(output).max())))
+        travel = float(np.ptp(at))
+        slope, late = slope + fit.slope / travel, late - fit.delay
+    parts = Component(fit.spread / travel), Component(fit.scatter / travel, _BLOCKS - 1)
+    found = Estimate(slope, *combined(parts), _BLOCKS)
+    if not _MAX_DISTANCE * (found.uncertainty or 0.0) < abs(slope):
+        error = f'for errors of {number(math.degrees(encoder_error))}°'
+        raise RecordingError(f'the output does not follow the rotor, or turns too little {error}')
+    estimate = _with_candidates(found.inverse())
+    if not estimate.taken:
+        estimate = replace(estimate, advice=_advice(estimate, fit, travel, encoder_error))
+    return estimate
+
+
+def _directions(angle: Array) -> Array:
+    """1 or -1 for each sample; 0 after a reversal, where play is crossed."""
+    direction = Direction(min(_SETTLED * float(np.ptp(angle)), _MOST_PLAY))
+    steps = np.diff(angle, prepend=angle[0]).tolist()
+    return np.array([direction.move(step) for step in steps], float)
+
+
+def _columns(rotor: Array, slope: float, error: float, *others: Array) -> Array:
+    """Each term as large as it may be: (n, terms); slope, offset, play and delay are first."""
+    x = (rotor - np.mean(rotor)) / np.ptp(rotor)
+    way, step = others or (np.zeros(len(x)), np.zeros(len(x)))
+    columns = [_WIDE * x, np.full(len(x), _WIDE), _PLAY * way, _DELAY / (2.0 * _STEP) * step]
+    amplitudes = error, (abs(slope) + _ROTOR_SHARE) * error
+    for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
+        for k in range(1, most + 1):
+            size = amplitude / (_TO_STANDARD * k)
+            columns += [size * np.cos(k * angle), size * np.sin(k * angle)]
+    return np.stack(columns, axis=1)
+
+
+class _Fit:
+    """Terms fitted by least squares, each expected to be about as large as it may be."""
+
+    def __init__(self, columns: Array, rest: Array, rounding: float) -> None:
+        rest, self.samples = rest - np.mean(rest), len(rest)
+        blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
+        sums = np.array([block.T @ block for block in blocks])
+        whole, fitted = sums.sum(axis=0), np.zeros(columns.shape[1])
+        for _ in range(5):  # with the noise that the one before left
+            self.noise = max(_noise(rest - columns @ fitted), rounding**2)
+            fitted, spread = _solve(whole, self.noise)
+        without = [_solve(whole - block, self.noise)[0][0] for block in sums]
+        values = pseudo_values([fitted[0], *without])
+        # Of the output over the whole travel, rad; spread is by noise and what terms leave open.
+        self.slope, self.spread = _WIDE * float(fitted[0]), _WIDE * spread
+        self.scatter = _WIDE * float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
+        self.delay = _DELAY * float(fitted[3])
+
+
+def _solve(sums: Array, noise: float) -> tuple[Array, float]:
+    """The coefficients, and the standard uncertainty of the first."""
+    values, vectors = np.linalg.eigh(sums[:-1, :-1])
+    values = np.where(values > 1e-14 * values[-1], values, 0.0)  # the rest is rounding
+    fitted: Array = vectors @ ((vectors.T @ sums[:-1, -1]) / (values + noise))
+    return fitted, math.sqrt(float(vectors[0] ** 2 @ (noise / (values + noise))))
+
+
+def _noise(residual: Array) -> float:
+    """Variance of a sample; of correlated ones, the one that the scatter of means implies."""
+    most, means, size = 0.0, residual, 1
+    while len(means) >= _SAMPLES[0] // 2 or size == 1:
+        most = max(most, size * float(np.mean(means**2)))
+        means, size = (means[:-1:2] + means[1::2]) / 2.0, 2 * size
+    return most
+
+
+def _advice(found: RatioEstimate, fit: _Fit, travel: float, error: float) -> str:
+    """How far to turn the output evenly so that the simplest candidate would be alone."""
+    ratio = abs(found.measured.value)
+    small = min(abs(found.simplest.numerator), found.simplest.denominator)
+    share = _BY_CHANCE / (_MAX_DISTANCE * small * (small + 1) * max(ratio, 1.0 / ratio))
+    # The scatter falls as the uncertainty does that the expected errors explain.
+    needed = fit.spread / travel * ratio * share / (found.measured.uncertainty or math.inf)
+    for turns in _TURNS:
+        even = np.linspace(0.0, turns * TURN * ratio, 1500)
+        columns = math.sqrt(fit.samples / len(even)) * _columns(even, 1.0 / ratio, error)
+        spread = _WIDE * _solve(np.pad(columns.T @ columns, (0, 1)), fit.noise)[1]
+        if even[-1] > travel and spread / even[-1] <= needed:
+            stops = ' (a gear with stops: confirm its nameplate ratio)' if turns > 1.0 else ''
+            return f'turn the output by {360.0 * turns:.0f}° or more{stops}'
+    return 'confirm its nameplate ratio, as no motion will tell it'
 
 
 def _with_candidates(measured: Estimate) -> RatioEstimate:
-    """Find the simple fraction and the tooth pairs that fit a measured ratio."""
-    low, high = _interval(measured, _MAX_DISTANCE)
-    simplest = simplest_fraction(low, high)
-    small, width = simplest.denominator, high - low
-    if abs(simplest) < 1:  # a gear to a higher speed is judged by the inverse of its ratio
-        small, width = abs(simplest.numerator), 1 / low - 1 / high
-    # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
-    chance = min(1.0, float(width) * small * (small + 1) / 2)
+    """Find the simple fractions and the tooth pairs that fit a measured ratio."""
+    low, high = _interval(measured)
     pairs = tooth_pairs(low, high, MOST_TEETH) if high < 0 else ()
-    return RatioEstimate(measured, simplest, chance, tuple(pairs))
+    if inverse := abs(measured.value) < 1.0:  # a gear to a higher speed is judged by the inverse
+        low, high = 1 / high, 1 / low
+    simple = list(islice(_fractions(low, high), _SHOWN))
+    small = simple[0].denominator
+    # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
+    chance = min(1.0, float(high - low) * small * (small + 1) / 2)
+    candidates = tuple(1 / one if inverse else one for one in simple)
+    return RatioEstimate(measured, candidates[0], chance, candidates, tuple(pairs), '')
 
 
-def _interval(measured: Estimate, factor: float) -> tuple[Fraction, Fraction]:
-    """The interval around a value, as wide as the expanded uncertainty times a factor."""
-    value, around = Fraction(measured.value), Fraction(factor * (measured.uncertainty or 0.0))
-    return value - around, value + around
+def _fractions(low: Fraction, high: Fraction) -> Iterator[Fraction]:
+    """Simple fractions in an interval: by rising denominator, the nearest to the middle first."""
+    least, middle = simplest_fraction(low, high).denominator, float(low + high) / 2
+    for q in range(least, _COMPLEX * least):
+        whole = range(math.ceil(low * q), math.floor(high * q) + 1)
+        for p in sorted(whole, key=lambda p: abs(p - middle * q)):
+            if math.gcd(p, q) == 1:
+                yield Fraction(p, q)
+
+
+def _interval(measured: Estimate) -> tuple[Fraction, Fraction]:
+    """Where the true ratio may be: the value and twice its expanded uncertainty around it."""
+    value, spread = Fraction(measured.value), Fraction(measured.uncertainty or 0.0)
+    return value - _MAX_DISTANCE * spread, value + _MAX_DISTANCE * spread
 
 
 def ratio_remarks(fitted: RatioEstimate) -> Iterator[str]:
-    """Describe an estimated ratio, in sentences."""
-    yield f'The gear ratio is estimated as {fitted.plus_minus}, and taken as {fitted.ratio}.'
+    """Describe an estimated ratio that is taken, in sentences."""
+    yield f'The gear ratio is estimated as {fitted.plus_minus}, and taken as {fitted.taken}.'
     yield (
         f'{fitted.simplest} is the simplest fraction within twice that uncertainty; one as simple '
         f'is there by coincidence with a probability of at most {number(fitted.chance, 2)}.'

@@ -11,6 +11,7 @@ from gear_kinematics.bag import (
     BagError,
     DamagedBagError,
     ReportProgress,
+    TopicMessages,
     by_topic,
 )
 from gear_kinematics.bag.roles import find_encoder_topic, find_rotor_topic, missing_encoder
@@ -20,6 +21,7 @@ from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
+    Loading,
     Recording,
     RecordingError,
     RotorMotion,
@@ -84,68 +86,105 @@ def _read_bag(
     sources: Sources,
     progress: ReportProgress | None,
 ) -> Recording:
-    rotor_input = RotorInput(parameters)
-    start, lacking, damage = None, '', None
+    damage = None
     with Bag(path) as bag:
         encoder = find_encoder_topic(bag, sources.encoder_topic)
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
+        states = States(rotor, encoder, parameters, _MOST_STATES)
         no_encoder = '' if encoder else missing_encoder(bag)
         topics = [topic for topic in (rotor, encoder) if topic]
-        inputs, outputs = _Columns(_MOST_STATES // len(topics)), _Columns(_MOST_STATES // 2)
         try:
             for batch in bag.batches(topics, progress):
                 found = by_topic(batch, topics)
-                if start is None and batch:
-                    start = min(of.received[0] for of in found.values() if of.received) / SECOND
-                new = rotor_input.accept_batch(found[rotor].data, found[rotor].received)
-                inputs.add((new.stamp, new.turns, new.angle, new.effort, new.segment))
-                if encoder:
-                    data, received = found[encoder].data, found[encoder].received
-                    states = decode_joint_states(data, parameters.output_encoder_joint)
-                    lacking = lacking or states.missing_joint
-                    outputs.add(_measured(states, received, parameters))
+                states.add(found[rotor], found[encoder] if encoder else None)
         except DamagedBagError as error:
             damage = str(error)
-    remarks = [f'{rotor}: {count} states {cause}' for cause, count in rotor_input.rejected.items()]
-    for topic, columns in zip(topics, (inputs, outputs), strict=False):
-        if columns.every > 1:
-            what = f'one state of {columns.every} is used: no more are kept in memory'
-            remarks.append(f'{topic}: {what}')
-    rotor_columns = inputs.joined()
-    rows = len(rotor_columns[0]) if rotor_columns else 0
-    if not rows:
-        why = f': {rotor_input.why_rejected}' if rotor_input.rejected else ''
-        raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
-    if (kept := before_set_back(rotor_columns[0])) < rows:
-        remarks.append(f'{rotor}: the clock was set back; the {kept} states before it are used')
-    stamp, turns, angle, effort, segment = (column[:kept] for column in rotor_columns)
-    has_effort = np.isfinite(effort).any()
-    motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
-    described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
-    encoders = locked = None
-    if encoder:
-        stamps, angles = outputs.joined()
-        if lacking and not len(stamps):
-            raise BagError(f'{path}: {encoder}: {lacking}')
-        encoders, left_out = _compared(motion, stamps, angles, parameters, sources)
-        remarks += [f'{encoder}: {text}' for text in left_out]
-        if not len(encoders.measured):
-            raise RecordingError(f'{path}: no output angle was measured between two rotor states')
-        described.append(f'output {encoder}, rad')
-    elif not has_effort:
-        raise BagError(f'{path}: {rotor} has no effort, and {no_encoder}')
-    else:
-        ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
-        step = step_of(sources.rotor_counts, motion.turned)
-        seconds = (stamp[known] - stamp[known][0]) / SECOND
-        torque, turned = float(ratio) * effort[known], motion.turned[known]
-        locked = locked_output(torque, turned, step, ratio, seconds)
-    if has_effort:
-        described.append(f'torque: effort of {rotor} times the ratio, N·m')
-    return Recording(
-        path, path.name, tuple(described), rows, start, encoders, locked, tuple(remarks), damage,
-        no_encoder,
-    )  # fmt: skip
+    return states.recording(path, sources, no_encoder, damage)
+
+
+class States:
+    """The states on the topics of the rotor and of the output's encoder, batch by batch."""
+
+    def __init__(
+        self, rotor: str, encoder: str | None, parameters: NodeParameters, most: int
+    ) -> None:
+        """Keep at most so many states of both topics; of more, one of every two, four, ..."""
+        self._rotor, self._encoder, self._parameters = rotor, encoder, parameters
+        self._input = RotorInput(parameters)
+        self._inputs, self._outputs = _Columns(most // (2 if encoder else 1)), _Columns(most // 2)
+        self._start: float | None = None
+        self._lacking = ''
+
+    def add(self, rotor: TopicMessages, encoder: TopicMessages | None) -> None:
+        """Add what came on both topics."""
+        firsts = [of.received[0] for of in (rotor, encoder) if of and of.received]
+        if self._start is None and firsts:
+            self._start = min(firsts) / SECOND
+        new = self._input.accept_batch(rotor.data, rotor.received)
+        self._inputs.add((new.stamp, new.turns, new.angle, new.effort, new.segment))
+        if encoder:
+            states = decode_joint_states(encoder.data, self._parameters.output_encoder_joint)
+            self._lacking = self._lacking or states.missing_joint
+            self._outputs.add(_measured(states, encoder.received, self._parameters))
+
+    def recording(
+        self, path: Path, sources: Sources, no_encoder: str = '', damage: str | None = None
+    ) -> Recording:
+        """Return what has been added so far as a recording of a path.
+
+        Where there is no topic of an encoder, `no_encoder` says what is to be done, and `damage`,
+        what has ended the reading. BagError or RecordingError: there is nothing to measure.
+        """
+        rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
+        rejected = self._input.rejected
+        remarks = [f'{rotor}: {count} states {cause}' for cause, count in rejected.items()]
+        for topic, columns in ((rotor, self._inputs), (encoder, self._outputs)):
+            if columns.every > 1:
+                what = f'one state of {columns.every} is used: no more are kept in memory'
+                remarks.append(f'{topic}: {what}')
+        rotor_columns = self._inputs.joined()
+        rows = len(rotor_columns[0]) if rotor_columns else 0
+        if not rows:
+            why = f': {self._input.why_rejected}' if rejected else ''
+            raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
+        if (kept := before_set_back(rotor_columns[0])) < rows:
+            what = f'the clock was set back; the {kept} states before it are used'
+            remarks.append(f'{rotor}: {what}')
+        stamp, turns, angle, effort, segment = (column[:kept] for column in rotor_columns)
+        has_effort = np.isfinite(effort).any()
+        motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
+        described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
+        encoders = locked = None
+        if encoder:
+            stamps, angles = self._outputs.joined()
+            if self._lacking and not len(stamps):
+                raise BagError(f'{path}: {encoder}: {self._lacking}')
+            encoders, left_out = _compared(motion, stamps, angles, parameters, sources)
+            remarks += [f'{encoder}: {text}' for text in left_out]
+            if not len(encoders.measured):
+                what = 'no output angle was measured between two rotor states'
+                raise RecordingError(f'{path}: {what}')
+            described.append(f'output {encoder}, rad')
+        elif not has_effort:
+            raise BagError(f'{path}: {rotor} has no effort, and {no_encoder}')
+        else:
+            locked = _locked(motion, effort, parameters, sources)
+        if has_effort:
+            described.append(f'torque: effort of {rotor} times the ratio, N·m')
+        return Recording(
+            path, path.name, tuple(described), rows, self._start, encoders, locked,
+            tuple(remarks), damage, no_encoder,
+        )  # fmt: skip
+
+
+def _locked(
+    motion: RotorMotion, effort: Array, parameters: NodeParameters, sources: Sources
+) -> Loading:
+    ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
+    step = step_of(sources.rotor_counts, motion.turned)
+    seconds = (motion.stamp[known] - motion.stamp[known][0]) / SECOND
+    torque, turned = float(ratio) * effort[known], motion.turned[known]
+    return locked_output(torque, turned, step, ratio, seconds)
 
 
 def _measured(
@@ -174,6 +213,7 @@ class _Columns:
         while self._kept > self._most:
             self.every *= 2
             columns, self._kept = self.joined(), 0
+            self._batches.clear()
             self._keep([column[::2].copy() for column in columns])
 
     def _keep(self, columns: list[Array]) -> None:
@@ -184,7 +224,10 @@ class _Columns:
         """Columns of all batches; frees those of the batches one by one."""
         columns = list(zip(*self._batches, strict=True))
         self._batches.clear()
-        return [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
+        joined = [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
+        if joined:
+            self._batches.append(joined)
+        return joined
 
 
 def _compared(

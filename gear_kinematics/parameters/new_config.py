@@ -13,7 +13,7 @@ import yaml
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.node_parameters import NODE, default_config
 from gear_kinematics.share import PACKAGE
-from gear_kinematics.wire.topics import ROTOR_STATE
+from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE
 
 
 def new_config(topic: str, joint: str, name: str) -> str:
@@ -23,11 +23,7 @@ def new_config(topic: str, joint: str, name: str) -> str:
     """
     # The head of the default file is about the default file.
     body = re.sub(r'\A(#.*\n)+', '', default_config().read_text('utf-8'))
-    if joint.isascii() and joint.isprintable():
-        quoted = "'{}'".format(joint.replace("'", "''"))
-    else:
-        quoted = yaml.safe_dump(joint, default_style='"', width=math.inf).strip()
-    body = re.sub(r'(?m)^( +rotor_joint: ).*', lambda match: match[1] + quoted, body)
+    body = re.sub(r'(?m)^( +rotor_joint: ).*', lambda match: match[1] + quoted(joint), body)
     return (
         f'# For the joint {_one_line(joint)} on {_one_line(topic)}. Start the node with\n'
         f'#     {start_command(topic, name)}\n'
@@ -35,9 +31,17 @@ def new_config(topic: str, joint: str, name: str) -> str:
     )
 
 
-def start_command(topic: str, name: str) -> str:
-    """The command that starts the node for a driver's topic with a parameter file.
+def quoted(text: str) -> str:
+    """Write a text as a scalar of YAML."""
+    if text.isascii() and text.isprintable():
+        return "'{}'".format(text.replace("'", "''"))
+    return str(yaml.safe_dump(text, default_style='"', width=math.inf)).strip()
 
+
+def start_command(topic: str, name: str, encoder: str = '') -> str:
+    """The command that starts the node with a parameter file, for the topics of a driver.
+
+    An empty topic is not remapped, as that of an encoder at the output that there is not.
     A workspace of ROS has the node not on the PATH, a virtual environment only while it is active.
     """
     program = ['ros2', 'run', PACKAGE, NODE]
@@ -45,7 +49,10 @@ def start_command(topic: str, name: str) -> str:
         program = [NODE]
     elif (beside := Path(sys.executable).with_name(NODE)).exists():
         program = [str(beside)]
-    arguments = '--ros-args', '--params-file', name, '-r', f'{ROTOR_STATE}:={topic}'
+    arguments = ['--ros-args', '--params-file', name]
+    for own, theirs in ((ROTOR_STATE, topic), (OUTPUT_ENCODER, encoder)):
+        if theirs:
+            arguments += ['-r', f'{own}:={theirs}']
     return shlex.join([*program, *arguments])
 
 

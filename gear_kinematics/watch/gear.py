@@ -129,6 +129,11 @@ class GearNode:
         """Read the parameters once more."""
         self._names, self._asked, self._deadline = [], None, 0.0
 
+    def set(self, values: Mapping[str, Any]) -> Future:
+        """Set all of some parameters, or none of them."""
+        parameters = [Parameter(name, value=value) for name, value in values.items()]
+        return self._client.set_parameters_atomically(parameters)
+
     def _subscribe(self, outputs: dict[str, str]) -> None:
         for name in _SHOWN:
             topic = outputs.get(name, '')

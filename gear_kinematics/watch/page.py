@@ -28,6 +28,18 @@ _BODY = """\
 <path vector-effect="non-scaling-stroke"/></svg></figure></template>
 </section>
 <section class="live"><h2>Diagnostics</h2><dl id="diagnostics"></dl></section>
+<section id="commission" hidden><details>
+<summary>Commission: find the parameters of a gear with an encoder at rotor and output</summary>
+<form><label>rotor <select name="rotor"></select></label>
+<label>output <select name="output"></select></label>
+<label>ratio, if known <input name="ratio" maxlength="40" placeholder="121"></label>
+<button>Start</button></form>
+<div id="guide" hidden><p role="status"></p><progress></progress><p class="detail"></p>
+<dl></dl><div class="steps">
+<button type="button" value="zero_here">Output angle is 0 here</button>
+<button type="button" value="write">Write actuator.yaml</button>
+<button type="button" value="take">Take into the running node</button>
+<button type="button" value="end">End</button></div></div></details></section>
 <section><details id="drivers"><summary>Drivers: topics of type JointState</summary>
 <div class="scroll"><table><thead><tr><th scope="col" class="words">joint</th>
 <th scope="col" class="words">topic</th><th scope="col" class="number">rate</th><td></td></tr>

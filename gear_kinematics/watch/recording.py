@@ -50,7 +50,7 @@ class Recorded(NamedTuple):
         return f'{sum(self.counts.values())} messages, {lost}'
 
 
-class _Channel:
+class Channel:
     """A topic that is recorded: reliably, unless a publisher offers less."""
 
     def __init__(self, node: Node, topic: str, kind: str) -> None:
@@ -92,7 +92,7 @@ class Recording:
         self._began = time.monotonic()
         self._seconds = 0.0  # at its end
         self._error = ''
-        self._channels: dict[str, _Channel] = {}  # by topic
+        self._channels: dict[str, Channel] = {}  # by topic
         self._answers: dict[str, str] = {}
         self._stopping = Event()
         self._queue: SimpleQueue[list[Message] | None] = SimpleQueue()
@@ -108,7 +108,7 @@ class Recording:
         """
         for topic, kind in types.items():
             if topic not in self._channels:
-                self._channels[topic] = _Channel(node, topic, kind)
+                self._channels[topic] = Channel(node, topic, kind)
         self._answers |= answers
 
     def status(self) -> Recorded:
@@ -158,7 +158,7 @@ class Recording:
         finally:
             self._queue.put(None)
 
-    def _pass_on(self, channels: Iterable[_Channel]) -> None:
+    def _pass_on(self, channels: Iterable[Channel]) -> None:
         messages = [message for channel in channels for message in channel.take()]
         self._queue.put(sorted(messages, key=lambda message: message[1]))
 

@@ -18,10 +18,11 @@ from tornado.httpserver import HTTPServer
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
+from gear_kinematics.measurement.commissioning.analysis import Channel, Request
 from gear_kinematics.watch.page import drawing, watch_page
 from gear_kinematics.watch.text import wait_and_list
-from gear_kinematics.watch.view import View
-from gear_kinematics.watch.watcher import PERIOD, Answer, Watcher
+from gear_kinematics.watch.view import Answer, View
+from gear_kinematics.watch.watcher import PERIOD, Watcher
 
 HOST = '127.0.0.1'
 _NAMES = (HOST, 'localhost')
@@ -138,6 +139,12 @@ class _Live(_Guarded, WebSocketHandler):
             match command['do']:
                 case 'configure':
                     asked = watcher.configure(str(command['topic']), str(command['joint']))
+                case 'commission':
+                    rotor, output = (Channel(*map(str, command[of])) for of in ('rotor', 'output'))
+                    request = Request(rotor=rotor, output=output)
+                    asked = watcher.commission(request, str(command['ratio']))
+                case 'zero_here' | 'write' | 'take' | 'end' as name:
+                    asked = watcher.commissioning(name)
                 case 'home' | 'undo' | 'record' | 'stop' as name:
                     asked = getattr(watcher, name)()
                 case other:

@@ -14,17 +14,20 @@ from datetime import datetime
 
 from rich.console import Console, Group, RenderableType
 from rich.live import Live
+from rich.progress_bar import ProgressBar
 from rich.table import Table as RichTable
 from rich.text import Text
 
 from gear_kinematics.report.document import Document, Section, Table, printable
 from gear_kinematics.report.text import render
+from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import Driver
-from gear_kinematics.watch.view import View
-from gear_kinematics.watch.watcher import Answer, Watcher
+from gear_kinematics.watch.view import Answer, Commission, Entry, View
+from gear_kinematics.watch.watcher import Watcher
 
 _REFRESH = 0.1  # s
 _LINES = 1.0  # s between lines in a pipe
+_POLL = 0.03  # s between looks at the messages
 _PATIENCE = 5.0  # s to wait for a driver
 _COUNTING = 1.5  # s to measure the rates of those that are found
 _STYLES = {'': 'bold', 'stale': 'dim', 'notable': 'yellow', 'pass': 'green', 'unusable': 'magenta'}
@@ -120,14 +123,8 @@ def table(view: View, answer: Answer | None = None, *, asking: bool = False) -> 
     """Show a view, the question before homing, and the answer to a command, as a table."""
     state = (f'{view.state} {view.duration}', _STYLES.get(view.tone, _BAD))
     title = Text.assemble(('gearkin watch ', 'bold'), f'{view.node} ', state)
-    grid = RichTable.grid(padding=(0, 2))
-    grid.add_column(no_wrap=True)
+    grid = _grid((*view.values, *view.diagnostics))
     parts: list[RenderableType] = [title, Text(printable(view.message)), grid, Text()]
-    for entry in (*view.values, *view.diagnostics):
-        name, value, detail = map(printable, (entry.name, entry.value, entry.detail))
-        style = _STYLES.get(entry.tone, _BAD)
-        shown = Text.assemble((f'{value:<12}', style), '  ' * bool(detail), (detail, 'dim'))
-        grid.add_row(Text(name, 'dim'), shown)
     if view.state == 'no node':
         for driver in view.drivers:
             joints = printable(', '.join(driver.joints))
@@ -145,6 +142,51 @@ def table(view: View, answer: Answer | None = None, *, asking: bool = False) -> 
     undo = 'u undo home   ' if view.undo else ''
     parts += [Text(), Text(f'h home   {undo}r {record}   q end', 'dim')]
     return Group(*parts)
+
+
+def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]) -> None:
+    """Guide through commissioning until nothing is open, or a key or a signal ends it."""
+    due, said, shown = time.monotonic(), '', live.shown()
+    with _keys() as key, Live(console=console, auto_refresh=False, transient=True) as screen:
+        while not stopped() and shown.known < 1.0:
+            live.poll()
+            match key(_POLL):
+                case 'z':
+                    live.zero_here()
+                case 'q' | '\n':
+                    return
+            if time.monotonic() < due:
+                continue
+            shown = live.shown()
+            if console.is_terminal:
+                due += _REFRESH
+                screen.update(progress(shown), refresh=True)
+                continue
+            due += _LINES
+            known = '; '.join(f'{entry.name} {entry.value}' for entry in shown.entries)
+            parts = f'{shown.known:.0%}', shown.advice, shown.heard, known
+            if (new := printable(' | '.join(filter(None, parts)))) != said:
+                console.print(Text(new), soft_wrap=True)
+            said = new
+
+
+def progress(shown: Commission) -> RenderableType:
+    """Show what to do, a bar, and what is known."""
+    heard, advice = printable(shown.heard), printable(shown.advice)
+    keys = Text('z the output angle is 0 here   Enter end', 'dim')
+    bar, grid = ProgressBar(1.0, shown.known, width=40), _grid(shown.entries)
+    return Group(Text(advice, 'bold'), bar, Text(heard), grid, keys)
+
+
+def _grid(entries: Sequence[Entry]) -> RichTable:
+    grid = RichTable.grid(padding=(0, 2))
+    grid.add_column(no_wrap=True)
+    for entry in entries:
+        name, value, detail = map(printable, (entry.name, entry.value, entry.detail))
+        style = _STYLES.get(entry.tone, _BAD)
+        shown = Text.assemble((f'{value:<12}', style), '  ' * bool(detail), (detail, 'dim'))
+        grid.add_row(Text(name, 'dim'), shown)
+    return grid
 
 
 @contextmanager

@@ -46,6 +46,28 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
+class Commission:
+    """What two encoders have told of a gear so far."""
+
+    heard: str
+    advice: str  # what to do now
+    known: float = 0.0  # share of what a parameter file needs
+    entries: tuple[Entry, ...] = ()  # parameters with their evidence, and what is open
+
+
+class Answer(NamedTuple):
+    """What came of a command."""
+
+    text: str
+    done: bool
+    command: str = ''
+    """To copy into a terminal."""
+
+    def __str__(self) -> str:
+        return f'{self.text} {self.command}'.strip()
+
+
+@dataclass(frozen=True, slots=True)
 class View:
     """What there is to see."""
 
@@ -64,6 +86,7 @@ class View:
     question: str = ''  # to ask before homing; '' where there is nothing to home
     undo: bool = False  # whether the last homing can be undone
     gear: int = 0  # raised when the drawing of the gear may have changed
+    commission: Commission | None = None  # while a gear is commissioned
 
 
 def view_of(gear: GearNode, rotor: Latest | None, others: Sequence[str]) -> View:

@@ -5,8 +5,9 @@
   const RETRY = 1000; // ms
   const SPAN = 10; // s of a curve
   const find = id => document.getElementById(id);
-  const [mechanism, drivers, home, record, command, question, undo] =
-    ['mechanism', 'drivers', 'home', 'record', 'command', 'question', 'undo'].map(find);
+  const [mechanism, drivers, home, record, command, question, undo, commission, guide] =
+    ['mechanism', 'drivers', 'home', 'record', 'command', 'question', 'undo', 'commission', 'guide'].map(find);
+  const form = commission.querySelector('form');
   let server;
   let frame; // the latest one that is not shown yet
   let recording = false;
@@ -79,6 +80,30 @@
     });
   }
 
+  function showJoints(found) {
+    const joints = found.flatMap(({topic, joints}) => joints.map(joint => [topic, joint]));
+    const keys = joints.map(channel => JSON.stringify(channel));
+    if (guide.hidden) commission.hidden = keys.length < 2;
+    [form.rotor, form.output].forEach((select, k) => {
+      if (select.dataset.keys === String(keys)) return;
+      const chosen = keys.includes(select.value) ? select.value : keys[k] ?? '';
+      select.replaceChildren(...joints.map(([topic, joint], n) =>
+        new Option(`${joint} on ${topic}`, keys[n])));
+      [select.value, select.dataset.keys] = [chosen, String(keys)];
+    });
+  }
+
+  function showCommission(now) {
+    const button = form.querySelector('button');
+    guide.hidden = !now;
+    set(button, now ? 'Change' : 'Start');
+    if (!now) return;
+    fill(guide, [now.advice, now.known === 1 ? 'pass' : '']);
+    guide.querySelector('progress').value = now.known;
+    set(guide.querySelector('.detail'), now.heard, 'detail');
+    showEntries(guide.querySelector('dl'), now.entries);
+  }
+
   function showState(state, tone, duration, message) {
     const name = state.replace(' ', '-');
     if (document.body.className !== name) {
@@ -116,6 +141,8 @@
       () => find('curve').content.firstElementChild.cloneNode(true));
     shown.forEach((entry, k) => showCurve(find('curves').children[k], entry));
     showDrivers(now.drivers);
+    showJoints(now.drivers);
+    showCommission(now.commission);
   }
 
   function showAnswer({text, done, command: line}) {
@@ -165,6 +192,12 @@
   });
   undo.addEventListener('click', () => send({do: 'undo'}));
   record.addEventListener('click', () => send({do: recording ? 'stop' : 'record'}));
+  form.addEventListener('submit', event => {
+    event.preventDefault();
+    const [rotor, output] = [form.rotor, form.output].map(select => JSON.parse(select.value));
+    send({do: 'commission', rotor, output, ratio: form.ratio.value});
+  });
+  guide.addEventListener('click', ({target}) => target.value && send({do: target.value}));
   command.querySelector('button').addEventListener('click', async ({target}) => {
     await navigator.clipboard.writeText(command.querySelector('code').textContent);
     set(target, 'Copied');

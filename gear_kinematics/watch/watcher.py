@@ -11,20 +11,22 @@ from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from rclpy.executors import SingleThreadedExecutor
 from std_srvs.srv import Trigger
 
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.measurement.commissioning.analysis import Request
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import new_config, start_command, unused_name, write_new
 from gear_kinematics.ros.live import replay_node
-from gear_kinematics.watch import graph
+from gear_kinematics.watch import commissioning, graph
+from gear_kinematics.watch.commissioning import LiveCommissioning
 from gear_kinematics.watch.drivers import Driver, Drivers
 from gear_kinematics.watch.gear import GearNode
 from gear_kinematics.watch.recording import RECORDED_TYPES, Recording
-from gear_kinematics.watch.view import View, state_of, view_of
+from gear_kinematics.watch.view import Answer, View, state_of, view_of
 from gear_kinematics.wire import topics
 
 PERIOD = 1.0 / 30.0
@@ -33,18 +35,6 @@ _LOOK = 0.5  # s between two looks at the graph
 _ANSWER = 5.0  # s to wait for the answer of a service
 
 _NOT_RECORDED = (topics.JOINT_STATES,)  # the same as output_state and body_poses, in other words
-
-
-class Answer(NamedTuple):
-    """What came of a command."""
-
-    text: str
-    done: bool
-    command: str = ''
-    """To copy into a terminal."""
-
-    def __str__(self) -> str:
-        return f'{self.text} {self.command}'.strip()
 
 
 class Watcher:
@@ -69,6 +59,7 @@ class Watcher:
         self._gear: GearNode | None = None
         self._others: list[str] = []
         self._recording: Recording | None = None
+        self._live: LiveCommissioning | None = None
         self._homings: list[Callable[[], bool]] = []
         self._drawing = 0
         self._failed = ''
@@ -107,6 +98,19 @@ class Watcher:
         """Write a parameter file for the joint of a driver into the working directory."""
         return self._do(lambda answer: answer.set_result(self._configure(topic, joint)))
 
+    def commission(self, request: Request, ratio: str) -> 'Future[Answer]':
+        """Begin to hear the joints of a gear, or give another ratio, or '' for none."""
+
+        def begin(answer: 'Future[Answer]') -> None:
+            self._live = commissioning.begin(self._live, self._node, request, ratio.strip())
+            answer.set_result(Answer('', done=True))
+
+        return self._do(begin)
+
+    def commissioning(self, step: str) -> 'Future[Answer]':
+        """Do one of the steps zero_here, write, take and end."""
+        return self._do(lambda answer: self._step(step, answer))
+
     def _do(self, task: Callable[['Future[Answer]'], None]) -> 'Future[Answer]':
         answer: Future[Answer] = Future()
         answer.set_running_or_notify_cancel()  # whoever waits cannot cancel it
@@ -130,6 +134,8 @@ class Watcher:
                 try:
                     self._watch(executor)
                 finally:
+                    if self._live:
+                        self._live.close()
                     if self._recording:
                         self.exit_message = str(self._stop())
                     elif self._to_record:
@@ -159,6 +165,8 @@ class Watcher:
             if self._recording and self._recording.status().error:
                 self._failed = str(self._stop())
             try:
+                if live := self._live:
+                    live.poll()
                 if self._gear:
                     self._gear.poll()
                 view = self._see()
@@ -169,7 +177,10 @@ class Watcher:
                 recorded = self._recording.status()
                 about = f'{recorded.path}: {recorded.seconds:.1f} s, {recorded}'
                 view = replace(view, recording=about, question='', undo=False)
-            self.view = replace(view, drivers=self._found, failure=self._failed)
+            commission = live.shown() if live else None
+            self.view = replace(
+                view, drivers=self._found, failure=self._failed, commission=commission
+            )
 
     def _look(self) -> None:
         """Look at the graph."""
@@ -229,6 +240,20 @@ class Watcher:
             return not answer.done()
 
         self._homings.append(pending)
+
+    def _step(self, step: str, answer: 'Future[Answer]') -> None:
+        if not (live := self._live):
+            raise ValueError('Choose the joints first.')
+        if step == 'take':
+            if self._recording:
+                raise ValueError('Stop the recording first: parameters would change within it.')
+            self._homings.append(live.take(self._gear, answer))
+        elif step == 'end':
+            live.close()
+            self._live = None
+            answer.set_result(Answer('', done=True))
+        else:
+            answer.set_result(live.write() if step == 'write' else live.zero_here())
 
     def _record(self, path: Path | None) -> Answer:
         if self._recording:

@@ -107,11 +107,15 @@ def test_delay_is_in_seconds_and_in_rows_only_without_times(tmp_path, capsys):
 # Another ratio
 
 
-@pytest.mark.parametrize('assumed', ['-18', '-20', '-58/3', '19'])
+SHORT, LONG = (sine_strokes(0.5, 2.0), 0.7), (sine_strokes(14.0, 8.0), 1e-3)
+
+
 @pytest.mark.parametrize(
-    ('profile', 'spread'),
-    [(sine_strokes(0.5, 2.0), 0.2), (sine_strokes(14.0, 8.0), 1e-3)],
-    ids=['short', 'long'],
+    ('assumed', 'profile', 'spread'),
+    [
+        *((assumed, *SHORT) for assumed in ('-15', '-24', '19')),
+        *((assumed, *LONG) for assumed in ('-18', '-20', '-58/3', '19')),
+    ],
 )
 def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, spread):
     drive = Drive(PLAY, ERRORS, noise=0.3 * ARC_MINUTE, **STEPS)
@@ -126,6 +130,12 @@ def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, sp
     assert '--ratio=-19 is' in said
     assert ('an encoder counts backwards' in said) == (assumed == '19')
     assert ('80/76' in said) == (assumed != '19')
+
+
+@pytest.mark.parametrize('assumed', ['-18', '-20', '-58/3'])
+def test_ratio_within_what_an_encoder_of_a_degree_tells_is_not_called_wrong(assumed):
+    drive = Drive(PLAY, ERRORS, noise=0.3 * ARC_MINUTE, **STEPS)
+    assert not check_ratio(recorded(drive, SHORT[0], 16.0, 100.0), GearRatio.parse(assumed))
 
 
 @pytest.mark.parametrize('eccentricity', [0.0, 20.0 * ARC_MINUTE])

@@ -3,9 +3,19 @@
 
 import os
 import pty
+import re
+import signal
+import subprocess
+import sys
+import termios
 import threading
 from contextlib import suppress
+from pathlib import Path
 from typing import Self
+
+from blocked_bags import wait_until
+
+DEADLINE = 60.0  # s
 
 ENVIRONMENT = {
     **{name: value for name, value in os.environ.items() if name not in {'NO_COLOR', 'CI'}},
@@ -45,3 +55,53 @@ class Terminal:
         with suppress(OSError):
             os.close(self._own)
         return self._shown.decode()
+
+
+class Person(Terminal):
+    """A program in a terminal, and a person in front of it."""
+
+    def __init__(self, folder: Path, *arguments: str) -> None:
+        """Prepare gearkin in a folder."""
+        command = [sys.executable, '-P', '-m', 'gear_kinematics', *arguments]
+        self._command, self._folder, self._seen = command, folder, 0
+
+    def __enter__(self) -> Self:
+        """Start it."""
+        super().__enter__()
+        self._before = termios.tcgetattr(self.other)
+        streams = dict.fromkeys(('stdin', 'stdout', 'stderr'), self.other)
+        self._process = subprocess.Popen(
+            self._command, cwd=self._folder, env=ENVIRONMENT, **streams
+        )
+        return self
+
+    def __exit__(self, kind, *_) -> None:
+        if kind:
+            self._process.kill()
+        self._process.wait()
+        super().__exit__()
+
+    def wait_for(self, pattern: str) -> str:
+        """Wait until something new is shown, and give what matches."""
+
+        def found() -> re.Match | None:
+            plain = re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', self.shown())
+            return re.compile(pattern).search(plain, self._seen)
+
+        match = wait_until(found, pattern)
+        self._seen = match.end()
+        return match[0]
+
+    def type(self, keys: str) -> None:
+        """Press keys."""
+        os.write(self._own, keys.encode())
+
+    def interrupt(self) -> None:
+        """Press Ctrl-C."""
+        self._process.send_signal(signal.SIGINT)
+
+    def end(self) -> int:
+        """Wait for the end, and give the exit code."""
+        code = self._process.wait(DEADLINE)
+        assert termios.tcgetattr(self.other) == self._before
+        return code

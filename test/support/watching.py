@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple
@@ -19,6 +20,7 @@ from gear_kinematics.bag import Bag, DamagedBagError
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.ros.live import running_node
+from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.view import View
 from gear_kinematics.watch.watcher import Answer
 from gear_kinematics.wire.batches import decode_joint_states
@@ -129,3 +131,26 @@ class WatcherStandIn:
             return answer
 
         return ask
+
+
+class Source:
+    """Stands in for a subscription, with messages that a test puts there."""
+
+    waiting: dict[str, list[Taken]]
+    drivers = 1
+
+    def __init__(self, _node, topic, *_) -> None:
+        """Subscribe."""
+        self.topic = topic
+
+    def take(self) -> Iterator[Taken]:
+        """Give all of them, once."""
+        taken, self.waiting[self.topic] = self.waiting[self.topic], []
+        return iter(taken)
+
+    def publishers(self) -> int:
+        """Count the publishers."""
+        return self.drivers
+
+    def close(self) -> None:
+        """Unsubscribe."""

@@ -23,7 +23,7 @@ from watching import (
 )
 
 from gear_kinematics.watch.drivers import Driver
-from gear_kinematics.watch.view import Entry, View
+from gear_kinematics.watch.view import Commission, Entry, View
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
@@ -282,8 +282,9 @@ def test_names_are_text_on_the_page(connected, browser):
         message=hostile,
         values=(Entry(hostile, hostile, hostile),),
         diagnostics=(Entry(hostile, hostile),),
-        drivers=(Driver(hostile, (hostile,), 1.0, 1),),
+        drivers=(Driver(hostile, (hostile, 'b'), 1.0, 1),),
         failure=hostile,
+        commission=Commission(hostile, hostile, 0.5, (Entry(hostile, hostile),)),
     )
     from gear_kinematics.watch.server import Server  # noqa: PLC0415, needs an extra
 
@@ -301,9 +302,14 @@ def test_names_are_text_on_the_page(connected, browser):
             '#values dt',
             '#values dd',
             '#diagnostics dd',
+            '#guide p',
+            '#guide .detail',
+            '#guide dd',
         ):
             connected.expect(page.locator(part).first).to_have_text(hostile)
         connected.expect(page.locator('#drivers tbody td').first).to_have_text(hostile)
+        option = page.locator('#commission option').first
+        connected.expect(option).to_have_text(f'{hostile} on {hostile}')
         assert page.locator('img').count() == 0
     finally:
         page.close()

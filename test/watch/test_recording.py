@@ -9,6 +9,7 @@ from types import MappingProxyType, SimpleNamespace
 
 import pytest
 from blocked_bags import wait_until
+from watching import Source
 
 from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.writing import LiveBagWriter
@@ -19,26 +20,6 @@ from gear_kinematics.watch.recording import Recording
 from gear_kinematics.watch.watcher import Watcher
 
 JOINT_STATE = 'sensor_msgs/msg/JointState'
-
-
-class Source:
-    """Stands in for a subscription, with messages that a test puts there."""
-
-    waiting: dict[str, list[Taken]]
-    drivers = 1
-
-    def __init__(self, _node, topic, *_) -> None:
-        self.topic = topic
-
-    def take(self):
-        taken, self.waiting[self.topic] = self.waiting[self.topic], []
-        return iter(taken)
-
-    def publishers(self) -> int:
-        return self.drivers
-
-    def close(self) -> None:
-        pass
 
 
 @pytest.fixture

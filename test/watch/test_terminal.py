@@ -2,19 +2,15 @@
 """`gearkin watch` and `gearkin init` in a terminal and in a pipe, beside a driver at 1 kHz."""
 
 import contextlib
-import os
 import re
-import subprocess
-import termios
 from pathlib import Path
 
 import pytest
 from blocked_bags import wait_until
-from terminals import ENVIRONMENT, Terminal
+from terminals import Person
 from watching import (
     DEADLINE,
     ENCODER,
-    GEARKIN,
     MOTOR,
     OTHER,
     assert_is_whole,
@@ -40,48 +36,6 @@ def driver():
 def running(tmp_path_factory):
     with node(tmp_path_factory.mktemp('node'), OTHER):
         yield
-
-
-class Person(Terminal):
-    """A program in a terminal, and a person in front of it."""
-
-    def __init__(self, folder: Path, *arguments: str) -> None:
-        self._command, self._folder, self._seen = [*GEARKIN, *arguments], folder, 0
-
-    def __enter__(self):
-        super().__enter__()
-        self._before = termios.tcgetattr(self.other)
-        streams = dict.fromkeys(('stdin', 'stdout', 'stderr'), self.other)
-        self._process = subprocess.Popen(
-            self._command, cwd=self._folder, env=ENVIRONMENT, **streams
-        )
-        return self
-
-    def __exit__(self, kind, *_) -> None:
-        if kind:
-            self._process.kill()
-        self._process.wait()
-        super().__exit__()
-
-    def wait_for(self, pattern: str) -> str:
-        """Wait until something new is shown, and give what matches."""
-
-        def found():
-            plain = re.sub(r'\x1b\[[\d;?]*[A-Za-z]', '', self.shown())
-            return re.compile(pattern).search(plain, self._seen)
-
-        match = wait_until(found, pattern)
-        self._seen = match.end()
-        return match[0]
-
-    def type(self, keys: str) -> None:
-        os.write(self._own, keys.encode())
-
-    def end(self) -> int:
-        """Wait for the end, and give the exit code."""
-        code = self._process.wait(DEADLINE)
-        assert termios.tcgetattr(self.other) == self._before
-        return code
 
 
 @pytest.mark.usefixtures('running')

@@ -354,7 +354,7 @@ def listening(monkeypatch, tmp_path):
             ['--topic', 'motor/joint_state'],
             'no topic /motor/joint_state of type JointState; did you mean `/motor/joint_states`?',
         ),
-        (['--topic', '/odd'], 'no message with joints in 4 s'),
+        (['--topic', '/odd'], 'no message with a joint for the rotor was heard'),
         (['-o', 'nowhere/a.yaml', '--joint', 'm1'], 'nowhere/a.yaml: No such file or directory'),
     ],
 )
@@ -541,6 +541,7 @@ def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
         '{}',
         '{"do": "exit"}',
         '{"do": "configure"}',
+        '{"do": "commission", "rotor": ["/a", "m", "x"], "output": [], "ratio": ""}',
         '"home"',
         b'\xff',
         4000 * '[',

@@ -10,7 +10,8 @@ from gear_kinematics.correction.uncertainty import COVERAGE
 from gear_kinematics.measurement.calibration.check import Judgement, left_order
 from gear_kinematics.measurement.calibration.result import Fit
 from gear_kinematics.measurement.calibration.terms import output_cycles
-from gear_kinematics.measurement.curves import envelope, spectrum_panel
+from gear_kinematics.measurement.curves import spectrum_panel
+from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.ratio import ratio_remarks
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.wording import (

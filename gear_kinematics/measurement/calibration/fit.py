@@ -57,7 +57,6 @@ are too few where the zero drifts (over slow strokes the error is 1.14 times its
 and 16 hide a delay of 2 ms in 15 s (the error falls to a fourth, not to a seventh)."""
 _LONGEST_PERIOD = 2**20  # rotor turns after which all orders repeat, at most
 _SEVERAL = 3  # recordings from which on terms are selected by leaving out a whole one, not a block
-_TURNS = 2.0  # turns of the output that tell a ratio from an eccentricity
 _COVERED = 0.5  # share of a half at angles that the other half contains, to be judged by it
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 _OWN = (0, 1)  # a recording's own unknowns that a check determines as well: zero and delay
@@ -80,7 +79,7 @@ def fit(
         estimate_ratio: whether to estimate the ratio first.
 
     Raises:
-        RecordingError: if the recordings do not suffice, or have another ratio.
+        RecordingError: if the recordings do not suffice, have another ratio, or leave it open.
     """
     recordings = thinned(recordings)
     for recording, encoders in recordings:
@@ -93,9 +92,9 @@ def fit(
     estimate = None
     if estimate_ratio:
         longest = max((e for _, e in recordings), key=lambda e: float(np.ptp(e.rotor.turns)))
-        # Over less, an eccentricity of the output cannot be told from another ratio.
-        estimate = fit_ratio(longest, ratio, _TURNS)
-    fitting = _Fitting(recordings, estimate.ratio if estimate else ratio, mechanism)
+        estimate = fit_ratio(longest, ratio)
+        ratio = estimate.ratio()
+    fitting = _Fitting(recordings, ratio, mechanism)
     return fitting.result(estimate)
 
 

@@ -1,0 +1,321 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""What recordings of both encoders determine of a gear, and what they leave open.
+
+The ratio between the encoders is that of the gear, with the other sign where one of them counts
+backwards.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from gear_kinematics.correction.uncertainty import Estimate
+from gear_kinematics.kinematics.gear_ratio import GearRatio
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.commissioning.joint import Joint, moved
+from gear_kinematics.measurement.ratio import ENCODER_ERROR, RatioEstimate, estimate_ratio
+from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
+from gear_kinematics.measurement.transmission import transmission_figures
+from gear_kinematics.measurement.wording import plus_minus
+from gear_kinematics.parameters.node_parameters import default_value
+from gear_kinematics.report.document import number
+
+_BY_CHANCE = 0.025
+"""Turns of the rotor within which its zero moved by whole turns; by chance, one in 20 does."""
+_HALF = 0.5
+"""Turns of the rotor within which a zero has to be known for its turns to be compared."""
+_MAX_DISTANCE = 2.0
+"""Expanded uncertainties within which a ratio may be the true one: of 20 recordings, one has it
+beyond a single one."""
+_FASTER = 2.0
+"""The speed that is allowed / the greatest seen, which is hardly the greatest that there is."""
+_MILLI = 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """Where an encoder is heard; without names in a CSV file."""
+
+    topic: str = ''
+    joint: str = ''
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What is known, and what is asked for."""
+
+    rotor: Channel = Channel()
+    output: Channel = Channel()
+    ratio: GearRatio | None = None
+    """Of the gear, with its sign, to be confirmed."""
+    teeth: tuple[int, int] | None = None
+    """Of ring gear and satellite, which have this ratio."""
+    zero_here: float | Literal['START', 'END'] | None = None
+    """When the output is at its angle 0, in the last recording: s from its start, or since 1970;
+    None: at 0 of its encoder."""
+    encoder_error: float = ENCODER_ERROR
+    """rad; see `estimate_ratio`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A parameter of the node that is determined."""
+
+    name: str
+    value: str | int | float
+    evidence: str
+    """In one line."""
+
+
+@dataclass(frozen=True, slots=True)
+class Open:
+    """What is not determined."""
+
+    what: str
+    known: str
+    """A clause."""
+    advice: str
+    """What to do, as a clause."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Commissioning:
+    """What recordings determine."""
+
+    request: Request
+    joints: tuple[Joint, ...]
+    """One for each recording."""
+    longest: Joint
+    """That of most travel, which tells the ratio."""
+    ratio: RatioEstimate | None
+    """Between the encoders; None where it cannot be estimated."""
+    between: GearRatio | None
+    """The exact ratio between the encoders; None where it is open."""
+    fault: str
+    """Why there is no file, in a sentence; else empty."""
+    values: tuple[Value, ...]
+    open: tuple[Open, ...]
+    notes: tuple[str, ...]
+    """Sentences on what is no parameter."""
+    delay: Estimate | None
+    """s, by which the stamps of the output are late."""
+
+    @property
+    def travel(self) -> float:
+        """Of the output, rad."""
+        return self.longest.travel
+
+    @property
+    def answer(self) -> str:
+        """The result in a sentence."""
+        if self.fault or self.ratio is None:
+            return self.fault
+        if given := self.request.ratio:
+            return (
+                f'The gear has the ratio {given} (given, and agrees with {self.ratio.plus_minus}).'
+            )
+        seen = f'{self.ratio.plus_minus}, the only simple fraction'
+        return f'The gear has the ratio {self.between} ({seen}).'
+
+
+def commission(
+    recordings: Sequence[tuple[Recording, Encoders]], request: Request
+) -> Commissioning:
+    """Determine the parameters of the node for a gear.
+
+    Args:
+        recordings: of the same gear, in the order of time. The positions of both encoders are as
+            they were recorded, neither turned around nor unwrapped.
+        request: what else is known.
+
+    Raises:
+        RecordingError: if a recording has too few samples, or none at the time of `zero_here`.
+    """
+    joints = tuple(Joint.of(*recording) for recording in recordings)
+    longest = max(joints, key=lambda joint: joint.travel)
+    encoders, ratio, between, delay = longest.encoders, None, None, None
+    fault = longest.unit_fault
+    if not longest.travel:
+        fault = fault or 'The ratio is open: the output does not turn.'
+    elif longest.rotor.turn and longest.output.turn:
+        time = encoders.seconds if encoders.timed else None
+        try:
+            ratio = estimate_ratio(longest.turned, encoders.measured, time, request.encoder_error)
+        except RecordingError as error:
+            fault = fault or f'The ratio is open: {error}.'
+        else:
+            fault = fault or _doubt(ratio, longest.travel, request)
+    found: list[Value | Open | str] = list(_names(request))
+    known = request.ratio or (ratio and ratio.taken)
+    if ratio and known and not fault:
+        between = GearRatio(abs(known) if ratio.measured.value > 0.0 else -abs(known))
+        found += _ratio(ratio, between, request)
+        if encoders.timed:
+            travel = default_value('transmission_error_travel')
+            delay = transmission_figures(encoders, between, travel).delay
+    elif ratio:
+        found.append(Open('ratio', f'{ratio.plus_minus}{_candidates(ratio)}', ratio.advice))
+    change = _change(joints, between, request.encoder_error)
+    kind = _kind(joints, change)
+    found += [kind, *([change] if isinstance(change, Open) else [])]
+    if between:
+        found += _zeros(joints[-1], between, request.zero_here, kind, change)
+    found += _motion(longest, delay)
+    return Commissioning(
+        request,
+        joints,
+        longest,
+        ratio,
+        between,
+        fault,
+        tuple(each for each in found if isinstance(each, Value)),
+        tuple(each for each in found if isinstance(each, Open)),
+        tuple(each for each in found if isinstance(each, str)),
+        delay,
+    )
+
+
+def agrees(given: GearRatio, ratio: RatioEstimate) -> bool:
+    """Return whether a ratio may be the measured one, but for its sign."""
+    distance = abs(abs(given) - abs(ratio.measured.value))
+    return bool(distance <= _MAX_DISTANCE * (ratio.measured.uncertainty or 0.0))
+
+
+def _doubt(ratio: RatioEstimate, travel: float, request: Request) -> str:
+    """Why the exact ratio is not known, in a sentence; else empty."""
+    measured, given = ratio.measured, request.ratio
+    if given:
+        if agrees(given, ratio):
+            return ''
+        return (
+            f'The given ratio {given} does not agree with the measured {ratio.plus_minus}'
+            f'{_candidates(ratio)}.'
+        )
+    if abs(measured.value) < 1.0:
+        return (
+            f'The ratio is {ratio.plus_minus}: rotor and output may be exchanged; exchange them, '
+            f'or confirm with --ratio={ratio.simplest}.'
+        )
+    if ratio.taken:
+        return ''
+    degrees = number(math.degrees(travel))
+    return (
+        f'The ratio is open: {ratio.plus_minus} after {degrees}° of the output; {ratio.advice}, '
+        'or confirm with --ratio.'
+    )
+
+
+def _candidates(ratio: RatioEstimate) -> str:
+    """The simple fractions that fit, and the teeth, as the end of a clause."""
+    fitting = f', such as {", ".join(map(str, ratio.candidates))}'
+    return fitting + (f', or teeth such as {ratio.teeth}' if ratio.teeth else '')
+
+
+def _names(request: Request) -> Iterator[Value]:
+    rotor, output = request.rotor, request.output
+    for name, channel in (('rotor_joint', rotor), ('output_encoder_joint', output)):
+        if channel.joint:
+            yield Value(name, channel.joint, f'a joint of {channel.topic}')
+
+
+def _ratio(ratio: RatioEstimate, between: GearRatio, request: Request) -> Iterator[Value]:
+    given, same = request.ratio, 1
+    if given:
+        evidence = f'given, and agrees with {ratio.plus_minus}'
+        same = 1 if given == between else -1
+        says = f'the encoders turn {"as" if same > 0 else "against"} the sign of the ratio {given}'
+    else:
+        teeth = f', that of {ratio.teeth} teeth, for example' if ratio.teeth else ''
+        evidence = f'{ratio.plus_minus}, the only simple fraction{teeth}'
+        says = 'its sign is that of the ratio: they are relative as long as the gear is not given'
+    if request.teeth:
+        yield Value('ring_teeth', request.teeth[0], evidence)
+        yield Value('satellite_teeth', request.teeth[1], evidence)
+    else:
+        yield Value('gear_ratio', str(given or between), evidence)
+    yield Value('rotor_direction', same, says)
+    yield Value('output_encoder_direction', 1, 'the sense of the encoder is kept')
+
+
+def _kind(joints: Sequence[Joint], change: str | Open) -> Value | Open:
+    """Find the kind of the rotor's encoder."""
+    most = max(joints, key=lambda joint: (joint.rotor.wraps, joint.rotor.turns)).rotor
+    told = '' if isinstance(change, Open) else f'; {change}'
+    seen = f'the rotor turned {number(most.turns)} turns'
+    if most.wraps:
+        return Value('rotor_encoder', 'single_turn', f'{most.evidence}{told}')
+    if change == _WITHIN:
+        return Value('rotor_encoder', 'single_turn', f'{seen}{told}')
+    if most.counts_turns:
+        return Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap{told}')
+    return Open('rotor_encoder', seen, 'turn the rotor by more than one')
+
+
+_KEPT = 'its zero was the same in all recordings'
+_WITHIN = 'its zero moved by whole turns at most: it is absolute within the turn'
+_LOST = 'its zero moved: it counts from where it was switched on'
+
+
+def _change(joints: Sequence[Joint], between: GearRatio | None, error: float) -> str | Open:
+    """What happened to the rotor's zero between the recordings."""
+    what = 'zero of the rotor after a power cycle'
+    if len(joints) == 1 or not between:
+        return Open(what, 'it takes the ratio and two recordings', 'make one after a power cycle')
+    moves, bound = moved(joints, between, error)
+    wraps = any(joint.rotor.wraps for joint in joints)
+    apart = max(abs(move - round(move)) for move in moves)
+    if apart > bound:
+        return _LOST
+    if apart > _BY_CHANCE or bound > _HALF:
+        known = f'it moved by {number(max(map(abs, moves)))} turns, ± {number(bound)}'
+        return Open(what, known, 'make both recordings over the same angles of the output')
+    return _WITHIN if wraps or any(map(round, moves)) else _KEPT
+
+
+def _zeros(
+    last: Joint,
+    between: GearRatio,
+    zero_here: float | str | None,
+    kind: Value | Open,
+    change: str | Open,
+) -> Iterator[Value]:
+    """Find the zeros with which the output angles of both encoders agree on average."""
+    zero, why = 0.0, 'the zero of the encoder is kept'
+    if zero_here is not None:
+        zero = float(last.encoders.measured[last.row_at(zero_here)])
+        why = f'the output angle is 0 at {zero_here} of {last.recording.name}'
+    rotor = last.zeros(between) + float(between) * zero
+    mean, spread = float(np.mean(rotor)), float(np.ptp(rotor)) / abs(float(between))
+    evidence = f'both encoders then agree on average, within {number(math.degrees(spread))}°'
+    single = isinstance(kind, Value) and kind.value == 'single_turn'
+    if change != _KEPT:
+        true = 'within the turn' if single and change != _LOST else 'until the next power cycle'
+        evidence += f'; true {true}: then home, or set output_encoder_reference: absolute'
+    shown = math.remainder(zero, TURN) if last.output.wraps else zero
+    yield Value('output_encoder_zero', shown, why)
+    yield Value('rotor_zero', mean % TURN if single else mean, evidence)
+
+
+def _motion(joint: Joint, delay: Estimate | None) -> Iterator[Value | Open | str]:
+    """Delay, rates and speeds."""
+    if not joint.encoders.timed:
+        yield Open('delay, rates and speeds', 'the recording has no times', 'record them')
+        return
+    if delay is None:
+        advice = 'turn the output there and back three times or more, at different speeds'
+        yield Open('delay between the encoders', 'it is not told from hysteresis', advice)
+    else:
+        yield f'The stamps of the output are late by {plus_minus(delay, _MILLI)} ms.'
+    both = joint.encoders.rotor.seconds, joint.encoders.seconds
+    rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
+    yield f'Rates: {rotor} of the rotor, {output} of the output.'
+    speed, allowed = joint.greatest_speed, default_value('max_rotor_speed')
+    seen = f'the rotor turned at up to {number(speed)} rad/s'
+    if speed > allowed:
+        evidence = f'{seen}, of which {number(_FASTER)} times as much is allowed'
+        yield Value('max_rotor_speed', _FASTER * speed, evidence)
+    else:
+        yield f'{seen.capitalize()}: the default of max_rotor_speed, {number(allowed)}, holds.'

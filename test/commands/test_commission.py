@@ -1,0 +1,160 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""gearkin commission as a user runs it."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from blocked_bags import refusal
+from gear_recordings import Samples, write_csv, write_recording
+from simulated_encoders import TURN, Drive, ramped_strokes, stamps
+
+from gear_kinematics.bag.writing import BagWriter
+from gear_kinematics.commands.cli import main
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.wire.cdr import JointStateTemplate
+
+REAL = Path(__file__).resolve().parents[3] / 'shared' / 'data' / 'dual_encoders'
+LARA = ['--rotor-counts', '16777216', '--output-counts', '16777216']  # by its README
+
+
+@pytest.fixture(scope='module')
+def positions():
+    """Times, s, and positions of rotor and output, rad, of a gear of -19."""
+    drive = Drive(errors={1.0: 5e-4}, noise=5e-5)
+    return drive.readings(ramped_strokes(15.0, 10.0, 1.0), 40.0, rate=100.0)
+
+
+@pytest.fixture(scope='module')
+def bag(positions, tmp_path_factory):
+    times, rotor, output = positions
+    path = tmp_path_factory.mktemp('bags') / 'gear'
+    return write_recording(path, *(Samples(stamps(times), each) for each in (rotor, output)))
+
+
+def test_file_is_one_that_the_node_takes(bag, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(['commission', str(bag), '--json', 'report.json', '--html', 'report.html']) == 0
+    assert '-19' in (said := capsys.readouterr().out)
+    assert 'The gear has the ratio -19 (' in said
+    assert 'the only simple fraction): written to actuator.yaml.' in said
+    assert 'exists already' in refusal('commission', bag)
+    file = NodeParameters.load(Path('actuator.yaml'))
+    assert (file.gear_ratio, file.rotor_joint) == ('-19', 'rotor')
+    assert file.output_encoder_joint == 'output_shaft'
+    lines = Path('actuator.yaml').read_text().splitlines()
+    remapped = '-r rotor_state:=/rotor_state -r output_encoder:=/output_encoder'
+    assert lines[2].endswith(f'--ros-args --params-file actuator.yaml {remapped}')
+    values = [k for k, line in enumerate(lines) if line.startswith('    ') and '#' not in line]
+    assert values
+    assert all(lines[k - 1].startswith('    # ') for k in values)
+    document = json.loads(Path('report.json').read_text())
+    assert document['schema'] == 'gear_kinematics/commissioning'
+    assert document['gear_ratio'] == '-19'
+    assert document['ratio']['value'] == pytest.approx(-19.0, abs=1e-3)
+    assert main(['commission', str(bag), '--check', 'actuator.yaml']) == 0
+    assert 'actuator.yaml agrees with the recording' in capsys.readouterr().out
+    Path('other.yaml').write_text(Path('actuator.yaml').read_text().replace("'-19'", "'19'"))
+    assert main(['commission', str(bag), '--check', 'other.yaml']) == 1
+    assert 'the encoders count in opposite senses' in capsys.readouterr().out
+
+
+def test_open_ratio_writes_nothing_unless_it_is_confirmed(positions, tmp_path, capsys):
+    times, rotor, output = (each[100:200] for each in positions)  # 9/19 rad
+    rows = {'time': times, 'rotor_deg': np.degrees(rotor), 'output_deg': np.degrees(output)}
+    csv = write_csv(tmp_path / 'short.csv', **{n: np.repeat(v, 3) for n, v in rows.items()})
+    target = tmp_path / 'a.yaml'
+    assert main(['commission', str(csv), '-o', str(target)]) == 1
+    assert 'The ratio is open: -' in capsys.readouterr().out
+    assert not target.exists()
+    assert main(['commission', str(csv), '-o', str(target), '--teeth', '80/70']) == 1
+    assert not target.exists()
+    assert main(['commission', str(csv), '-o', str(target), '--teeth', '80/76']) == 0
+    assert NodeParameters.load(target).mechanism.satellite_teeth == 76
+
+
+@pytest.mark.skipif(not REAL.is_dir(), reason='the recordings are not in ../shared')
+@pytest.mark.parametrize(
+    ('name', 'options', 'ratio', 'direction'),
+    [
+        ('neura_jogging_final_joint1', [*LARA, '--ratio', '121'], '121', 1),
+        ('neura_jogging_joint_mass_joint2', [*LARA, '--ratio', '121'], '121', 1),
+        ('sspg_backlash_sine_vel_2.500tps_2.00s', ['--ratio', '7.2'], '36/5', -1),
+    ],
+)
+def test_real_gears_over_a_few_degrees_are_confirmed_only(
+    name, options, ratio, direction, tmp_path, capsys
+):
+    recording, target = str(REAL / f'{name}.csv'), tmp_path / 'a.yaml'
+    assert main(['commission', recording, '-o', str(target), *options[:-2]]) == 1
+    assert 'The ratio is open' in capsys.readouterr().out
+    assert main(['commission', recording, '-o', str(target), *options]) == 0
+    file = NodeParameters.load(target)
+    assert (file.gear_ratio, file.rotor_direction) == (ratio, direction)
+    assert main(['commission', recording, *options[:-2], '--check', str(target)]) == 0
+    options[-1] = '-101'
+    assert main(['commission', recording, '-o', str(tmp_path / 'b.yaml'), *options]) == 1
+
+
+def test_wraps_of_counts_tell_how_many(positions, tmp_path):
+    _, rotor, output = positions
+    columns = {'motor_inc': rotor, 'load_inc': output}
+    counts = {name: np.floor(each / TURN % 1.0 * 4096) for name, each in columns.items()}
+    path = write_csv(tmp_path / 'counts.csv', **counts)
+    said = refusal('commission', path)
+    assert 'motor_inc has counts: give those per turn with --rotor-counts' in said
+    assert 'wraps at 4096: --rotor-counts 4096, ' in said
+    assert said.endswith('--output-counts 4096')
+
+
+@pytest.mark.parametrize(
+    ('rows', 'said'),
+    [
+        ({'rotor': [1.0], 'output': [0.1]}, 'only 1 samples of both encoders'),
+        ({'rotor': [np.nan] * 9, 'output': [0.1] * 9}, 'no usable rows'),
+        ({'rotor': [], 'output': []}, 'no samples'),
+        ({'motor': [1.0], 'speed': [1.0]}, '--output-column'),
+    ],
+)
+def test_what_is_no_recording_is_refused_in_a_line(rows, said, tmp_path):
+    assert said in refusal('commission', write_csv(tmp_path / 'a.csv', **rows))
+
+
+@pytest.fixture(scope='module')
+def one_topic(positions, tmp_path_factory):
+    """Give a bag in which both encoders are joints of a topic, beside another."""
+    path = tmp_path_factory.mktemp('bags') / 'joints'
+    template = JointStateTemplate(['motor', 'arm'], velocity=False, effort=False)
+    with BagWriter(path) as writer:
+        for topic in ('/joint_states', '/other'):
+            writer.add_topic(topic, 'sensor_msgs/msg/JointState')
+        for stamp, *row in zip(stamps(positions[0]).tolist(), *positions[1:], strict=True):
+            for topic in ('/joint_states', '/other'):
+                writer.write(topic, stamp, template.encode(stamp, row))
+    return path
+
+
+def test_topics_and_joints_that_are_several_are_named(one_topic, tmp_path):
+    said = refusal('commission', one_topic)
+    assert 'which topic is rotor_state? /joint_states (joints arm, motor), /other' in said
+    given = ['--rotor-topic', '/joint_states', '--encoder-topic', '/joint_states']
+    said = refusal('commission', one_topic, *given)
+    assert 'which joint of /joint_states (joints arm, motor)? Name it with --joint' in said
+    given += ['--joint', 'motor', '--encoder-joint', 'arm', '-o', str(tmp_path / 'a.yaml')]
+    assert main(['commission', str(one_topic), *given]) == 0
+    assert NodeParameters.load(tmp_path / 'a.yaml').output_encoder_joint == 'arm'
+
+
+@pytest.mark.slow
+def test_no_extra_is_needed():
+    code = (
+        'import sys; from gear_kinematics.commands.cli import make_parser; '
+        "make_parser('commission'); print(*sys.modules)"
+    )
+    modules = subprocess.run(
+        [sys.executable, '-c', code], capture_output=True, text=True, check=True
+    ).stdout.split()
+    assert not {'scipy', 'matplotlib', 'plotly', 'rclpy'} & set(modules)

@@ -1,0 +1,257 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""What recordings of known gears determine, and what they leave open."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gear_recordings import encoders
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from simulated_encoders import TURN, Drive, ramped_strokes, stamps
+
+from gear_kinematics.kinematics.gear_ratio import GearRatio
+from gear_kinematics.measurement.commissioning import Request, actuator_file, commission
+from gear_kinematics.measurement.commissioning.check import judge
+from gear_kinematics.measurement.recording import Recording, RecordingError
+from gear_kinematics.parameters import NodeParameters
+
+STROKE = 15.0  # rad of the output
+FULL_TURN = ramped_strokes(STROKE, 10.0, 1.0)
+
+
+def recorded(rotor, output, times=None):
+    both = encoders(rotor, output, None if times is None else stamps(times))
+    return Recording(Path('gear'), 'gear', (), len(rotor), None, both), both
+
+
+def wrapped(angle, turn, low=0.0):
+    return low + np.remainder(angle - low, turn)
+
+
+def readings(
+    ratio=-19.0, senses=(1, 1), zeros=(0.0, 0.0), wraps=(False, False), low=0.0, profile=FULL_TURN
+):
+    """Times, and positions of rotor and output of a real gear, rad."""
+    drive = Drive(ratio=float(ratio), errors={1.0: 5e-4}, noise=5e-5, rotor_step=TURN / 2**14)
+    times, *angles = drive.readings(profile, 40.0, rate=100.0)
+    rotor, output = (
+        sense * angle + zero for sense, angle, zero in zip(senses, angles, zeros, strict=True)
+    )
+    if wraps[0]:
+        rotor = wrapped(rotor, TURN, low)
+    if wraps[1]:
+        output = wrapped(output, TURN, low)
+    return times, rotor, output
+
+
+def commissioned(*recordings, **request):
+    return commission(recordings, Request(**request))
+
+
+def parameters(result, folder):
+    path = folder / 'actuator.yaml'
+    path.write_text(actuator_file(result), encoding='utf-8')
+    return NodeParameters.load(path)
+
+
+def value(result, name):
+    (found,) = (each.value for each in result.values if each.name == name)
+    return found
+
+
+def opened(result):
+    return {each.what for each in result.open}
+
+
+@pytest.mark.parametrize(
+    ('ratio', 'senses', 'wraps'),
+    [
+        (Fraction(-19), (1, 1), (False, False)),
+        (Fraction(-19), (-1, 1), (True, False)),
+        (Fraction(-19), (-1, -1), (True, True)),
+        (Fraction(1457, 26), (1, -1), (False, True)),
+        (Fraction(1457, 26), (1, 1), (True, True)),
+        (Fraction(36, 5), (-1, 1), (False, True)),
+        (Fraction(36, 5), (1, -1), (True, False)),
+    ],
+)
+def test_file_gives_the_output_angle_of_the_encoder(ratio, senses, wraps, tmp_path):
+    times, rotor, output = readings(ratio, senses, (2.5, -0.4), wraps)
+    result = commissioned(recorded(rotor, output, times), ratio=GearRatio(ratio))
+    file = parameters(result, tmp_path)
+    assert GearRatio.parse(file.gear_ratio) == ratio
+    assert file.rotor_direction * file.output_encoder_direction == senses[0] * senses[1]
+    assert file.rotor_encoder == ('single_turn' if wraps[0] else 'multi_turn')
+    # As documented of the node: φ2 = direction · (position - zero), φ5 = φ2/i.
+    by_rotor = file.rotor_direction * (rotor - file.rotor_zero) / float(ratio)
+    error = output - file.output_encoder_zero - by_rotor
+    if any(wraps):  # of rotor turns and output turns together, all multiples of this are
+        whole = TURN / abs(ratio.numerator)
+        error = wrapped(error, whole, -0.5 * whole)
+    assert np.max(np.abs(error)) < 2.5e-3
+
+
+@given(
+    ratio=st.fractions(3, 60, max_denominator=5),
+    senses=st.tuples(st.sampled_from((1, -1)), st.sampled_from((1, -1))),
+    zeros=st.tuples(st.floats(-50.0, 50.0), st.floats(-3.0, 3.0)),
+    wraps=st.tuples(st.booleans(), st.booleans()),
+    low=st.sampled_from((0.0, -math.pi)),
+)
+@settings(max_examples=5, deadline=None)
+def test_ratio_and_sign_are_found_or_open(ratio, senses, zeros, wraps, low):
+    times, rotor, output = readings(ratio, senses, zeros, wraps, low)
+    result = commissioned(recorded(rotor, output, times))
+    truth, measured = senses[0] * senses[1] * ratio, result.ratio.measured
+    assert abs(measured.value - truth) <= 2.0 * measured.uncertainty
+    assert result.between in (truth, None)
+    if result.between:  # nothing tells which encoder counts backwards
+        assert value(result, 'gear_ratio') == str(truth)
+        assert value(result, 'rotor_direction') == 1
+    known = commissioned(recorded(rotor, output, times), ratio=GearRatio(ratio))
+    assert value(known, 'rotor_direction') == senses[0] * senses[1]
+
+
+@pytest.mark.parametrize(
+    ('change', 'kind', 'evidence'),
+    [
+        (0.0, 'multi_turn', 'the same'),
+        (3.0 * TURN, 'single_turn', 'absolute within the turn'),
+        (1.9, 'multi_turn', 'from where it was switched on'),
+    ],
+)
+def test_power_cycle_between_recordings(change, kind, evidence):
+    first, second = (
+        recorded(rotor + offset, output, times)
+        for offset in (0.0, change)
+        for times, rotor, output in [readings()]
+    )
+    result = commissioned(first, second)
+    found = next(v for v in result.values if v.name == 'rotor_encoder')
+    assert found.value == kind
+    assert evidence in found.evidence
+    assert 'zero of the rotor after a power cycle' not in opened(result)
+    after = next(v for v in result.values if v.name == 'rotor_zero')
+    assert after.value == pytest.approx(
+        change % TURN if kind == 'single_turn' else change, abs=0.02
+    )
+    assert ('next power cycle' in after.evidence) == (change == 1.9)
+    assert 'zero of the rotor after a power cycle' in opened(commissioned(first))
+
+
+def test_less_than_a_rotor_turn_leaves_the_kind_open():
+    times, rotor, output = readings(profile=ramped_strokes(0.2, 10.0, 1.0))
+    result = commissioned(recorded(rotor, output, times), ratio=GearRatio(-19))
+    (kind,) = (each for each in result.open if each.what == 'rotor_encoder')
+    assert kind.known == 'the rotor turned 0.605 turns'
+    assert 'rotor_encoder' not in actuator_file(result).split('# Open')[0]
+
+
+@pytest.mark.parametrize(
+    ('unit', 'said'),
+    [
+        (lambda r, o: (np.degrees(r), o), r'rotor are degrees .*1/2\^14 turn.*by 0.0174532925'),
+        (lambda r, o: (r, np.degrees(o) % 360.0), r'output are degrees .*\d+ wraps at 360'),
+        (lambda r, o: (np.round(r / TURN * 2**14) / 2**14, o), r'turns .*1/2\^14 .*by 6.28318531'),
+        (
+            lambda r, o: (np.floor(r / TURN % 1.0 * 4096), o),
+            r'counts .*at 4096.*0.00153398079',
+        ),
+        (lambda r, o: (np.floor(r / TURN % 1.0 * 4000), o), 'counts .*unknown number'),
+        (lambda r, o: (np.floor(r / TURN * 4096), o), 'counts .*whole numbers.*unknown number'),
+    ],
+)
+def test_positions_in_another_unit_are_told_and_give_no_file(unit, said):
+    times, *angles = readings()
+    result = commissioned(recorded(*unit(*angles), times))
+    assert not result.between
+    with pytest.raises(ValueError, match=said):
+        actuator_file(result)
+    if result.ratio:  # in the right unit, it is that of the gear
+        assert result.ratio.measured.value == pytest.approx(-19.0, abs=0.01)
+
+
+@pytest.mark.parametrize('moment', ['START', 'END', 4.0, 1_700_000_004.0])
+def test_zero_is_where_it_is_named(moment):
+    times, rotor, output = readings(zeros=(7.0, 0.3), wraps=(False, True))
+    result = commissioned(recorded(rotor, output, times), zero_here=moment)
+    row = {'START': 0, 'END': -1}.get(moment, 400)
+    zero = value(result, 'output_encoder_zero')
+    assert math.remainder(output[row] - zero, TURN) == pytest.approx(0.0, abs=1e-8)
+    turned = (rotor[row] - value(result, 'rotor_zero')) / -19.0
+    assert turned == pytest.approx(0.0, abs=2e-3)
+
+
+def test_zero_outside_of_the_recording_is_refused():
+    times, rotor, output = readings()
+    with pytest.raises(RecordingError, match=r'no sample at 50 s; it is 39\.99 s long'):
+        commissioned(recorded(rotor, output, times), zero_here=50.0)
+    with pytest.raises(RecordingError, match='without times, name START or END'):
+        commissioned(recorded(rotor, output), zero_here=4.0)
+
+
+@pytest.mark.parametrize(
+    ('angles', 'said'),
+    [
+        (lambda rotor, output: (output, rotor), 'rotor and output may be exchanged'),
+        (lambda rotor, output: (0.0 * rotor, output), 'the rotor does not turn'),
+        (lambda rotor, output: (rotor, 0.0 * output), 'The ratio is open'),
+        (lambda rotor, output: (rotor[:50], output[:50]), 'samples in motion are too few'),
+    ],
+)
+def test_what_tells_no_ratio_gives_no_file(angles, said):
+    result = commissioned(recorded(*angles(*readings()[1:])))
+    assert said in result.answer
+    assert result.answer == result.fault
+
+
+@pytest.mark.parametrize(('ratio', 'holds'), [(-19, True), (-21, False)])
+def test_given_ratio_must_be_within_the_interval(ratio, holds):
+    times, rotor, output = readings(profile=ramped_strokes(0.6, 10.0, 1.0))
+    result = commissioned(recorded(rotor, output, times), ratio=GearRatio(ratio, 1))
+    # Over 0.6 rad, errors of ±0.0175 rad once per turn leave a few per cent open.
+    assert bool(result.between) is holds
+
+
+@pytest.mark.parametrize(('gap', 'left_out'), [(0.4, 200), (0.08, 0)])
+def test_turns_that_pass_in_a_gap_are_left_out(gap, left_out):
+    times, rotor, output = readings(wraps=(True, False))
+    seen = (times < 2.0) | (times >= 2.0 + gap)  # the rotor turns at 5 Hz
+    result = commissioned(recorded(rotor[seen], output[seen], times[seen]))
+    assert result.between == -19
+    assert result.longest.left_out == left_out
+
+
+def test_greatest_speed_is_allowed_twice():
+    times, rotor, output = readings()
+    fast = recorded(rotor * 40.0, output, times)
+    speed = value(commissioned(fast), 'max_rotor_speed')
+    # 15 rad in 10 s with ramps of 1 s: 15/9 rad/s at the output.
+    assert speed == pytest.approx(2.0 * 40.0 * 19.0 * 15.0 / 9.0, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ('change', 'contradicted'),
+    [
+        ({}, set()),
+        ({'rotor_direction': -1}, {'rotor_direction'}),
+        ({'gear_ratio': '-18'}, {'gear_ratio'}),
+        ({'rotor_encoder': 'multi_turn'}, {'rotor_encoder', 'rotor_zero'}),
+        ({'rotor_zero': 3.5}, {'rotor_zero'}),
+        ({'output_encoder_zero': 0.1}, {'rotor_zero'}),
+        ({'max_rotor_speed': 3.0}, {'max_rotor_speed'}),
+    ],
+)
+def test_check_names_what_a_new_recording_contradicts(change, contradicted, tmp_path):
+    times, rotor, output = readings(zeros=(2.5, 0.3), wraps=(True, True))
+    file = parameters(commissioned(recorded(rotor, output, times)), tmp_path)
+    times, rotor, output = readings(
+        zeros=(2.5, 0.3), wraps=(True, True), profile=ramped_strokes(9.0, 7.0, 1.0)
+    )
+    result = commissioned(recorded(rotor, output, times))
+    judged = list(judge(result, replace(file, **change)))
+    assert {each.name for each in judged if each.holds is False} == contradicted

@@ -1,0 +1,205 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Live commissioning: what is said when, what is kept, and both forms beside a driver at 1 kHz."""
+
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from chromium import chromium
+from live import Listener, rotor_bytes
+from rclpy.parameter import parameter_value_to_python
+from rclpy.parameter_client import AsyncParameterClient
+from simulated_encoders import Drive, sine_strokes, stamps
+from terminals import Person
+from watching import ENCODER, MOTOR, NAMESPACE, NODE, Source, driving, gearkin, node
+
+from gear_kinematics.kinematics import GearRatio
+from gear_kinematics.measurement.commissioning.analysis import Channel, Request
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.watch import commissioning, recording
+from gear_kinematics.watch.commissioning import GUIDE, LiveCommissioning
+from gear_kinematics.watch.polled import Taken
+
+# Without ROS: messages that a test puts there
+
+
+def hear(monkeypatch, degrees, ratio='', *, seconds=8.0, lost=0, most=60_000):
+    """Turn the output of a gear there and back, and give what was made of it.
+
+    Its rotor is on a topic at 1 kHz, its output in the same messages.
+    """
+    drive = Drive(play=1e-4, ratio=-121.0, noise=1e-5)
+    times, rotor, output = drive.readings(sine_strokes(np.radians(degrees), 2.0), seconds)
+    messages = [
+        Taken(rotor_bytes(int(stamp), ('m', 'o'), (one, other)), int(stamp), number)
+        for number, (stamp, one, other) in enumerate(
+            zip(stamps(times), rotor, output, strict=True)
+        )
+    ]
+    del messages[100 : 100 + lost]
+    monkeypatch.setattr(recording, 'PolledSubscription', Source)
+    monkeypatch.setattr(Source, 'waiting', {'/j': []}, raising=False)
+    monkeypatch.setattr(commissioning, '_MOST_STATES', most)
+    given = GearRatio.parse(ratio) if ratio else None
+    live = LiveCommissioning(
+        None, Request(rotor=Channel('/j', 'm'), output=Channel('/j', 'o'), ratio=given)
+    )
+    for start in range(0, len(messages), 100):
+        Source.waiting['/j'] = messages[start : start + 100]
+        live.poll()
+    live.close()
+    live.finish()
+    return live
+
+
+@pytest.mark.parametrize(
+    ('degrees', 'ratio', 'advice', 'known'),
+    [
+        (0.0, '', GUIDE, 0.0),
+        (40.0, '121', GUIDE, 0.5 * 40.0 / 60.0 + 0.5),
+        (90.0, '', r'Go on: turn the output by .*, or give the ratio on the nameplate\.', 0.75),
+        (90.0, '100', 'The given ratio 100 does not agree with the measured -12.*', 0.75),
+        (90.0, '121', r'All is known that is needed: The gear has the ratio 121 .*', 1.0),
+    ],
+)
+def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice, known):
+    shown = hear(monkeypatch, degrees, ratio).shown()
+    assert re.fullmatch(advice, shown.advice)
+    assert shown.known == pytest.approx(known, abs=0.01)
+    assert ('turned' not in shown.heard) == (not degrees) or (
+        f'turned {degrees:.0f}° on and {degrees:.0f}° back' in shown.heard
+    )
+
+
+def test_parameters_are_those_of_the_gear(monkeypatch):
+    live = hear(monkeypatch, 90.0, '121')
+    values = {value.name: value.value for value in live.result.values}
+    zero = values.pop('rotor_zero')
+    assert values == {
+        'rotor_joint': 'm',
+        'output_encoder_joint': 'o',
+        'gear_ratio': '121',
+        'rotor_direction': -1,
+        'output_encoder_direction': 1,
+        'rotor_encoder': 'multi_turn',
+        'output_encoder_zero': 0.0,
+    }
+    assert abs(zero) < 121 * 1e-4  # both start at 0, within the play
+
+
+def test_memory_is_bounded_and_losses_are_counted(monkeypatch):
+    live = hear(monkeypatch, 90.0, '121', lost=3, most=4000)
+    assert live.shown().known == 1.0
+    assert 1000 <= len(live.collected[1].rotor.stamp) <= 2000
+    assert '7997 messages, 3 lost' in live.shown().heard
+    assert 'one state of 4 is used' in live.collected[0].remarks[0]
+
+
+# Beside a driver
+
+beside_driver = pytest.mark.usefixtures('driver')
+LIVE = ('commission', '--live', '--rotor-topic', MOTOR, '--joint', 'm1', '--ratio=-19')
+WITHOUT_EXTRAS = """
+import sys
+class Missing:
+    def find_spec(self, name, path=None, target=None):
+        if name.split('.')[0] in ('scipy', 'matplotlib', 'plotly', 'rosbags', 'tornado', 'dask'):
+            raise ModuleNotFoundError(f'No module named {name!r}', name=name)
+sys.meta_path.insert(0, Missing())
+from gear_kinematics.commands.cli import main
+sys.exit(main())
+"""
+
+
+@pytest.fixture(scope='module')
+def driver():
+    with driving():
+        yield
+
+
+@pytest.mark.live
+@beside_driver
+def test_in_a_pipe_it_ends_by_itself_and_needs_no_extra(tmp_path):
+    command = [sys.executable, '-P', '-c', WITHOUT_EXTRAS, *LIVE, '--encoder-topic', ENCODER]
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stderr.splitlines()
+    assert re.match(r'100% \| All is known .* \| m1 \(rotor\) .* \d+ messages, 0 lost', lines[-1])
+    assert len([line for line in lines if '% | ' in line]) < 30
+    found = NodeParameters.load(tmp_path / 'actuator.yaml')
+    assert (found.rotor_joint, found.gear_ratio, found.rotor_encoder) == (
+        'm1',
+        '-19',
+        'multi_turn',
+    )
+
+
+@pytest.mark.live
+@beside_driver
+def test_in_a_terminal_it_asks_and_interrupted_leaves_nothing(tmp_path):
+    with Person(tmp_path, 'commission', '--live', '--encoder-topic', ENCODER) as terminal:
+        choice = terminal.wait_for(rf'\d  m1 on {MOTOR}')
+        terminal.wait_for('Number of the joint of the rotor: ')
+        terminal.type(f'{choice[0]}\n')
+        terminal.wait_for('Turn the output by hand')
+        terminal.wait_for(r'm1 \(rotor\) and output \(output\): [1-9]\d+ messages, 0 lost')
+        terminal.interrupt()
+        assert terminal.end() == 130
+        assert 'Traceback' not in terminal.shown()
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.live
+@pytest.mark.slow
+@beside_driver
+def test_page_guides_writes_and_takes_into_the_node(tmp_path):
+    sync_api = pytest.importorskip('playwright.sync_api', reason='no playwright is installed')
+    pytest.importorskip('tornado', reason='no tornado is installed')
+    with (
+        chromium() as browser,
+        gearkin(tmp_path, 'watch', '--node', NODE) as program,
+        node(tmp_path),
+    ):
+        page = browser.new_page()
+        page.set_default_timeout(60_000.0)
+        sync_api.expect.set_options(timeout=60_000.0)
+        page.goto(program.wait_for(r'Open (http://127\.0\.0\.1:\d+/[\w-]+/)')[1])
+        page.locator('#commission summary').click()
+        page.locator('select[name=rotor]').select_option(f'm1 on {MOTOR}')
+        page.locator('select[name=output]').select_option(f'output on {ENCODER}')
+        page.locator('input[name=ratio]').fill('nineteen')
+        page.get_by_role('button', name='Start').click()
+        answer = page.locator('#answer')
+        sync_api.expect(answer).to_contain_text('a gear ratio must be an integer')
+        page.locator('input[name=ratio]').fill('19')
+        page.get_by_role('button', name='Start').click()
+        guide = page.locator('#guide')
+        sync_api.expect(guide).to_contain_text('All is known that is needed')
+        assert page.locator('#guide progress').evaluate('bar => bar.value') == 1.0
+        page.get_by_role('button', name='Write actuator.yaml').click()
+        command = page.locator('#command')
+        sync_api.expect(command).to_contain_text(f'actuator.yaml -r rotor_state:={MOTOR}')
+        page.get_by_role('button', name='Take into the running node').click()
+        sync_api.expect(answer).to_contain_text('gear_ratio 19 needs a restart: actuator_2.yaml')
+        page.get_by_role('button', name='End').click()
+        sync_api.expect(guide).to_be_hidden()
+        taken = parameters('rotor_direction', 'output_encoder_joint', 'gear_ratio')
+        assert taken == [-1, 'output', '']
+    texts = {(tmp_path / name).read_text('utf-8') for name in ('actuator.yaml', 'actuator_2.yaml')}
+    assert all("gear_ratio: '19'" in text for text in texts)
+
+
+def parameters(*names):
+    listener = Listener(NAMESPACE, 'asking')
+    try:
+        client = AsyncParameterClient(listener.node, NODE)
+        listener.wait_until(client.services_are_ready, 'the parameter services')
+        future = client.get_parameters(list(names))
+        listener.wait_until(future.done, 'the parameters')
+        return list(map(parameter_value_to_python, future.result().values))
+    finally:
+        listener.close()
