@@ -54,6 +54,7 @@ OF_RECORDINGS = {
     'pictures/validate.png': ['validate', 'other_gear', '--config', 'actuator.yaml'],
     'pictures/calibrate.png': ['calibrate', 'monday', 'tuesday', '-o', 'calibration.yaml'],
     'pictures/calibrate_check.png': ['calibrate', 'friday', '--check', 'calibration.yaml'],
+    'pictures/commissioning.png': ['commission', 'monday', '-o', 'commissioned.yaml'],
     TALL: [
         'lost-motion',
         *(f'gear_preload_{k}.csv' for k in SETTINGS),

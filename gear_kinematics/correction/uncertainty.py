@@ -14,7 +14,7 @@ COVERAGE = 0.95
 """Coverage probability of expanded uncertainties."""
 _NORMAL = 1.959963984540054
 """The quantile of Student's distribution for infinitely many degrees of freedom."""
-_MANY = 10_000
+_MAX_DEGREES = 10_000  # of freedom; the quantile is within 1.3e-4 of the normal one
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +77,7 @@ class Estimate:
         if not self.standard:
             return self.standard
         # Rounding must not cost a whole degree of freedom.
-        degrees = int(min(self.degrees_of_freedom, _MANY) + 1e-6)
+        degrees = int(min(self.degrees_of_freedom, _MAX_DEGREES) + 1e-6)
         return student_t(degrees) * self.standard if degrees else math.inf
 
     @property
@@ -141,7 +141,7 @@ def student_t(degrees: int) -> float:
     Args:
         degrees: of freedom, at least 1; 10 000 and more count as infinitely many.
     """
-    if degrees >= _MANY:
+    if degrees >= _MAX_DEGREES:
         return _NORMAL
     low, high = 0.0, 0.5 * math.pi
     while True:

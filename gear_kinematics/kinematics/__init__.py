@@ -5,6 +5,7 @@ from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.kinematics.mechanism import Branch, Gear, Mechanism
 from gear_kinematics.kinematics.motion import MotionState, solve
+from gear_kinematics.kinematics.rotor_state import RotorState, rotor_state_for
 from gear_kinematics.kinematics.rotor_turns import (
     RotorPosition,
     RotorSample,
@@ -21,7 +22,9 @@ __all__ = [
     'MotionState',
     'RotorPosition',
     'RotorSample',
+    'RotorState',
     'RotorTurns',
+    'rotor_state_for',
     'solve',
     'split_turns',
 ]

@@ -3,7 +3,6 @@
 
 import math
 from collections.abc import Iterator
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import islice
@@ -40,6 +39,8 @@ _WIDE, _PLAY, _DELAY = 1.0, 0.1, 0.05
 """Standard deviations, rad, rad and s, that hardly bind slope and offset, play, and delay."""
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
 """After a reversal, left out, as play is crossed: share of the whole travel, and at most, rad."""
+_LEAST_NOISE = 1e-9
+"""rad: less than the step of any encoder."""
 _STEP = 0.01
 """s around a sample, for its speed; of a row without times."""
 _TURNS = (*(n / 12 for n in (*range(1, 12), *range(13, 25))), 2.5, 3, 4, 5, 7, 10, 20, 50, 100)
@@ -127,21 +128,18 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
 
 def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     """Say in a clause which ratio a recording has, if it is clearly not the assumed one."""
-    found = None
-    with suppress(RecordingError):
+    try:
         found = fit_ratio(encoders, assumed)
-    if found is None or _within(found.measured, assumed):
+    except RecordingError:
+        return ''
+    low, high = _interval(found.measured)
+    if low <= assumed <= high:
         return ''
     measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
-    if _within(found.measured, -assumed):
+    if low <= -assumed <= high:
         return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
     teeth = f', with ring gear/satellite teeth such as {found.teeth}' if found.teeth else ''
     return f'{measured}; --ratio={found.simplest} is the simplest{teeth}'
-
-
-def _within(measured: Estimate, ratio: Fraction) -> bool:
-    low, high = _interval(measured)
-    return low <= ratio <= high
 
 
 def estimate_ratio(
@@ -170,8 +168,10 @@ def estimate_ratio(
     centred = (rotor - np.mean(rotor)) / np.ptp(rotor)
     slope = float(centred @ (output - np.mean(output)) / (centred @ centred) / np.ptp(rotor))
     times = np.asarray(_STEP * np.arange(len(rotor)) if time is None else time, float)
-    way, late = _directions(slope * rotor), 0.0
-    for _ in range(2):  # again with the slope and the delay that were found
+    direction = Direction(min(_SETTLED * abs(slope) * float(np.ptp(rotor)), _MOST_PLAY))
+    steps = (slope * np.diff(rotor, prepend=rotor[0])).tolist()
+    way, late = np.array([direction.move(step) for step in steps], float), 0.0
+    for _ in range(3):  # again with the slope and the delay that were found
         kept = np.flatnonzero(way * (times - late >= times[0]) * (times - late <= times[-1]))
         kept = kept[:: -(-len(kept) // _SAMPLES[1]) or 1]
         if len(kept) < _SAMPLES[0]:
@@ -181,7 +181,7 @@ def estimate_ratio(
         early, at, after = (np.interp(when, times, rotor) for when in around)
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
         columns = _columns(at, slope, encoder_error, way[kept], slope * (after - early))
-        fit = _Fit(columns, output[kept] - slope * at, float(np.spacing(np.abs(output).max())))
+        fit = _Fit(columns, output[kept] - slope * at)
         travel = float(np.ptp(at))
         slope, late = slope + fit.slope / travel, late - fit.delay
     parts = Component(fit.spread / travel), Component(fit.scatter / travel, _BLOCKS - 1)
@@ -193,13 +193,6 @@ def estimate_ratio(
     if not estimate.taken:
         estimate = replace(estimate, advice=_advice(estimate, fit, travel, encoder_error))
     return estimate
-
-
-def _directions(angle: Array) -> Array:
-    """1 or -1 for each sample; 0 after a reversal, where play is crossed."""
-    direction = Direction(min(_SETTLED * float(np.ptp(angle)), _MOST_PLAY))
-    steps = np.diff(angle, prepend=angle[0]).tolist()
-    return np.array([direction.move(step) for step in steps], float)
 
 
 def _columns(rotor: Array, slope: float, error: float, *others: Array) -> Array:
@@ -218,13 +211,13 @@ def _columns(rotor: Array, slope: float, error: float, *others: Array) -> Array:
 class _Fit:
     """Terms fitted by least squares, each expected to be about as large as it may be."""
 
-    def __init__(self, columns: Array, rest: Array, rounding: float) -> None:
+    def __init__(self, columns: Array, rest: Array) -> None:
         rest, self.samples = rest - np.mean(rest), len(rest)
         blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
         sums = np.array([block.T @ block for block in blocks])
         whole, fitted = sums.sum(axis=0), np.zeros(columns.shape[1])
         for _ in range(5):  # with the noise that the one before left
-            self.noise = max(_noise(rest - columns @ fitted), rounding**2)
+            self.noise = max(_noise(rest - columns @ fitted), _LEAST_NOISE**2)
             fitted, spread = _solve(whole, self.noise)
         without = [_solve(whole - block, self.noise)[0][0] for block in sums]
         values = pseudo_values([fitted[0], *without])
@@ -237,9 +230,9 @@ class _Fit:
 def _solve(sums: Array, noise: float) -> tuple[Array, float]:
     """The coefficients, and the standard uncertainty of the first."""
     values, vectors = np.linalg.eigh(sums[:-1, :-1])
-    values = np.where(values > 1e-14 * values[-1], values, 0.0)  # the rest is rounding
-    fitted: Array = vectors @ ((vectors.T @ sums[:-1, -1]) / (values + noise))
-    return fitted, math.sqrt(float(vectors[0] ** 2 @ (noise / (values + noise))))
+    known, left = values > 1e-14 * values[-1], noise / (np.abs(values) + noise)
+    fitted: Array = vectors @ (np.where(known, left / noise, 0.0) * (vectors.T @ sums[:-1, -1]))
+    return fitted, math.sqrt(float(vectors[0] ** 2 @ np.where(known, left, 1.0)))
 
 
 def _noise(residual: Array) -> float:

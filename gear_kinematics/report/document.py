@@ -147,7 +147,7 @@ _LANE = 0.18
 """Height of a lane / height of other panels."""
 _TICK_ROOM = 50
 """Most characters of all ticks of a panel that have room in one line."""
-FEW = 100
+MAX_LARGE_DOTS = 100
 """Most points that are drawn large."""
 
 

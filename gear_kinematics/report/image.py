@@ -10,7 +10,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.report.document import FEW, Figure, Panel, Pen
+from gear_kinematics.report.document import MAX_LARGE_DOTS, Figure, Panel, Pen
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.report.page import resource
 from gear_kinematics.report.symmetric_log import SymmetricLog, tick_text
@@ -209,7 +209,7 @@ def _draw(axes: Any, panel: Panel) -> None:
             scale.height(line.y) if scale else line.y,
             linestyle='none' if line.points else '--' if line.pen == Pen.MODEL else '-',
             marker='.' if line.points or panel.lanes else 'none',
-            markersize=2.0 if len(line.x) > FEW else 6.0,
+            markersize=2.0 if len(line.x) > MAX_LARGE_DOTS else 6.0,
             linewidth=3.0 if panel.lanes else 1.0,
             alpha=line.opacity,
             color=COLOURS[line.pen],

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gear_kinematics.report.document import FEW, Line, Panel, Pen
+from gear_kinematics.report.document import MAX_LARGE_DOTS, Line, Panel, Pen
 from gear_kinematics.report.mechanism import MovingMechanism
 from gear_kinematics.report.symmetric_log import SymmetricLog
 
@@ -124,7 +124,7 @@ def _trace(line: Line, panel: Panel, scale: SymmetricLog | None) -> dict[str, An
     if line.error is not None:
         trace['error_y'] = {'type': 'data', 'array': _rounded(line.error, '.4g'), 'thickness': 1}
     if line.points:
-        trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > FEW else 8}}
+        trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > MAX_LARGE_DOTS else 8}}
     if line.pen == Pen.MODEL:
         trace['line'] = {'dash': 'dash'}
     if panel.lanes:  # an instant is a line without length

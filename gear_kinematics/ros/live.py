@@ -47,7 +47,7 @@ _TOPICS = Topics()
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s to wait for unexpected messages
 _WINDOW = 500  # messages by which the node may lag; a queue of DEPTH does not overflow
-_QUIET = 5.0  # s without messages after which no more are expected; DDS repeats every 3 s
+_MAX_SILENCE = 5.0  # s without messages after which no more are expected; DDS repeats every 3 s
 _PROBE_SECOND = 2**31 - 1  # the latest in a stamp
 _PROBE_STAMP = struct.pack('<iI', _PROBE_SECOND, 0)
 
@@ -214,7 +214,7 @@ class Replay:
         while max((wanted - self.counts).values(), default=0) > but:
             now = time.monotonic()
             if self.counts.total() > total:
-                total, deadline = self.counts.total(), now + _QUIET
+                total, deadline = self.counts.total(), now + _MAX_SILENCE
             if now > deadline:
                 return False
             self._spin(POLL)

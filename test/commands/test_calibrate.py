@@ -143,6 +143,15 @@ def test_ratio_can_be_given_and_fitted(recording, tmp_path, capsys):
         assert (calibration.gear_ratio, calibration.ring_teeth) == (-19, None)
 
 
+@pytest.mark.parametrize('command', ['calibrate', 'lost-motion'])
+def test_a_ratio_that_is_left_open_gets_one_line(command, shared_path):
+    joint = shared_path('data/dual_encoders/neura_jogging_final_joint1.csv')
+    counts = '--rotor-counts', 2**24, '--output-counts', 2**24
+    line = refusal(command, joint, *counts, '--fit-ratio')
+    assert re.search(r'leaves the ratio open: 121\.\d ± \d\.\d, such as .*121.*; turn', line)
+    assert 'or give it with --ratio' in line
+
+
 @pytest.mark.parametrize(('ratio', 'named'), [('7.29', r'-19\.0'), ('19', 'counts backwards')])
 def test_a_wrong_ratio_gets_one_line_with_the_right_one(recording, ratio, named, tmp_path):
     target = tmp_path / 'c.yaml'

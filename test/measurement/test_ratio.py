@@ -110,6 +110,18 @@ def test_less_than_a_turn_is_left_open_and_the_advice_is_enough():
         assert estimate_ratio(*joint).taken == ratio
 
 
+@pytest.mark.parametrize('cut', [0.0, 0.3, 0.6, 0.9, 0.97])
+def test_what_is_left_of_a_cut_recording_is_no_other_ratio(cut):
+    random = np.random.default_rng(4)
+    joint = simulated_joint.recorded(
+        Fraction(36, 5), 5.0 * TURN, math.radians(0.3), random, 'sine'
+    )
+    start = int(cut * len(joint.time))
+    found = estimate_ratio(*(column[start:] for column in joint))
+    assert abs(found.measured.value - 7.2) <= found.measured.uncertainty
+    assert found.taken in {None, Fraction(36, 5)}
+
+
 def test_a_better_encoder_tells_more():
     joint = simulated_joint.recorded(
         Fraction(-19), math.radians(180.0), math.radians(0.05), np.random.default_rng(2), 'sine'
@@ -159,7 +171,7 @@ def test_ratio_is_found_whatever_ratio_was_assumed(assumed, encoder):
 def test_exact_angles_have_the_uncertainty_of_their_rounding():
     rotor = np.linspace(0.0, 1000.0, 5000)
     found = estimate_ratio(rotor, rotor * 26.0 / 1457.0)
-    assert abs(found.measured.value - 1457.0 / 26.0) <= found.measured.uncertainty < 1e-7
+    assert abs(found.measured.value - 1457.0 / 26.0) <= found.measured.uncertainty < 1e-8
     assert found.taken == Fraction(1457, 26)
 
 

@@ -17,6 +17,8 @@ TOLD = {
     'output_and_poses': ['output: -7.5389°, by the ratio -19', 'satellite a: at ['],
     # A slide moves by the diameter of the circle of its satellite.
     'batch': ['slide of satellite a: 2.20 mm, up to '],
+    # At 30°, by hand: 0.25 + 19 π/6 rad, 19 π²/6 rad/s, 38/19 N·m.
+    'rotor_from_output': ['0.50 s: 10.1984 rad, 31.2537 rad/s, 2.00 N·m', 'e-16 rad'],
     'validate_recording': ['servo_point_to_point: what was published is right'],
     # Lines between the readings cross zero torque 1.557′ apart; one through them has 3778 N·m/rad.
     'torque_ramps': ['hysteresis 1.56′ ± ', 'backlash 1.', 'stiffness from 0.75 to 2.5 N·m: 37'],

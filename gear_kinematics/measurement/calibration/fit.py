@@ -49,7 +49,7 @@ _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
 _ROUNDS = 3  # searches for further orders in the residuals
 _PEAKS = 6  # peaks of the spectrum that are tried in each
-_CLOSE = 0.2  # share of its uncertainty to which a delay is corrected
+_DELAY_TOLERANCE = 0.2  # share of its uncertainty to which a delay is corrected
 _DRIFTS = (0, 2, 4, 8, MOST_DRIFT)  # numbers of waves of drift that are tried
 _DELAY_DRIFT = 4
 """Waves of drift beside a delay. Measured on simulated gears: as many as improve the prediction
@@ -141,7 +141,7 @@ class _Fitting:
                 delays = equations.own(k, self._selection.columns)[:, 1]
                 self._delays[k] = delay = jackknife(shifts[k] + delays)
                 shift = delay.value if delay.clear else 0.0
-                if abs(shift - shifts[k]) > _CLOSE * (delay.uncertainty or 0.0):
+                if abs(shift - shifts[k]) > _DELAY_TOLERANCE * (delay.uncertainty or 0.0):
                     shifts[k] = shift
                     self._samples[k] = Samples(
                         self._samples[k].recording, encoders[k].earlier(shift), self._ratio

@@ -31,7 +31,7 @@ _SINGULAR = 1e-9
 _TOGETHER = (1, 2, 4)
 """Numbers of successive blocks that are taken as one, in case neighbours are correlated."""
 _FEWEST = 3  # groups of blocks from which a standard error is estimated
-_MANY = 10**9
+_MAX_DEGREES = 10**9  # of freedom
 _MOST = 30  # terms of a model
 
 
@@ -195,8 +195,8 @@ def widening(errors: Array) -> float:
     their mean (F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110), over the normal quantile.
     """
     variance = (standard_error(errors)[0] / float(errors.mean())) ** 2
-    degrees = 2.0 / max(variance, 1.0 / _MANY)
-    return student_t(max(1, int(degrees))) / student_t(_MANY)
+    degrees = 2.0 / max(variance, 1.0 / _MAX_DEGREES)
+    return student_t(max(1, int(degrees))) / student_t(_MAX_DEGREES)
 
 
 def jackknife(fits: Array) -> Estimate:

@@ -1,0 +1,151 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The commands of docs/commissioning.md, beside the drivers of a joint that they know not."""
+
+import contextlib
+import math
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from live import Peer, stamp_of
+from played_joint import moments
+from simulated_encoders import Drive
+from terminals import Person
+from watching import GEARKIN
+
+from gear_kinematics.ros.live import running_node
+
+pytestmark = [pytest.mark.live, pytest.mark.slow]
+
+ROOT = Path(__file__).resolve().parents[2]
+PLAYER = ROOT / 'test/support/played_joint.py'
+PAGE = (ROOT / 'docs/commissioning.md').read_text('utf-8')
+DEGREE = math.pi / 180.0
+SECONDS = 9  # that a person turns the output
+
+
+def command(*words: str) -> list[str]:
+    """Give the arguments of the only command of the page with these words."""
+    lines = re.findall(r'^    (\w.*)$', re.sub(r'\\\n\s*', '', PAGE), re.MULTILINE)
+    found = [shlex.split(line, comments=True) for line in lines]
+    [(_, *arguments)] = [each for each in found if set(words) <= set(each)]
+    return arguments
+
+
+class Joint(NamedTuple):
+    """What the drivers of a joint publish, and what is to be found."""
+
+    readings: np.ndarray  # (n, 3): s, rad of the rotor, rad of the output's encoder
+    truth: np.ndarray  # (n,), rad
+    tolerance: float  # rad, the transmission error
+    ratio: str
+    forgets: bool  # whether the motor counts from where it was switched on
+
+
+def simulated() -> Joint:
+    """A gear of 30 whose motor counts backwards and wraps, with an encoder that errs by 0.1°."""
+    drive = Drive(play=0.05 * DEGREE, errors={1.0: 0.1 * DEGREE}, ratio=30.0, noise=1e-5)
+    stroke = np.array([0.0, 0.0, 430.0, 430.0, 0.0]) * DEGREE - 1.0  # there and back
+    seconds, rotor, output = drive.readings(
+        lambda t: np.interp(t, [0.0, 1.5, 5.0, 6.5, 10.0], stroke), 10.0, 250.0
+    )
+    readings = np.stack([seconds, (2.0 - rotor) % math.tau, output % math.tau], axis=1)
+    return Joint(readings, rotor / 30.0, 0.25 * DEGREE, '-30', forgets=False)
+
+
+def recorded(path: Path) -> Joint:
+    """A joint of a LARA 8, there and back: counts, 2^24 a turn on either side."""
+    seconds, motor, load, _ = np.loadtxt(path, delimiter=',', skiprows=1).T
+    forwards = np.stack([seconds, motor * math.tau / 2**24, load * math.tau / 2**24], axis=1)
+    backwards = forwards[-2:0:-1] * (-1.0, 1.0, 1.0) + (2.0 * seconds[-1], 0.0, 0.0)
+    readings = np.concatenate([forwards, backwards])
+    return Joint(readings, readings[:, 2], 0.05 * DEGREE, '121', forgets=True)
+
+
+@pytest.fixture(params=['simulated', 'data/dual_encoders/neura_jogging_joint_mass_joint2.csv'])
+def joint(request, shared_path) -> Joint:
+    return simulated() if request.param == 'simulated' else recorded(shared_path(request.param))
+
+
+@contextlib.contextmanager
+def driven(joint: Joint, folder: Path, lost: float = 0.0):
+    """Run the drivers; yields the true output angle by stamps, ns.
+
+    `lost` is the angle of the motor, rad, at which it was switched on.
+    """
+    file = folder / 'readings.npy'
+    np.save(file, joint.readings - (0.0, lost, 0.0))
+    process = subprocess.Popen([sys.executable, PLAYER, file], stdout=subprocess.PIPE)
+    try:
+        first = int(process.stdout.readline())
+        after, rows = moments(joint.readings[:, 0], 100 * len(joint.readings))
+        yield dict(zip((first + after).tolist(), joint.truth[rows].tolist(), strict=True))
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def record(folder: Path) -> str:
+    """Record the drivers with the keys of `gearkin watch`; returns the name of the recording."""
+    with Person(folder, *command('watch', '--text')) as person:
+        person.wait_for('/encoder/joint_states')
+        person.type('r')
+        name = person.wait_for(r'gearkin_[\d_-]+')
+        person.wait_for(rf'{name}: {SECONDS}\.\d s, ')
+        person.type('r')
+        person.wait_for(r'Recorded \d+ messages, 0 lost')
+        person.type('q')
+        assert person.end() == 0
+    return name
+
+
+def gearkin(folder: Path, recording: str, *arguments: str) -> str:
+    """Run a command for a recording; returns what it prints."""
+    words = [recording if word == 'RECORDING' else word for word in arguments]
+    done = subprocess.run(
+        [*GEARKIN, *words], cwd=folder, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, ''), done.stdout
+    return done.stdout
+
+
+def test_an_unknown_joint_is_commissioned(joint, tmp_path):
+    file = tmp_path / 'actuator.yaml'
+    nameplate = re.findall('`(--ratio) (121)`', PAGE)[0] if joint.ratio == '121' else ()
+    with driven(joint, tmp_path):
+        recording = record(tmp_path)
+    said = gearkin(tmp_path, recording, *command('commission', '-o'), *nameplate)
+    assert f'The gear has the ratio {joint.ratio} (' in said.splitlines()[0]
+    [setting] = re.findall(r'`(output_encoder_reference: absolute)`', PAGE)
+    file.write_text(f'{file.read_text()}    {setting}\n')
+    with driven(joint, tmp_path, lost=37.3 if joint.forgets else 0.0) as truth:
+        recording = record(tmp_path) if joint.forgets else recording
+        gearkin(tmp_path, recording, *command('commission', '--check'))
+        [start] = re.findall(r'^#     (.*gear_state_publisher.*)$', file.read_text(), re.MULTILINE)
+        _, ros, arguments = start.partition('--ros-args')
+        with (
+            (tmp_path / 'node.log').open('w') as log,
+            running_node(
+                [ros, *shlex.split(arguments)], cwd=tmp_path, stdout=log, stderr=log,
+                env={**os.environ, 'PYTHONPATH': str(ROOT)},
+            ),
+            contextlib.closing(Peer('')) as peer,
+        ):  # fmt: skip
+            peer.status(
+                lambda status: (
+                    status.message == 'ok'
+                    and {v.key: v.value for v in status.values}.get('referenced') == 'true'
+                ),
+                'the reference',
+            )
+            received = peer.received['output_state']
+            received.clear()
+            peer.wait_until(lambda: len(received) >= 1000, 'outputs')
+    errors = [math.remainder(m.position[0] - truth[stamp_of(m)], math.tau) for m in received]
+    assert max(map(abs, errors)) <= joint.tolerance
