@@ -15,6 +15,7 @@ from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.referenced_input import ReferencedInput
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import (
@@ -52,6 +53,7 @@ def compute(
     rotor_topic: str = _TOPICS.rotor,
     output_topic: str = _TOPICS.output,
     poses_topic: str = _TOPICS.poses,
+    encoder_topic: str = '',
     calibration: Calibration | None = None,
     topics: Collection[str] | None = None,
     files: Mapping[str, bytes] = MappingProxyType({}),
@@ -64,6 +66,9 @@ def compute(
     Each output directly follows its rotor message and has its time of reception. The same input
     gives the same bytes. If this fails or is interrupted, no target is left.
 
+    Where an output encoder references the rotor's count, outputs are those of the node: before the
+    reference those of the nearest turn, or of the configured zero, and referenced from then on.
+
     Args:
         source: an open bag.
         target: the folder to create.
@@ -71,6 +76,7 @@ def compute(
         rotor_topic: name of the input in the bag.
         output_topic: name of the node's output_state in the bag.
         poses_topic: name of the node's body_poses in the bag.
+        encoder_topic: name of the output encoder in the bag if there is one, which is copied too.
         calibration: of the gear, to compute CORRECTED_TOPICS beside the topic of the output.
         topics: other topics to copy; None copies all.
         files: contents of further files of the target, by name.
@@ -86,7 +92,10 @@ def compute(
     from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, needs an extra
 
     messages_of = state_messages(parameters)
-    rotor_input = RotorInput(parameters)
+    referenced = None
+    if parameters.absolute and encoder_topic:
+        referenced = ReferencedInput(parameters, calibration)
+    rotor_input = referenced.rotor if referenced else RotorInput(parameters)
     topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
     topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
     corrector = None
@@ -96,7 +105,8 @@ def compute(
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
-    chosen = {rotor_topic, *(source.topics if topics is None else topics)}
+    inputs = {rotor_topic, encoder_topic} if referenced else {rotor_topic}
+    chosen = {*inputs, *(source.topics if topics is None else topics)}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
 
@@ -110,17 +120,25 @@ def compute(
         for name, topic in {ROTOR_STATE: rotor_topic, **topic_of}.items():
             writer.name_topic(name, topic)
         for batch in source.batches({*kept, *outputs}, progress):
-            messages = [message for message in batch if message[0] not in outputs]
+            messages, correction = [each for each in batch if each[0] not in outputs], None
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
-            samples = rotor_input.accept_batch(
-                [messages[place][2] for place in rotor], [messages[place][1] for place in rotor]
-            )
+            if referenced:
+                samples, correction = referenced.take_batch(
+                    (topic == rotor_topic, received, data)
+                    for topic, received, data in messages
+                    if topic in inputs
+                )
+            else:
+                samples = rotor_input.accept_batch(
+                    [messages[place][2] for place in rotor],
+                    [messages[place][1] for place in rotor],
+                )
             answered = [rotor[row] for row in samples.row.tolist()]
             computed += len(answered)
             copied += len(messages) - len(rotor)
             encoded_outputs = messages_of.encode_outputs(samples)
             if corrector:
-                correction = corrector.correct_batch(
+                correction = correction or corrector.correct_batch(
                     *samples[:5], samples.segment, referenced=rotor_input.referenced
                 )
                 encoded_outputs |= messages_of.encode_corrections(samples, correction)

@@ -159,6 +159,17 @@ def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
     return _only(bag.path, named, OUTPUT_ENCODER) if named else None
 
 
+def encoder_beside(bag: Bag, rotor: str) -> str:
+    """Return the output encoder's topic in the namespace of the rotor's, or else the only one.
+
+    An empty text if there is none, or several are elsewhere.
+    """
+    kind = TOPICS[OUTPUT_ENCODER].type
+    named = [topic for topic in _of_type(bag.topics, kind) if base_name(topic) == OUTPUT_ENCODER]
+    beside = f'{rotor.rpartition("/")[0]}/{OUTPUT_ENCODER}'
+    return beside if beside in named else named[0] if len(named) == 1 else ''
+
+
 def missing_encoder(bag: Bag) -> str:
     """Say that a bag has no topic of the output encoder, and which topics it might be."""
     topics = _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)

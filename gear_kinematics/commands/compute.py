@@ -7,7 +7,7 @@ from pathlib import Path
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError, TopicError
 from gear_kinematics.bag.compute import ComputeResult, compute
-from gear_kinematics.bag.roles import find_rotor_topic, only_joint, outputs_of
+from gear_kinematics.bag.roles import encoder_beside, find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters import NodeParameters, default_config
@@ -52,6 +52,7 @@ def run(options: argparse.Namespace) -> ExitCode:
                 rotor_topic=rotor,
                 output_topic=options.output_topic or outputs.output,
                 poses_topic=options.poses_topic or outputs.poses,
+                encoder_topic=encoder_beside(bag, rotor),
                 calibration=calibration,
                 topics=options.topics,
                 files=_files(options, config),

@@ -38,12 +38,14 @@ from gear_kinematics.ros.workarounds.shutdown import shut_down
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
-from gear_kinematics.wire.topics import JOINT_STATE, ROTOR_STATE
+from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_ENCODER
 
 POLL = 0.1
 """Greatest delay of the response to a signal, s."""
 
 _TOPICS = Topics()
+_ENCODER = f'/{OUTPUT_ENCODER}'
+_LISTENERS = 2  # to each encoder: the node and the recorder
 _PROBE_PERIOD = 0.05  # s
 _AFTERWARDS = 0.1  # s to wait for unexpected messages
 _WINDOW = 500  # messages by which the node may lag; a queue of DEPTH does not overflow
@@ -77,10 +79,11 @@ def live_messages(
     parameters: NodeParameters,
     *,
     rotor_topic: str = _TOPICS.rotor,
+    encoder_topic: str = '',
     rate: float = 1.0,
     progress: ReportProgress = lambda _done, _total: None,
 ) -> Iterator[Message]:
-    """Play a bag's rotor topic into a node process and yield what it publishes.
+    """Play a bag's topics of encoders into a node process and yield what it publishes.
 
     The node runs in a private namespace and communicates on this machine only. Messages are sent
     only as fast as it processes them, so that none is lost at any rate. Rotor messages without a
@@ -91,11 +94,13 @@ def live_messages(
         source: an open bag.
         parameters: of the node.
         rotor_topic: name of the rotor topic in the bag.
+        encoder_topic: name of the output encoder's topic in the bag, to play it too.
         rate: bag time / real time.
         progress: called with the number of rotor messages sent.
 
     Yields:
-        Messages on /rotor_state and `outputs_of` the parameters, in the order of their reception.
+        Messages on /rotor_state, /output_encoder and `outputs_of` the parameters, in the order of
+        their reception.
 
     Raises:
         BagError: if the topic is missing or empty; if the bag is damaged, after the outputs for
@@ -105,23 +110,25 @@ def live_messages(
     expected = RotorInput(parameters)
     outputs = outputs_of(parameters)
     source.type_of(rotor_topic, JOINT_STATE)
-    schedule = due_messages(source, [rotor_topic], rate)
+    schedule = due_messages(source, [rotor_topic, *filter(None, [encoder_topic])], rate)
     report = throttled(progress)
     wanted: Counter[str] = Counter()
     damage: DamagedBagError | None = None
     with _private_node(parameters) as replay:
         start = time.monotonic()
         try:
-            for due, (_, received, recorded) in schedule:
+            for due, (topic, received, recorded) in schedule:
                 while (left := start + due - time.monotonic()) > 0.0:
                     replay.receive_until(time.monotonic() + min(left, POLL))
                     yield from replay.take()
                 data = _stamped(recorded, received)
-                replay.send(data)
-                wanted[_TOPICS.rotor] += 1
-                with suppress(RejectedInputError):
-                    expected.accept(data, partial(int, received))
-                    wanted.update(outputs)
+                sent = _TOPICS.rotor if topic == rotor_topic else _ENCODER
+                replay.send(data, sent)
+                wanted[sent] += 1
+                if sent == _TOPICS.rotor:
+                    with suppress(RejectedInputError):
+                        expected.accept(data, partial(int, received))
+                        wanted.update(outputs)
                 if not replay.receive(wanted, but=_WINDOW):
                     wanted = replay.counts.copy()  # missing messages will not come any more
                 report(expected.received, None)
@@ -137,7 +144,7 @@ def live_messages(
 
 
 class Replay:
-    """A driver on rotor_state, and a recorder of it and of the node's outputs.
+    """A driver of both encoders, and a recorder of them and of the node's outputs.
 
     A context manager with its own ROS context. Nothing runs in the background: messages are
     received only within `receive_until` and the waits.
@@ -148,6 +155,7 @@ class Replay:
         namespace: str = '',
         alive: Callable[[], bool] = lambda: True,
         outputs: Collection[str] = _TOPICS[1:],
+        inputs: Collection[str] = _TOPICS[:1],
     ) -> None:
         """Open the topics in a namespace; `alive` returns whether the node can still answer."""
         self.received: list[Message] = []
@@ -161,9 +169,11 @@ class Replay:
         self._resources.callback(self._executor.shutdown)
         self._executor.add_node(self._node)
         qos = QoSProfile(depth=DEPTH)
-        self._publisher = self._node.create_publisher(JointState, ROTOR_STATE, qos)
+        self._publishers = {
+            topic: self._node.create_publisher(JointState, topic[1:], qos) for topic in inputs
+        }
         self._topics = {_TOPICS.rotor, *outputs}
-        for topic in self._topics:
+        for topic in self._topics | set(inputs):
             message_type = PoseArray if topic == _TOPICS.poses else JointState
             self._node.create_subscription(
                 message_type, topic[1:], self._recorder(topic), qos, raw=True
@@ -185,7 +195,10 @@ class Replay:
         template = JointStateTemplate([joint or 'rotor'], velocity=False, effort=False)
         message = template.encode(_PROBE_SECOND * SECOND, [0.0])
         deadline = time.monotonic() + timeout
-        while self._probed != self._topics:
+        drivers = self._publishers.values()
+        while self._probed != self._topics or any(
+            driver.get_subscription_count() < _LISTENERS for driver in drivers
+        ):
             if time.monotonic() > deadline:
                 raise ReplayError(f'the node did not answer within {timeout:g} s')
             self.send(message)
@@ -196,9 +209,9 @@ class Replay:
         while (left := moment - time.monotonic()) > 0.0:
             self._spin(min(left, POLL))
 
-    def send(self, data: bytes) -> None:
-        """Send a serialised JointState as rotor_state."""
-        self._publisher.publish(data)
+    def send(self, data: bytes, topic: str = _TOPICS.rotor) -> None:
+        """Send a serialised JointState of the rotor, or on another topic of an encoder."""
+        self._publishers[topic].publish(data)
 
     def take(self) -> list[Message]:
         """Remove and return the messages in `received`."""
@@ -283,7 +296,10 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
                 env=os.environ | {'ROS_LOG_DIR': folder},
             ) as process,
             Replay(
-                namespace, alive=lambda: process.poll() is None, outputs=outputs_of(parameters)
+                namespace,
+                alive=lambda: process.poll() is None,
+                outputs=outputs_of(parameters),
+                inputs=(_TOPICS.rotor, *([_ENCODER] if parameters.absolute else [])),
             ) as replay,
         ):
             try:

@@ -5,7 +5,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
@@ -49,6 +49,12 @@ class RotorSamples(NamedTuple):
     """Number that rises where the rotor's turn count restarts, is uncertain or is referenced."""
     rejected: Array
     """(m,), ns: the stamps of rejected messages that have one."""
+
+    @classmethod
+    def of(cls, rows: Sequence[tuple[Any, ...]], rejected: Array) -> Self:
+        """Make them of samples one by one; None becomes NaN."""
+        table = np.array(rows, _COLUMNS)
+        return cls._make([*(table[name].copy() for name in table.dtype.names or ()), rejected])
 
 
 _ENCODERS = tuple(n for n in PARAMETERS if n.startswith(('rotor_', 'output_encoder_')))
@@ -265,10 +271,7 @@ class RotorInput:
                 continue
             motion = *sample.position, sample.velocity, sample.effort
             taken.append((sample.stamp, *motion, row, now, self.segment))
-        table = np.array(taken, _COLUMNS)  # None becomes NaN
-        columns = [table[name].copy() for name in table.dtype.names or ()]
-        rejected = np.append(rejected, np.array(disordered, np.int64))
-        return RotorSamples._make([*columns, rejected])
+        return RotorSamples.of(taken, np.append(rejected, np.array(disordered, np.int64)))
 
     def _take_row(self, stamp: int, row: Sequence[float]) -> RotorSample:
         position, velocity, effort = row

@@ -74,10 +74,12 @@ CORRECTED: Mapping[str, type[JointStateTopic]] = {
 """What compares each of CORRECTED_TOPICS."""
 
 
-def why_unjudged(calibration: Calibration | None, *, single_turn: bool) -> str:
+def why_unjudged(calibration: Calibration | None, *, single_turn: bool, absolute: bool) -> str:
     """Return why the corrected output cannot be judged; an empty text if it can."""
     if not calibration:
         return 'no calibration is given'
+    if absolute:
+        return 'a recording does not tell when the output encoder referenced the rotor'
     if single_turn and calibration.period > 1:
         return 'a recording does not tell when a single-turn encoder was referenced'
     return ''

@@ -120,8 +120,8 @@ def _counted(rotor: InputReport) -> Iterator[Finding]:
 
 
 _SENTENCES = {
-    'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the single-turn encoder: '
-    'after each, its turns are taken from the outputs',
+    'jumps': '{rotor.jumps} gaps of {rotor.topic} could hide a turn of the rotor: after each, '
+    'its turns are taken from the outputs',
     'overspeed': '{rotor.overspeed} steps of {rotor.topic} are faster than max_rotor_speed, at '
     'most {rotor.max_speed:.4g} rad/s',
     'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '

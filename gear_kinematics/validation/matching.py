@@ -19,6 +19,7 @@ from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInput
 from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances
 from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.validation.zero_changes import ZeroChanges
 from gear_kinematics.wire.cdr import Layout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
@@ -28,10 +29,11 @@ WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
 
 SAMPLES = [
-    *((name, np.int64) for name in ('stamp', 'received', 'segment')),
+    *((name, np.int64) for name in ('number', 'stamp', 'received', 'segment')),
     *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]
-"""Columns of the samples with which outputs are compared; see `RotorSamples`."""
+"""Columns of the samples with which outputs are compared: their numbers from 0 on, and those of
+`RotorSamples`."""
 
 
 class Expectation(NamedTuple):
@@ -43,6 +45,8 @@ class Expectation(NamedTuple):
     """Recomputes the motion of a mechanism."""
     unseen: UnseenTurns | None
     """Unseen turns, if the rotor has a single-turn encoder."""
+    zeros: ZeroChanges | None
+    """Changes of the zero, if they are accepted."""
 
 
 class Matcher:
@@ -133,7 +137,7 @@ class OutputTopic:
         """Known offset of a recorded output angle, rad."""
         self.series = SeriesRecorder(errors)
         self.matcher = Matcher()
-        self._gear, self._tolerances, self._solver, self._unseen = expectation
+        self._gear, self._tolerances, self._solver, self._unseen, self._zeros = expectation
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # when they were received, as they have no stamp
         self._faults: defaultdict[str, Occurrences] = defaultdict(Occurrences)
@@ -160,6 +164,8 @@ class OutputTopic:
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.extra.add(stamps[given_up[~lacking]])
         samples = window.take(index[found])  # faster than by an index
+        if self._zeros:
+            self._zeros.move(samples)
         rotor_angle, fields = self._compare(usable[found], samples)
         for errors, field in zip(self.errors, fields, strict=True):
             errors.update(field, samples['stamp'], rotor_angle)

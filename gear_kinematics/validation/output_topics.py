@@ -116,7 +116,12 @@ class OutputState(JointStateTopic):
             recorded = self._states.values[rows, 0] - self.offset
             expected = self._ideal_angle(samples['turns'], samples['angle'])
             self._unseen.learn(samples['segment'], recorded, expected)
-        rotor_angle, fields = super()._compare(rows, samples)
+        rotor_angle, (position, *others) = super()._compare(rows, samples)
+        if self._zeros and (moved := self._zeros.learn(samples, position)).any():
+            rotor_angle += float(self._gear.gear_ratio) * moved
+            expected = position.expected + moved[:, np.newaxis]
+            position = position._replace(expected=expected, error=position.error - moved)
+        fields = position, *others
         for factor, field in zip(self._factors.values(), fields[1:], strict=True):
             factor.update(field.recorded[:, 0], field.expected[:, 0])
         output_angle = fields[0].recorded[:, 0]
@@ -175,6 +180,8 @@ class BodyPoses(OutputTopic):
                 self._faults[fault].add(stamp[arrays.frame[rows] == k])
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
         turns = self._turns(samples, unknown=np.nan)
+        if self._zeros:
+            turns[self._zeros.uncertain(samples)] = np.nan
         known = ~np.isnan(turns)
         turns[~known] = 0.0
         state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)

@@ -12,6 +12,7 @@ from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     Topics,
     corrected_beside,
+    encoder_beside,
     find_corrected_topics,
     find_topics,
     only_joint,
@@ -24,6 +25,7 @@ from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.joint_reader import JOINT_MISSING
+from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 _BATCH = 8192  # messages of a live node that are validated together
 
@@ -98,12 +100,18 @@ def _recorded(task: Task, bag: Bag, progress: ReportProgress | None) -> BagRepor
     """Validate the recorded outputs; if no message has the joint, with the only joint there."""
     topics = _topics(task, bag, outputs=True)
     corrected = find_corrected_topics(bag, topics.output)
-    names = (*topics, *corrected.values())
-    report = _report(Validator(task, topics, corrected), bag.batches(names, progress))
+    encoder = encoder_beside(bag, topics.rotor) if task.parameters.absolute else ''
+    names = (*topics, *corrected.values(), *filter(None, [encoder]))
+
+    def judged(task: Task) -> BagReport:
+        validator = Validator(task, topics, corrected, encoder=encoder)
+        return _report(validator, bag.batches(names, progress))
+
+    report = judged(task)
     if report.rotor and report.rotor.rejected.get(JOINT_MISSING) == report.rotor.messages:
         other = _with_only_joint(task, bag, topics.rotor)
         if other != task:
-            report = _report(Validator(other, topics, corrected), bag.batches(names, progress))
+            report = judged(other)
             joint = other.parameters.rotor_joint
             taken = Finding(f'{joint}, the only joint on {topics.rotor}, is taken')
             report = replace(report, findings=(taken, *report.findings))
@@ -118,6 +126,7 @@ def _live(
 ) -> BagReport:
     """Validate what a live node publishes on its own topics for the rotor states of a bag."""
     rotor = _topics(task, bag, outputs=False).rotor
+    encoder = encoder_beside(bag, rotor) if task.parameters.absolute else ''
     total = count_due(bag, [rotor]) if progress else None
     # Nothing is lost by a recorder here.
     task = replace(_with_only_joint(task, bag, rotor), strict=True)
@@ -125,10 +134,12 @@ def _live(
         bag,
         task.parameters,
         rotor_topic=rotor,
+        encoder_topic=encoder,
         progress=lambda sent, _: progress and progress(sent, total),
     )
     corrected = corrected_beside() if task.calibration else {}
-    return _report(Validator(task, corrected=corrected), in_batches(messages, _BATCH))
+    validator = Validator(task, corrected=corrected, encoder=encoder and f'/{OUTPUT_ENCODER}')
+    return _report(validator, in_batches(messages, _BATCH))
 
 
 def _report(validator: Validator, batches: Iterable[Sequence[Message]]) -> BagReport:

@@ -34,7 +34,9 @@ from gear_kinematics.validation.output_topics import BodyPoses, OutputState
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
 from gear_kinematics.validation.report import BagReport, Finding, Lane
 from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.turn_references import TurnReferences
 from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.validation.zero_changes import ZeroChanges
 from gear_kinematics.wire.cdr import MalformedMessageError
 
 _FRAME = 'stator'
@@ -54,6 +56,7 @@ class Validator:
         topics: Topics = _TOPICS,
         corrected: Mapping[str, str] = _NOT_CORRECTED,
         solver: Solver = solve,
+        encoder: str = '',
     ) -> None:
         """Prepare for a recording.
 
@@ -62,13 +65,14 @@ class Validator:
             topics: names of the topics; that of poses that are not recorded is empty.
             corrected: the recorded ones of CORRECTED_TOPICS, each with its name in the recording.
             solver: recomputes the motion: `solve`, or that of the matrix method.
+            encoder: the topic of an encoder at the output that references the rotor, if recorded.
 
         Raises:
             ValueError: if the parameters describe no gear.
         """
         self._task = task
         self._parameters = parameters = task.parameters
-        self._topics, self._corrected = topics, corrected
+        self._topics, self._corrected, self._encoder = topics, corrected, encoder
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
         self._health = input_health.InputHealth(parameters.max_rotor_speed)
@@ -77,7 +81,14 @@ class Validator:
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         single_turn = parameters.single_turn
         self._unseen = UnseenTurns(gear.gear_ratio, task.tolerances.angle) if single_turn else None
-        self._expectation = Expectation(gear, task.tolerances, solver, self._unseen)
+        self._zeros = self._references = None
+        if parameters.absolute or not task.strict:
+            angle, homing = task.tolerances.angle, not task.strict
+            self._zeros = ZeroChanges(parameters, angle, homing=homing)
+        if parameters.absolute:
+            self._references = TurnReferences(parameters, task.calibration)
+        self._expectation = Expectation(gear, task.tolerances, solver, self._unseen, self._zeros)
+        self._samples = 0
         self._groups: list[Completeness] = []
         self._outputs: dict[str, OutputTopic] = {}
         joint = parameters.frame_prefix + parameters.output_joint
@@ -87,7 +98,9 @@ class Validator:
             frame = parameters.frame_prefix + _FRAME
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
         self._judge(*filter(None, (self.output, self.poses)))
-        self._why_unjudged = why_unjudged(task.calibration, single_turn=single_turn)
+        self._why_unjudged = why_unjudged(
+            task.calibration, single_turn=single_turn, absolute=parameters.absolute
+        )
         self._correction = None
         columns = list(SAMPLES)
         if task.calibration and corrected and not self._why_unjudged:
@@ -100,7 +113,7 @@ class Validator:
         self._window = np.zeros(0, columns)
         """The latest samples."""
         self._prefix_open = not parameters.frame_prefix
-        self._offset_open = task.allow_offset or not task.strict
+        self._offset_open = task.allow_offset or not task.strict or parameters.absolute
         self._findings: list[Finding] = []
 
     def feed(self, batches: Iterable[Sequence[Message]]) -> None:
@@ -124,19 +137,24 @@ class Validator:
         self._drop(len(self._window))
         for group in self._groups:
             group.close()
+        if self._zeros and self._zeros.found:  # which the correction knows nothing of
+            why = 'the zero of the rotor changes during the recording'
+            self._correction, self._why_unjudged = None, self._why_unjudged or why
+        judged = {*self._topics, *(self._corrected.values() if self._correction else ())}
         rotor = self._health.report(self._input, self._topics.rotor)
         topics = tuple(
             output.report()
             for name, output in self._outputs.items()
             # Without a calibration, the node publishes nothing on the topics of the correction.
-            if output.matcher.messages or name in self._topics
+            if (output.matcher.messages or name in self._topics) and name in judged
         )
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
         elif error is None and not any(topic.messages for topic in topics):
             error = 'no outputs in it: gearkin compute writes a bag with them'
         checked = [finding for check in input_health.CHECKS for finding in check(rotor)]
-        passed = not any(finding.fails for finding in checked) and all(t.passed for t in topics)
+        findings = *self._found(), *checked
+        passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
         start = rotor.first_stamp or 0
         series = (output.series.series(name, start) for name, output in self._outputs.items())
         return BagReport(
@@ -148,7 +166,7 @@ class Validator:
             messages=rotor.messages + sum(topic.messages for topic in topics),
             rotor=rotor,
             topics=topics,
-            findings=(*self._found(), *checked),
+            findings=findings,
             series=tuple(found for found in series if found),
             lanes=tuple(self._lanes(start)) if rotor.valid else (),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
@@ -174,20 +192,24 @@ class Validator:
         for topic, messages in batch.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        self._add_samples(batch[self._topics.rotor])
+        self._add_samples(batch[self._topics.rotor], batch.get(self._encoder))
         for name, output in self._outputs.items():
             output.take(batch[name].data, batch[name].received, self._window, self._inputs)
         done = np.all([output.matcher.matched for output in self._outputs.values()], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
-    def _add_samples(self, messages: TopicMessages) -> None:
+    def _add_samples(self, messages: TopicMessages, encoder: TopicMessages | None) -> None:
         """Add the rotor's samples to the window."""
         samples = self._input.accept_batch(messages.data, messages.received)
+        if self._references and self._encoder and encoder:
+            self._references.take(messages, encoder, samples)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._rejected.add(samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        columns = {name: getattr(samples, name) for name, _ in SAMPLES}
+        columns = {'number': self._samples + np.arange(len(samples.stamp))}
+        self._samples += len(samples.stamp)
+        columns |= {name: getattr(samples, name) for name, _ in SAMPLES if name not in columns}
         if self._correction:
             columns |= self._correction.at(samples)._asdict()
         new = np.empty(len(samples.stamp), self._window.dtype)
@@ -232,7 +254,8 @@ class Validator:
         outputs = batch[self._topics.output]
         few = {**self._sorted(()), self._topics.rotor: batch[self._topics.rotor]}
         few[self._topics.output] = TopicMessages(outputs.data[:_FEW], outputs.received[:_FEW])
-        for part in (few, batch):
+        parts = (few,) if self._references else (few, batch)  # it can change in the batch
+        for part in parts:
             trial = self._trial(part, self._parameters)
             offset = trial.output.fit.offset(self._task.tolerances.angle)
             self._offset_open = not trial.output.fit.count
@@ -246,10 +269,11 @@ class Validator:
             return
         text = f'the recorded output angle is off by a constant {offset:.12g} rad'
         moved = replace(self._parameters, rotor_zero=zero)
-        if self._trial(batch, moved).position_error <= trial.position_error:
+        if self._trial(parts[-1], moved).position_error <= trial.position_error:
             self._input.parameters = moved
             before = f'{self._parameters.rotor_zero:.12g}'
-            text += f': compared with rotor_zero {zero:.12g} instead of {before}, as after homing'
+            way = 'by the output encoder' if self._references else 'as after homing'
+            text += f': compared with rotor_zero {zero:.12g} instead of {before}, {way}'
         elif self._task.allow_offset:
             for output in self._outputs.values():
                 output.offset = offset
@@ -260,6 +284,7 @@ class Validator:
 
     def _trial(self, batch: _Batch, parameters: NodeParameters) -> 'Validator':
         """Return what validates a batch with other parameters."""
+        parameters = replace(parameters, output_encoder_reference='none')
         task = replace(self._task, parameters=parameters, allow_offset=False, strict=True)
         trial = Validator(task, self._topics, solver=self._expectation.solver)
         trial._take({name: batch[name] for name in self._topics})
@@ -271,7 +296,7 @@ class Validator:
         return self.poses.errors[0].report().max_error if self.poses else 0.0
 
     def _sorted(self, messages: Iterable[Message]) -> _Batch:
-        return by_topic(messages, (*self._topics, *self._corrected.values()))
+        return by_topic(messages, (*self._topics, *self._corrected.values(), self._encoder))
 
     def _found(self) -> Iterator[Finding]:
         """Yield with what the outputs are compared, what explains their faults, and the rest."""
@@ -283,6 +308,10 @@ class Validator:
             file = self._task.parameters.calibration
             yield Finding(f'the corrected output is compared with that of {file}')
         yield from self._findings
+        if self._zeros:
+            yield from self._zeros.notes(self._input.parameters)
+        if self._zeros and self._references:
+            yield from self._references.findings(self._zeros, self._unseen)
         for output in self._outputs.values():
             yield from output.causes()
         if self._input.mostly_rejected and self._input.missing_joint:

@@ -11,11 +11,18 @@ from gear_kinematics.validation.validator import Validator
 
 
 def validate(
-    messages: list[Message], config: dict, *topics, corrected=None, solver=solve, **options
+    messages: list[Message],
+    config: dict,
+    *topics,
+    corrected=None,
+    solver=solve,
+    encoder='',
+    **options,
 ) -> BagReport:
     """Validate messages with the options of a `Task`."""
     task = Task(Path('bag'), config, **options)
-    validator = Validator(task, *topics, corrected=corrected or {}, solver=solver)
+    named = {'corrected': corrected or {}, 'solver': solver, 'encoder': encoder}
+    validator = Validator(task, *topics, **named)
     validator.feed(in_batches(messages, 8192))
     return validator.report()
 

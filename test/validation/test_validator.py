@@ -6,15 +6,17 @@ import re
 import struct
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 import replaying
+from node_loop import answered
 from replaying import SECOND, edited, encode
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 from validating import field_of, texts, topic_of, validate
 
-from gear_kinematics.bag import Message
+from gear_kinematics.bag import Message, in_batches
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
@@ -22,7 +24,8 @@ from gear_kinematics.validation.figure import moving
 from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.report import Lane
-from gear_kinematics.validation.task import Tolerances
+from gear_kinematics.validation.task import Task, Tolerances
+from gear_kinematics.validation.validator import Validator
 from gear_kinematics.wire.batches import FIELDS
 
 CHANGED = 100
@@ -477,6 +480,32 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     # A step at half time, as by homing during the recording, is no constant offset.
     step = change_all(recorded[450:], OUTPUT, add('position', 0.125))
     assert validate(recorded[:450] + step, homed).verdict == Verdict.FAIL
+
+
+@pytest.mark.parametrize('encoder', ['multi_turn', 'single_turn'])
+@pytest.mark.parametrize('place', [1, 100, 200, 299])
+def test_homing_during_a_recording_passes_and_is_said(recorded, config, encoder, place):
+    """In a batch and between two of them, at the first and at the last outputs."""
+    config = replace(config, rotor_encoder=encoder, home_angle=0.25)
+    rotor = [message for message in recorded if message[0] == ROTOR]
+    messages = answered(config, rotor, home_after=place)
+    validator = Validator(Task(Path('bag'), config))
+    validator.feed(in_batches(messages, 300))
+    report = validator.report()
+    assert report.verdict == Verdict.PASS
+    position = replaying.decode(rotor[place - 1][2], JOINT_STATE).position[0]
+    zero = position + 19 * 0.25  # there, the output is at the angle of homing
+    [said] = [finding.text for finding in findings(report)]
+    time = (rotor[place][1] - rotor[0][1]) / SECOND
+    assert said == (
+        f'compared with rotor_zero {zero:.12g} instead of 0, as after homing, from {time:+.3f} s'
+    )
+    assert not validate(messages, config, strict=True).passed
+    # A step to another angle is no homing, nor is one of the output alone.
+    assert not validate(messages, replace(config, home_angle=0.2)).passed
+    position = add('position', zero / 19)
+    outputs_alone = recorded[: 3 * place] + change_all(recorded[3 * place :], OUTPUT, position)
+    assert not validate(outputs_alone, config).passed
 
 
 def test_nothing_to_validate_is_unusable(recorded, config):

@@ -1,0 +1,139 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Judges the turns, or the zero, that the output encoder gave a node, by the recorded encoder.
+
+At which sample the rotor's count was referenced is taken from the outputs, as a recorder does not
+see the order of arrival in the node; to what, is computed from the recorded encoder.
+"""
+
+import math
+from collections import defaultdict, deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from operator import itemgetter
+
+import numpy as np
+
+from gear_kinematics.bag import TopicMessages
+from gear_kinematics.correction.calibration_file import Calibration
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import counted, number
+from gear_kinematics.state.referenced_input import ReferencedInput
+from gear_kinematics.state.rotor_input import RotorSamples
+from gear_kinematics.state.turn_reference import SAMPLES, Decision
+from gear_kinematics.validation.report import Finding
+from gear_kinematics.validation.unseen_turns import UnseenTurns
+from gear_kinematics.validation.zero_changes import ZeroChange, ZeroChanges
+from gear_kinematics.wire.cdr import SECOND
+
+_PATIENCE = SECOND  # ns after the own decision by which a node must have come to the same
+
+
+@dataclass(slots=True)
+class _Segment:
+    """What the recorded encoder gives in a segment of the recorded rotor."""
+
+    turns: float = 0.0
+    angle: float = 0.0
+    """rad: the rotor angle is 2π turns + angle more than counted."""
+    since: int | None = None
+    """Stamp of the first sample that is referenced."""
+    uncertainty: float = 0.0
+    """rad, of the output angle."""
+    ready: int | None = None
+    """Stamp of the first sample after half of the angles that the node needs for a reference."""
+    refused: Decision | None = None
+    """The first one."""
+
+
+class TurnReferences:
+    """References each segment as the node does, and compares it with that of the outputs."""
+
+    def __init__(self, parameters: NodeParameters, calibration: Calibration | None) -> None:
+        self._input = ReferencedInput(parameters, calibration)
+        self._single_turn, self._ratio = parameters.single_turn, parameters.gear.gear_ratio
+        self._segments: dict[int, _Segment] = {}
+        self._encoder_messages = 0
+
+    def take(self, rotor: TopicMessages, encoder: TopicMessages, samples: RotorSamples) -> None:
+        """Process the next messages, of which `samples` are those of the rotor as counted."""
+        self._encoder_messages += len(encoder.data)
+        arrivals = [
+            (topic is rotor, *each)
+            for topic in (rotor, encoder)
+            for each in zip(topic.received, topic.data, strict=True)
+        ]
+        arrivals.sort(key=itemgetter(1))
+        columns = (column.tolist() for column in (samples.segment, samples.turns, samples.angle))
+        reference, found = self._input.reference, self._input.take(arrivals)
+        for (row, _), segment, turns, angle in zip(found, *columns, strict=True):
+            own, stamp = self._segments.setdefault(segment, _Segment()), row[0]
+            own.turns, own.angle = row[1] - turns, row[2] - angle
+            if self._input.rotor.referenced:
+                own.since = own.since or stamp
+                own.uncertainty = reference.uncertainty or 0.0
+            else:
+                own.refused = own.refused or reference.decision
+                if 2 * reference.compared >= SAMPLES:
+                    own.ready = own.ready or stamp
+
+    def findings(self, zeros: ZeroChanges, unseen: UnseenTurns | None) -> Iterator[Finding]:
+        """Judge the references that the outputs show."""
+        changes_in = defaultdict[int, list[ZeroChange]](list)
+        for change in zeros.found:
+            if not change.homed:
+                changes_in[change.segment].append(change)
+        staying = deque(change for change in zeros.found if change.stays)
+        stayed = angle = 0.0
+        agreed, before = 0, None
+        for segment, (last, stamp) in zeros.last_outputs.items():
+            while staying and staying[0].number <= last:
+                stayed += staying[0].turns
+                angle += staying.popleft().angle
+            changes = changes_in[segment]
+            nearest = stayed + (float(unseen.of(np.array([segment]))[0]) if unseen else 0.0)
+            turns = nearest + sum(change.turns for change in changes if not change.stays)
+            own = self._segments.get(segment, _Segment())
+            fault = unjudged = ''
+            if len(changes) > 1:
+                fault = ', again without a gap'
+            elif changes and unseen and before is not None and nearest not in {before, 0.0}:
+                fault = f', before which they were {nearest - before:+.0f} off the nearest turn'
+            elif changes and not unseen and changes[0].number == last:
+                fault = ' in the last one alone'
+            elif own.since is not None and self._agree(turns - own.turns, angle - own.angle, own):
+                agreed += 1
+            elif own.since is not None and (changes or stamp - own.since > _PATIENCE):
+                given = self._written(own.turns, own.angle)
+                fault = f', but the recorded output_encoder gives {given}'
+            elif changes and own.refused and (own.ready or stamp) <= changes[0].stamp:
+                used, margin = math.degrees(own.refused.used), math.degrees(own.refused.margin)
+                fault = ', but the recorded output_encoder leaves it open: '
+                fault += f'{used:.3g}° of {margin:.3g}° margin'
+            elif changes:
+                unjudged = ', which is not judged: too few angles of output_encoder are recorded'
+            before = turns
+            if fault or unjudged:
+                yield Finding(
+                    f'the outputs are moved by {self._written(turns, angle)}{fault or unjudged}',
+                    fails=bool(fault),
+                    stamp=changes[-1].stamp if changes else own.since,
+                    when='from',
+                )
+        if agreed:
+            times = counted(agreed, 'time')
+            yield Finding(f'the outputs are referenced as output_encoder gives it, {times}')
+        elif not self._encoder_messages:
+            yield Finding('the reference is not judged: no output_encoder is recorded')
+
+    def _agree(self, turns: float, angle: float, own: _Segment) -> bool:
+        """Whether a rotor angle of 2π turns + angle is none, as far as an encoder can tell."""
+        if self._single_turn:
+            return round(turns + angle / TURN) % abs(self._ratio.numerator) == 0
+        output = (TURN * turns + angle) / float(self._ratio)
+        return abs(math.remainder(output, TURN)) <= own.uncertainty
+
+    def _written(self, turns: float, angle: float) -> str:
+        if self._single_turn:
+            return f'{turns + angle / TURN:+.6g} turns of the rotor'
+        return f'{number((TURN * turns + angle) / float(self._ratio) + 0.0)} rad'

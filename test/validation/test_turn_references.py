@@ -1,0 +1,188 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Recordings of nodes whose count an encoder at the output referenced, rightly or not."""
+
+import math
+import random
+from dataclasses import replace
+from functools import cache, partial
+
+import numpy as np
+import pytest
+from blocked_bags import gearkin_here
+from live import rotor_bytes
+from node_loop import ENCODER, answered
+from replaying import SECOND, edited
+from rosbag2_recorder import Message, record
+from shipped_bags import JOINT_STATE, ROTOR, TYPES, read_bag, write_bag
+from validating import texts, validate
+
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.ros.live import live_messages
+from gear_kinematics.validation.task import Task
+from gear_kinematics.validation.validate_bag import validate_bag
+
+START, MS = 1_700_000_000 * SECOND, SECOND // 1000
+TIMES = np.arange(1500) * 2e-3
+STEP = math.tau / 19  # rad of the output: a turn of the rotor
+MULTI = replace(NodeParameters.load(), output_encoder_reference='absolute')
+SINGLE = replace(MULTI, rotor_encoder='single_turn')
+BOTH = pytest.mark.parametrize('config', [SINGLE, MULTI], ids=['single', 'multi'])
+AGREES = 'the outputs are referenced as output_encoder gives it, '
+
+
+@cache
+def recorded(config, *, start=0.2, error=0.0, gap=0.0):
+    """Messages of a node beside a gear that rests and swings, twice; after a gap, turned unseen.
+
+    The node has heard an encoder that is off by an error; the one that is recorded is not.
+    """
+    messages, noise = [], np.random.default_rng(1).uniform(-1e-3, 1e-3, len(TIMES))
+    for k, time in enumerate(TIMES):
+        late = k >= len(TIMES) // 2
+        swung = 0.4 * math.sin(math.pi * max(0.0, time % 1.5 - 0.5)) ** 2
+        angle = start + swung + 3.3 * STEP * late * (gap > 0.0)
+        stamp = START + round((time + gap * late) * SECOND)
+        rotor = -19.0 * angle + (77.0 if config is MULTI else 0.0)
+        rotor = rotor if config is MULTI else rotor % math.tau
+        measured = float(angle + noise[k]) % math.tau
+        messages.append((ROTOR, stamp, rotor_bytes(stamp, position=[rotor])))
+        messages.append((ENCODER, stamp, rotor_bytes(stamp, ['shaft'], [measured + error])))
+    outputs = answered(config, messages)
+    if error:
+        true = recorded(config, start=start, gap=gap)
+        outputs = [t if t[0] == ENCODER else o for t, o in zip(true, outputs, strict=True)]
+    return outputs
+
+
+def judge(messages, config, encoder=ENCODER, **options):
+    if not encoder:
+        messages = [message for message in messages if message[0] != ENCODER]
+    return validate(messages, config, encoder=encoder, **options)
+
+
+def part(messages, begin, end=4.0):
+    """Return what is recorded from one time to another, s."""
+    return [m for m in messages if begin <= (m[1] - START) / SECOND < end]
+
+
+@pytest.mark.parametrize('strict', [False, True])
+@pytest.mark.parametrize('start', np.random.default_rng(3).uniform(-3.0, 3.0, 4).tolist())
+@BOTH
+def test_the_turn_of_the_recorded_encoder_passes(config, start, strict):
+    messages = recorded(config, start=start)
+    report = judge(messages, config, strict=strict)
+    assert (report.verdict, texts(report)) == (Verdict.PASS, [f'{AGREES}1 time'])
+    # So does a recording that begins later, whose outputs were referenced before.
+    report = judge(part(messages, 1.0), config)
+    assert report.verdict == Verdict.PASS
+    assert f'{AGREES}1 time' in texts(report)
+    # Without the parameter, the change has no reason.
+    assert not judge(messages, replace(config, output_encoder_reference='none')).passed
+
+
+@BOTH
+def test_a_second_reference_after_a_gap_passes(config):
+    report = judge(recorded(config, gap=1.5), config)
+    assert report.verdict == Verdict.PASS
+    assert f'{AGREES}2 times' in texts(report)
+
+
+@BOTH
+def test_without_the_recorded_encoder_the_reference_is_not_judged(config):
+    for error in (0.0, STEP):
+        report = judge(recorded(config, error=error), config, encoder='')
+        assert report.verdict == Verdict.PASS
+        assert 'the reference is not judged: no output_encoder is recorded' in texts(report)
+    few = [m for m in recorded(config) if m[0] != ENCODER or (m[1] - START) % (300 * MS) == 0]
+    report = judge(few, config)
+    assert report.verdict == Verdict.PASS
+    assert texts(report)[0].endswith('not judged: too few angles of output_encoder are recorded')
+
+
+def spliced(config):
+    """A node that is referenced rightly, and jumps by a turn at 1.5 s."""
+    messages, wrong = recorded(config), recorded(config, error=STEP)
+    return [m if m[1] < START + 1.5 * SECOND else w for m, w in zip(messages, wrong, strict=True)]
+
+
+def last_one_off(config):
+    *others, (topic, received, data), poses, measured = recorded(config)
+    data = edited(data, JOINT_STATE, lambda m: setattr(m, 'position', m.position + 1e-6))
+    return [*others, (topic, received, data), poses, measured]
+
+
+GIVEN = 'the outputs are moved by {}, but the recorded output_encoder gives {}'.format
+OPEN = (
+    'the outputs are moved by {}, but the recorded output_encoder leaves it open: {} margin'.format
+)
+TURNS = '{} turns of the rotor'.format
+WRONG = GIVEN(TURNS(-2), TURNS(-1))
+AGAIN = f'the outputs are moved by {TURNS(-2)}, again without a gap'
+LAST = 'the outputs are moved by 1e-6 rad in the last one alone'
+wrong_turn, wrong_zero = partial(recorded, error=STEP), partial(recorded, error=0.5)
+
+
+@pytest.mark.parametrize(
+    ('config', 'make', 'begin', 'limit', 'faults'),
+    [  # At 0.2 rad, the rotor reads -3.8 rad and 1 turn, or is 77/19 = 4.05 rad off at the output.
+        (SINGLE, wrong_turn, 0.0, 3e-3, [WRONG]),
+        (SINGLE, wrong_turn, 1.4, 3e-3, [WRONG]),
+        (SINGLE, partial(wrong_turn, gap=1.5), 0.0, 3e-3, [WRONG, GIVEN(TURNS(-5), TURNS(-4))]),
+        (SINGLE, spliced, 0.0, 3e-3, [AGAIN]),
+        (SINGLE, spliced, 1.45, 3e-3, [WRONG]),
+        (SINGLE, recorded, 0.0, 0.2, [OPEN(TURNS(-1), '11.5° of 9.47°')]),
+        (MULTI, wrong_zero, 0.0, 3e-3, [GIVEN('4.55 rad', '4.05 rad')]),
+        (MULTI, wrong_zero, 0.5, 3e-3, [GIVEN('0 rad', '-0.5 rad')]),
+        (MULTI, last_one_off, 0.5, 3e-3, [LAST]),
+    ],
+)
+def test_what_the_recorded_encoder_contradicts_fails(config, make, begin, limit, faults):
+    settings = replace(config, transmission_error_limit=limit)
+    report = judge(part(make(config), begin), settings)
+    assert report.verdict == Verdict.FAIL
+    assert [finding.text for finding in report.findings if finding.fails] == faults
+
+
+@pytest.mark.parametrize('seed', range(8))
+@BOTH
+def test_losses_of_the_recorder_fail_nothing(config, seed):
+    rng = random.Random(seed)  # noqa: S311, of faults, not of secrets
+    messages = [
+        Message(topic, received + rng.randrange(MS) * (topic != ROTOR), data)
+        for topic, received, data in recorded(config, gap=1.5)
+    ]
+    messages.sort(key=lambda message: message.received)
+    begin, late = START + rng.choice([-SECOND, 0, SECOND]), rng.choice([0.004, 0.03, 0.4])
+    end = messages[-1].received - rng.choice([SECOND // 3, -SECOND])
+    report = judge(record(messages, rng, begin=begin, end=end, late=late), config)
+    assert report.verdict == Verdict.PASS
+    assert any(text.startswith(AGREES) for text in texts(report))
+
+
+def inputs(folder, config, **motion):
+    """Write a bag of both encoders, and the parameters beside it."""
+    kinds = dict.fromkeys((ROTOR, ENCODER), JOINT_STATE)
+    messages = [message for message in recorded(config, **motion) if message[0] in kinds]
+    write_bag(folder / 'inputs', messages, types=kinds)
+    (folder / 'inputs' / 'actuator.yaml').write_text(config.as_file(), 'utf-8')
+    return folder / 'inputs'
+
+
+@BOTH
+def test_a_computed_bag_has_the_outputs_of_the_node_and_passes(tmp_path, config):
+    gearkin_here('compute', inputs(tmp_path, config, gap=1.5), tmp_path / 'out')
+    computed, messages = read_bag(tmp_path / 'out'), recorded(config, gap=1.5)
+    for topic in (*TYPES, ENCODER):
+        assert [m for m in computed if m[0] == topic] == [m for m in messages if m[0] == topic]
+    done = gearkin_here('validate', tmp_path / 'out')
+    assert (done.returncode, f'{AGREES}2 times' in done.stdout) == (0, True)
+
+
+@pytest.mark.live
+@BOTH
+def test_a_live_node_is_played_both_encoders_and_judged(tmp_path, config):
+    task = Task(inputs(tmp_path, config, gap=1.5), config)
+    report = validate_bag(task, play=live_messages)
+    assert (report.verdict, report.error) == (Verdict.PASS, None)
+    assert f'{AGREES}2 times' in texts(report)
