@@ -139,7 +139,8 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     if low <= -assumed <= high:
         return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
     teeth = f', with ring gear/satellite teeth such as {found.teeth}' if found.teeth else ''
-    return f'{measured}; --ratio={found.simplest} is the simplest{teeth}'
+    place = 'the simplest' if found.taken else 'one of the simplest'
+    return f'{measured}; --ratio={found.simplest} is {place}{teeth}'
 
 
 def estimate_ratio(

@@ -100,16 +100,15 @@ def test_an_order_that_is_not_known_is_found_in_the_spectrum():
 
 @pytest.mark.slow
 @pytest.mark.parametrize('delay', [0.0, 2e-3])
-@pytest.mark.parametrize('estimate_ratio', [False, True])
 @pytest.mark.parametrize('ratio', [-50, 100])
-def test_travel_of_less_than_a_turn_is_corrected_over_its_span(ratio, estimate_ratio, delay):
+def test_travel_of_less_than_a_turn_is_corrected_over_its_span(ratio, delay):
     setting = replace(LIMITED, ratio=float(ratio), delay=delay)
     random = np.random.default_rng(1)
     motion = wandering(60.0, random)
     first, second = halves(simulate(setting, gears(setting, random), motion, random))
     # The second half reaches farther, where the interval has to be wider.
     assert np.ptp(second.rotor) > 1.3 * np.ptp(first.rotor)
-    result = fit([recorded(first, 0)], Fraction(ratio), estimate_ratio=estimate_ratio)
+    result = fit([recorded(first, 0)], Fraction(ratio))
     judged = judge(*recorded(second, 0), result.calibration)
     # Every joint is to be improved by 2.5 at the least.
     assert judged.rms_after < judged.rms_before / 2.5
