@@ -43,8 +43,8 @@ class CorrectedState(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = STATE_UNITS
 
-    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:
-        position = self._ideal_angle(turns, samples['angle']) + samples['deviation']
+    def _expected(self, samples: Array) -> Sequence[Bounds]:
+        position = self._ideal_angle(samples) + samples['deviation']
         history = samples['unknown_history']
         ratio = self._gear.gear_ratio
         rate = ratio.output_rate(samples['velocity'] * (1.0 + samples['slope']))
@@ -62,7 +62,7 @@ class CorrectedInterval(JointStateTopic):
 
     units: ClassVar[Mapping[str, str]] = {'half width': 'rad'}
 
-    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:  # noqa: ARG002
+    def _expected(self, samples: Array) -> Sequence[Bounds]:
         half_width = samples['half_width']
         return ((half_width - samples['unknown_history'], half_width),)
 

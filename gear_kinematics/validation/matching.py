@@ -13,13 +13,12 @@ import numpy as np
 
 from gear_kinematics.kinematics import Gear, MotionState
 from gear_kinematics.report.document import counted
+from gear_kinematics.validation.count_changes import CountChanges
 from gear_kinematics.validation.fields import Array, FieldErrors, FieldSamples, SeriesRecorder
 from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances
-from gear_kinematics.validation.unseen_turns import UnseenTurns
-from gear_kinematics.validation.zero_changes import ZeroChanges
 from gear_kinematics.wire.cdr import Layout
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
@@ -32,8 +31,8 @@ SAMPLES = [
     *((name, np.int64) for name in ('number', 'stamp', 'received', 'segment')),
     *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]
-"""Columns of the samples with which outputs are compared: their numbers from 0 on, and those of
-`RotorSamples`."""
+"""Columns of the samples with which outputs are compared: their numbers from 0 on, that of the
+first one of their segment, and those of `RotorSamples`."""
 
 
 class Expectation(NamedTuple):
@@ -43,10 +42,8 @@ class Expectation(NamedTuple):
     tolerances: Tolerances
     solver: Solver
     """Recomputes the motion of a mechanism."""
-    unseen: UnseenTurns | None
-    """Unseen turns, if the rotor has a single-turn encoder."""
-    zeros: ZeroChanges | None
-    """Changes of the zero, if they are accepted."""
+    changes: CountChanges
+    """What the outputs say of the rotor's count."""
 
 
 class Matcher:
@@ -137,7 +134,7 @@ class OutputTopic:
         """Known offset of a recorded output angle, rad."""
         self.series = SeriesRecorder(errors)
         self.matcher = Matcher()
-        self._gear, self._tolerances, self._solver, self._unseen, self._zeros = expectation
+        self._gear, self._tolerances, self._solver, self._changes = expectation
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # when they were received, as they have no stamp
         self._faults: defaultdict[str, Occurrences] = defaultdict(Occurrences)
@@ -164,17 +161,11 @@ class OutputTopic:
         self._unrecorded += int(np.count_nonzero(lacking))
         self.matcher.extra.add(stamps[given_up[~lacking]])
         samples = window.take(index[found])  # faster than by an index
-        if self._zeros:
-            self._zeros.move(samples)
+        self._changes.move(samples)
         rotor_angle, fields = self._compare(usable[found], samples)
         for errors, field in zip(self.errors, fields, strict=True):
             errors.update(field, samples['stamp'], rotor_angle)
         self.series.update(samples['stamp'], rotor_angle, *fields)
-
-    def _turns(self, samples: Array, unknown: float = 0.0) -> Array:
-        """The turns at samples, (n,), with those unseen; `unknown` where no output tells them."""
-        unseen = self._unseen.of(samples['segment'], unknown) if self._unseen else 0.0
-        return np.asarray(samples['turns'] + unseen)
 
     def label_in(self, message: bytes) -> str:
         """Return what a message has in the place of the label.

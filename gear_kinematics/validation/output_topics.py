@@ -57,8 +57,7 @@ class JointStateTopic(OutputTopic):
         self._faults[f'no joint {self.label!r}'].add(samples['stamp'][~states.joint_found[rows]])
         recorded = states.values[rows, : len(self.units)]
         recorded -= [self.offset * (field == 'position') for field in self.units]
-        turns = self._turns(samples)
-        least, most = np.stack(self._expected(samples, turns), axis=-1)
+        least, most = np.stack(self._expected(samples), axis=-1)
         # Any value between them is as expected.
         expected = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
         wanted, there = ~np.isnan(expected), states.present[rows, : len(self.units)]
@@ -72,9 +71,9 @@ class JointStateTopic(OutputTopic):
             )
             for k in range(len(self.units))
         ]
-        return TURN * turns + samples['angle'], fields
+        return _rotor_angle(samples), fields
 
-    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:
+    def _expected(self, samples: Array) -> Sequence[Bounds]:
         """The least and the greatest value of each field; NaN where it is absent."""
         raise NotImplementedError
 
@@ -82,12 +81,17 @@ class JointStateTopic(OutputTopic):
         """Yield nothing."""
         yield from ()
 
-    def _ideal_angle(self, turns: Array, angle: Array) -> Array:
-        """The ideal output angle at rotor angles of 2π turns + angle, (n,), rad."""
+    def _ideal_angle(self, samples: Array) -> Array:
+        """The ideal output angle at samples, (n,), rad."""
+        turns, angle = samples['turns'], samples['angle']
         if isinstance(self._gear, Mechanism):
             return self._solver(self._gear, angle, rotor_turns=turns).output_angle
         output_turns, rest = self._gear.output_angle(turns, angle, np)
         return np.asarray(TURN * output_turns + rest)
+
+
+def _rotor_angle(samples: Array) -> Array:
+    return np.asarray(TURN * samples['turns'] + samples['angle'])
 
 
 def finite_or_infinite(error: Array) -> Array:
@@ -105,22 +109,20 @@ class OutputState(JointStateTopic):
         self.fit = AngleFit()
         self._factors = {'velocity': FactorFit(), 'effort': FactorFit()}
 
-    def _expected(self, samples: Array, turns: Array) -> Sequence[Bounds]:
+    def _expected(self, samples: Array) -> Sequence[Bounds]:
         ratio = self._gear.gear_ratio
-        angle = self._ideal_angle(turns, samples['angle'])
+        angle = self._ideal_angle(samples)
         velocity, effort = ratio.output_rate(samples['velocity']), float(ratio) * samples['effort']
         return (angle, angle), (velocity, velocity), (effort, effort)
 
     def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
-        if self._unseen:
-            recorded = self._states.values[rows, 0] - self.offset
-            expected = self._ideal_angle(samples['turns'], samples['angle'])
-            self._unseen.learn(samples['segment'], recorded, expected)
         rotor_angle, (position, *others) = super()._compare(rows, samples)
-        if self._zeros and (moved := self._zeros.learn(samples, position)).any():
-            rotor_angle += float(self._gear.gear_ratio) * moved
-            expected = position.expected + moved[:, np.newaxis]
-            position = position._replace(expected=expected, error=position.error - moved)
+        while self._changes.learn(samples, position):
+            rotor_angle, expected = _rotor_angle(samples), self._ideal_angle(samples)
+            error = finite_or_infinite(position.recorded[:, 0] - expected)
+            error[np.isnan(position.error)] = np.nan
+            position = position._replace(expected=expected[:, np.newaxis], error=error)
+        self._changes.note(samples, position.expected[:, 0])
         fields = position, *others
         for factor, field in zip(self._factors.values(), fields[1:], strict=True):
             factor.update(field.recorded[:, 0], field.expected[:, 0])
@@ -179,12 +181,8 @@ class BodyPoses(OutputTopic):
                 fault = f'frame {frame_id.decode(errors="replace")!r}, not {self.label!r}'
                 self._faults[fault].add(stamp[arrays.frame[rows] == k])
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
-        turns = self._turns(samples, unknown=np.nan)
-        if self._zeros:
-            turns[self._zeros.uncertain(samples)] = np.nan
-        known = ~np.isnan(turns)
-        turns[~known] = 0.0
-        state = self._solver(self._mechanism, samples['angle'], rotor_turns=turns)
+        known = self._changes.known(samples)
+        state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
         axial = np.broadcast_to(self._axial, (*centres.shape[:2], 1))
         expected = np.append(centres, axial, axis=-1)
@@ -195,7 +193,7 @@ class BodyPoses(OutputTopic):
         recorded = 2.0 * np.arctan2(poses[..., 5], poses[..., 6])
         orientation = _orientation_error(poses[..., 3:], angle)
         shape = len(rows), 3 * len(self._bodies)
-        return TURN * turns + samples['angle'], (
+        return _rotor_angle(samples), (
             FieldSamples(
                 poses[..., :3].reshape(shape),
                 expected.reshape(shape),

@@ -6,12 +6,10 @@ see the order of arrival in the node; to what, is computed from the recorded enc
 """
 
 import math
-from collections import defaultdict, deque
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
-
-import numpy as np
 
 from gear_kinematics.bag import TopicMessages
 from gear_kinematics.correction.calibration_file import Calibration
@@ -19,11 +17,10 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted, number
 from gear_kinematics.state.referenced_input import ReferencedInput
-from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.state.turn_reference import SAMPLES, Decision
+from gear_kinematics.validation.count_changes import Change, CountChanges, LastOutput
+from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.report import Finding
-from gear_kinematics.validation.unseen_turns import UnseenTurns
-from gear_kinematics.validation.zero_changes import ZeroChange, ZeroChanges
 from gear_kinematics.wire.cdr import SECOND
 
 _PATIENCE = SECOND  # ns after the own decision by which a node must have come to the same
@@ -55,8 +52,8 @@ class TurnReferences:
         self._segments: dict[int, _Segment] = {}
         self._encoder_messages = 0
 
-    def take(self, rotor: TopicMessages, encoder: TopicMessages, samples: RotorSamples) -> None:
-        """Process the next messages, of which `samples` are those of the rotor as counted."""
+    def take(self, rotor: TopicMessages, encoder: TopicMessages, samples: Array) -> None:
+        """Process the next messages; `samples`, (n,), are those of the rotor as counted."""
         self._encoder_messages += len(encoder.data)
         arrivals = [
             (topic is rotor, *each)
@@ -64,7 +61,7 @@ class TurnReferences:
             for each in zip(topic.received, topic.data, strict=True)
         ]
         arrivals.sort(key=itemgetter(1))
-        columns = (column.tolist() for column in (samples.segment, samples.turns, samples.angle))
+        columns = (samples[name].tolist() for name in ('segment', 'turns', 'angle'))
         reference, found = self._input.reference, self._input.take(arrivals)
         for (row, _), segment, turns, angle in zip(found, *columns, strict=True):
             own, stamp = self._segments.setdefault(segment, _Segment()), row[0]
@@ -77,47 +74,24 @@ class TurnReferences:
                 if 2 * reference.compared >= SAMPLES:
                     own.ready = own.ready or stamp
 
-    def findings(self, zeros: ZeroChanges, unseen: UnseenTurns | None) -> Iterator[Finding]:
+    def findings(self, changes: CountChanges) -> Iterator[Finding]:
         """Judge the references that the outputs show."""
-        changes_in = defaultdict[int, list[ZeroChange]](list)
-        for change in zeros.found:
+        changes_in = defaultdict[int, list[Change]](list)
+        for change in changes.found:
             if not change.homed:
                 changes_in[change.segment].append(change)
-        staying = deque(change for change in zeros.found if change.stays)
-        stayed = angle = 0.0
-        agreed, before = 0, None
-        for segment, (last, stamp) in zeros.last_outputs.items():
-            while staying and staying[0].number <= last:
-                stayed += staying[0].turns
-                angle += staying.popleft().angle
-            changes = changes_in[segment]
-            nearest = stayed + (float(unseen.of(np.array([segment]))[0]) if unseen else 0.0)
-            turns = nearest + sum(change.turns for change in changes if not change.stays)
-            own = self._segments.get(segment, _Segment())
-            fault = unjudged = ''
-            if len(changes) > 1:
-                fault = ', again without a gap'
-            elif changes and unseen and before is not None and nearest not in {before, 0.0}:
-                fault = f', before which they were {nearest - before:+.0f} off the nearest turn'
-            elif changes and not unseen and changes[0].number == last:
-                fault = ' in the last one alone'
-            elif own.since is not None and self._agree(turns - own.turns, angle - own.angle, own):
-                agreed += 1
-            elif own.since is not None and (changes or stamp - own.since > _PATIENCE):
-                given = self._written(own.turns, own.angle)
-                fault = f', but the recorded output_encoder gives {given}'
-            elif changes and own.refused and (own.ready or stamp) <= changes[0].stamp:
-                used, margin = math.degrees(own.refused.used), math.degrees(own.refused.margin)
-                fault = ', but the recorded output_encoder leaves it open: '
-                fault += f'{used:.3g}° of {margin:.3g}° margin'
-            elif changes:
-                unjudged = ', which is not judged: too few angles of output_encoder are recorded'
-            before = turns
-            if fault or unjudged:
+        agreed = 0
+        for segment, last in changes.last_outputs.items():
+            own, found = self._segments.get(segment, _Segment()), changes_in[segment]
+            fault = self._fault(own, found, last)
+            agreed += own.since is not None and not fault
+            unjudged = ', which is not judged: too few angles of output_encoder are recorded'
+            if fault or (found and own.since is None):
+                moved = self._written(last.turns, last.angle)
                 yield Finding(
-                    f'the outputs are moved by {self._written(turns, angle)}{fault or unjudged}',
+                    f'the outputs are moved by {moved}{fault or unjudged}',
                     fails=bool(fault),
-                    stamp=changes[-1].stamp if changes else own.since,
+                    stamp=found[-1].stamp if found else own.since,
                     when='from',
                 )
         if agreed:
@@ -125,6 +99,24 @@ class TurnReferences:
             yield Finding(f'the outputs are referenced as output_encoder gives it, {times}')
         elif not self._encoder_messages:
             yield Finding('the reference is not judged: no output_encoder is recorded')
+
+    def _fault(self, own: _Segment, changes: Sequence[Change], last: LastOutput) -> str:
+        """What is wrong with the changes in a segment, or with none in it; '' if nothing."""
+        if len(changes) > 1:
+            return ', again without a gap'
+        if changes and not self._single_turn and changes[0].number == last.number:
+            return ' in the last one alone'  # any other angle would be explained
+        if own.since is not None:
+            if self._agree(last.turns - own.turns, last.angle - own.angle, own):
+                return ''
+            if changes or last.stamp - own.since > _PATIENCE:
+                given = self._written(own.turns, own.angle)
+                return f', but the recorded output_encoder gives {given}'
+        elif changes and own.refused and (own.ready or last.stamp) <= changes[0].stamp:
+            used, margin = math.degrees(own.refused.used), math.degrees(own.refused.margin)
+            leaves = f'{used:.3g}° of {margin:.3g}° margin'
+            return f', but the recorded output_encoder leaves it open: {leaves}'
+        return ''
 
     def _agree(self, turns: float, angle: float, own: _Segment) -> bool:
         """Whether a rotor angle of 2π turns + angle is none, as far as an encoder can tell."""

@@ -22,6 +22,8 @@ from gear_kinematics.validation.corrected_topics import (
     RecomputedCorrection,
     why_unjudged,
 )
+from gear_kinematics.validation.count_changes import CountChanges
+from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.matching import (
     SAMPLES,
     WINDOW,
@@ -35,8 +37,6 @@ from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedIn
 from gear_kinematics.validation.report import BagReport, Finding, Lane
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.turn_references import TurnReferences
-from gear_kinematics.validation.unseen_turns import UnseenTurns
-from gear_kinematics.validation.zero_changes import ZeroChanges
 from gear_kinematics.wire.cdr import MalformedMessageError
 
 _FRAME = 'stator'
@@ -79,16 +79,14 @@ class Validator:
         self._rejected = Occurrences()
         self._inputs = RecordedInputs(strict=task.strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
-        single_turn = parameters.single_turn
-        self._unseen = UnseenTurns(gear.gear_ratio, task.tolerances.angle) if single_turn else None
-        self._zeros = self._references = None
-        if parameters.absolute or not task.strict:
-            angle, homing = task.tolerances.angle, not task.strict
-            self._zeros = ZeroChanges(parameters, angle, homing=homing)
+        angle, homing = task.tolerances.angle, not task.strict
+        self._changes = CountChanges(parameters, angle, homing=homing)
+        self._references = None
         if parameters.absolute:
             self._references = TurnReferences(parameters, task.calibration)
-        self._expectation = Expectation(gear, task.tolerances, solver, self._unseen, self._zeros)
+        self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
+        self._segment = -1, 0  # the latest one, and the number of its first sample
         self._groups: list[Completeness] = []
         self._outputs: dict[str, OutputTopic] = {}
         joint = parameters.frame_prefix + parameters.output_joint
@@ -99,7 +97,7 @@ class Validator:
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
         self._judge(*filter(None, (self.output, self.poses)))
         self._why_unjudged = why_unjudged(
-            task.calibration, single_turn=single_turn, absolute=parameters.absolute
+            task.calibration, single_turn=parameters.single_turn, absolute=parameters.absolute
         )
         self._correction = None
         columns = list(SAMPLES)
@@ -137,7 +135,7 @@ class Validator:
         self._drop(len(self._window))
         for group in self._groups:
             group.close()
-        if self._zeros and self._zeros.found:  # which the correction knows nothing of
+        if self._changes.found:  # which the correction knows nothing of
             why = 'the zero of the rotor changes during the recording'
             self._correction, self._why_unjudged = None, self._why_unjudged or why
         judged = {*self._topics, *(self._corrected.values() if self._correction else ())}
@@ -192,32 +190,43 @@ class Validator:
         for topic, messages in batch.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        self._add_samples(batch[self._topics.rotor], batch.get(self._encoder))
+        self._add_samples(batch)
         for name, output in self._outputs.items():
             output.take(batch[name].data, batch[name].received, self._window, self._inputs)
         done = np.all([output.matcher.matched for output in self._outputs.values()], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
-    def _add_samples(self, messages: TopicMessages, encoder: TopicMessages | None) -> None:
+    def _add_samples(self, batch: _Batch) -> None:
         """Add the rotor's samples to the window."""
+        messages = batch[self._topics.rotor]
         samples = self._input.accept_batch(messages.data, messages.received)
-        if self._references and self._encoder and encoder:
-            self._references.take(messages, encoder, samples)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._rejected.add(samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        columns = {'number': self._samples + np.arange(len(samples.stamp))}
+        columns = {name: getattr(samples, name) for name, _ in SAMPLES[1:]}
+        columns['number'] = self._samples + np.arange(len(samples.stamp))
+        columns['segment'] = self._firsts(samples.segment, columns['number'])
         self._samples += len(samples.stamp)
-        columns |= {name: getattr(samples, name) for name, _ in SAMPLES if name not in columns}
         if self._correction:
             columns |= self._correction.at(samples)._asdict()
         new = np.empty(len(samples.stamp), self._window.dtype)
         for name, values in columns.items():
             new[name] = values
+        if self._references and self._encoder:
+            self._references.take(messages, batch[self._encoder], new)
         self._window = np.concatenate([self._window, new])
         for output in self._outputs.values():
             output.matcher.extend(len(new))
+
+    def _firsts(self, segment: Array, number: Array) -> Array:
+        """The number of the first sample of the segment of each new sample, (n,)."""
+        latest, first = self._segment
+        begins = np.diff(segment, prepend=latest) != 0
+        firsts = np.maximum.accumulate(np.where(begins, number, first))
+        if len(segment):
+            self._segment = int(segment[-1]), int(firsts[-1])
+        return firsts
 
     def _drop(self, count: int) -> None:
         """Drop the oldest samples, whose outputs are there or count as missing."""
@@ -308,18 +317,15 @@ class Validator:
             file = self._task.parameters.calibration
             yield Finding(f'the corrected output is compared with that of {file}')
         yield from self._findings
-        if self._zeros:
-            yield from self._zeros.notes(self._input.parameters)
-        if self._zeros and self._references:
-            yield from self._references.findings(self._zeros, self._unseen)
+        yield from self._changes.notes(self._input.parameters)
+        if self._references:
+            yield from self._references.findings(self._changes)
         for output in self._outputs.values():
             yield from output.causes()
         if self._input.mostly_rejected and self._input.missing_joint:
             yield Finding(f'{rotor}: {self._input.missing_joint}', cause=True)
         for group in self._groups:
             yield from group.causes()
-        if self._unseen:
-            yield from self._unseen.notes()
         if corrected and not self._correction:
             yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
 
