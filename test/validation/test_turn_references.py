@@ -5,6 +5,7 @@ import math
 import random
 from dataclasses import replace
 from functools import cache, partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from live import rotor_bytes
 from node_loop import ENCODER, answered
 from replaying import SECOND, edited
 from rosbag2_recorder import Message, record
-from shipped_bags import JOINT_STATE, ROTOR, TYPES, read_bag, write_bag
+from shipped_bags import JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag, write_bag
 from validating import texts, validate
 
 from gear_kinematics.parameters import NodeParameters
@@ -21,6 +22,7 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.ros.live import live_messages
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validate_bag import validate_bag
+from gear_kinematics.validation.validator import Validator
 
 START, MS = 1_700_000_000 * SECOND, SECOND // 1000
 TIMES = np.arange(1500) * 2e-3
@@ -135,6 +137,7 @@ wrong_turn, wrong_zero = partial(recorded, error=STEP), partial(recorded, error=
         (MULTI, wrong_zero, 0.0, 3e-3, [GIVEN('4.55 rad', '4.05 rad')]),
         (MULTI, wrong_zero, 0.5, 3e-3, [GIVEN('0 rad', '-0.5 rad')]),
         (MULTI, last_one_off, 0.5, 3e-3, [LAST]),
+        (MULTI, recorded, 0.0, 4e-4, [OPEN('4.05 rad', '0.0832° of 0.0458°')]),
     ],
 )
 def test_what_the_recorded_encoder_contradicts_fails(config, make, begin, limit, faults):
@@ -160,11 +163,30 @@ def test_losses_of_the_recorder_fail_nothing(config, seed):
     assert any(text.startswith(AGREES) for text in texts(report))
 
 
+@BOTH
+def test_a_pose_recorded_before_its_output_is_not_judged_by_the_zero_before(config):
+    """A batch ends between pose and output of the first sample that is referenced."""
+    messages = recorded(config)
+    others = answered(replace(config, output_encoder_reference='none'), both_encoders(messages))
+    first = next(
+        k for k, pair in enumerate(zip(messages, others, strict=True)) if len(set(pair)) > 1
+    )
+    assert (messages[first][0], messages[first + 1][0]) == (OUTPUT, POSES)
+    swapped = [*messages[:first], messages[first + 1], messages[first], *messages[first + 2 :]]
+    validator = Validator(Task(Path('bag'), config), encoder=ENCODER)
+    validator.feed([swapped[: first + 1], swapped[first + 1 :]])
+    report = validator.report()
+    assert (report.verdict, texts(report)) == (Verdict.PASS, [f'{AGREES}1 time'])
+
+
+def both_encoders(messages):
+    return [message for message in messages if message[0] in (ROTOR, ENCODER)]
+
+
 def inputs(folder, config, **motion):
     """Write a bag of both encoders, and the parameters beside it."""
     kinds = dict.fromkeys((ROTOR, ENCODER), JOINT_STATE)
-    messages = [message for message in recorded(config, **motion) if message[0] in kinds]
-    write_bag(folder / 'inputs', messages, types=kinds)
+    write_bag(folder / 'inputs', both_encoders(recorded(config, **motion)), types=kinds)
     (folder / 'inputs' / 'actuator.yaml').write_text(config.as_file(), 'utf-8')
     return folder / 'inputs'
 
