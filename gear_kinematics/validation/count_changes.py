@@ -79,7 +79,7 @@ class CountChanges:
     def move(self, samples: Array) -> None:
         """Move samples, (n,), by the changes so far."""
         if len(self._steps) > 1:
-            count = self._count(samples)
+            count = _step_at(self._steps, samples)
             samples['turns'] += count['turns']
             samples['angle'] += count['angle']
 
@@ -88,14 +88,15 @@ class CountChanges:
         parameters, number = self._parameters, samples['number']
         known = np.ones(len(number), bool)
         if parameters.single_turn:
-            known &= self._count(samples)['number'] >= samples['segment']
+            known &= _step_at(self._steps, samples)['number'] >= samples['segment']
         if not (parameters.absolute or self._homing):
             return known
         if self._latest is None:
             return known & (not parameters.absolute)
         # A change can lie between two outputs, and after the latest one.
         after = np.append(self._steps['after'], self._latest[0])
-        return np.asarray(known & (number <= after[self._at(number) + 1]))
+        following = np.searchsorted(self._steps['number'], number, 'right')
+        return np.asarray(known & (number <= after[following]))
 
     def learn(self, samples: Array, position: FieldSamples) -> bool:
         """Learn from output angles at samples, (n,), and move these by what is found.
@@ -105,12 +106,12 @@ class CountChanges:
         """
         if not len(samples):
             return False
-        before, steps = self._count(samples), self._steps
+        steps = self._steps
         if not (self._parameters.single_turn and self._learn_gaps(samples, position.error)):
             self._learn_changes(samples, position)
         if self._steps is steps:
             return False
-        count = self._count(samples)
+        before, count = _step_at(steps, samples), _step_at(self._steps, samples)
         samples['turns'] += count['turns'] - before['turns']
         samples['angle'] += count['angle'] - before['angle']
         return True
@@ -122,9 +123,9 @@ class CountChanges:
         number = samples['number']
         if self._parameters.absolute and not self._parameters.single_turn and not self._latest:
             self._add(number[:1], -1, 0.0, 0.0)  # the zero before is unknown
-        count = self._count(samples)
         self._latest = int(number[-1]), float(angle[-1])
         if self._parameters.absolute:
+            count = _step_at(self._steps, samples)
             last = np.flatnonzero(np.diff(samples['segment'], append=-1))
             of = samples['segment'], number, samples['stamp'], count['turns'], count['angle']
             for segment, *row in zip(*(each[last].tolist() for each in of), strict=True):
@@ -152,13 +153,6 @@ class CountChanges:
                 f'{counted(gaps, "gap")}'
             )
 
-    def _count(self, samples: Array) -> Array:
-        """The step at each sample, (n,)."""
-        return self._steps[self._at(samples['number'])]
-
-    def _at(self, number: Array) -> Array:
-        return np.maximum(np.searchsorted(self._steps['number'], number, 'right') - 1, 0)
-
     def _add(
         self, number: Array, after: Any, turns: Any, angle: Any, *, gap: bool = False
     ) -> None:
@@ -172,7 +166,7 @@ class CountChanges:
 
     def _learn_gaps(self, samples: Array, error: Array) -> bool:
         """Learn the turns of segments from their first outputs that are off by whole turns."""
-        count, segment = self._count(samples), samples['segment']
+        count, segment = _step_at(self._steps, samples), samples['segment']
         turns = error * float(self._ratio) / TURN
         whole = np.round(turns)
         # Numbers too large to have a fraction are garbage.
@@ -199,12 +193,11 @@ class CountChanges:
             change = self._explain(samples[first], latest, offset)
             if not (change and latest):
                 break
-            count = self._count(samples[first : first + 1])[0]
+            count = _step_at(self._steps, samples[first])
             turns, angle = count['turns'] + change.turns, count['angle'] + change.angle
             self._add(number[first : first + 1], latest[0], turns, angle)
             self.found.append(change)
-            same = self._count(samples)['number'] == change.number
-            moved += offset * same
+            moved += offset * (_step_at(self._steps, samples)['number'] == change.number)
 
     def _explain(
         self, sample: Any, latest: tuple[int, float] | None, offset: float
@@ -224,6 +217,11 @@ class CountChanges:
                 return None
             angle = 0.0 if whole else angle
         return Change(int(sample['stamp']), int(sample['number']), segment, homed, turns, angle)
+
+
+def _step_at(steps: Array, samples: Array) -> Array:
+    """The step of each sample, (n,)."""
+    return steps[np.maximum(np.searchsorted(steps['number'], samples['number'], 'right') - 1, 0)]
 
 
 def _changed_gaps(steps: Array) -> int:
