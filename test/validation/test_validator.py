@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import replaying
+from live import rotor_bytes
 from node_loop import answered
 from replaying import SECOND, edited, encode
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
@@ -506,6 +507,23 @@ def test_homing_during_a_recording_passes_and_is_said(recorded, config, encoder,
     position = add('position', zero / 19)
     outputs_alone = recorded[: 3 * place] + change_all(recorded[3 * place :], OUTPUT, position)
     assert not validate(outputs_alone, config).passed
+
+
+def test_turns_that_a_loss_hid_after_homing_are_taken_from_the_outputs(config):
+    """In one batch: the recorder misses 1 s, in which the rotor turns twice."""
+    config = replace(config, rotor_encoder='single_turn', home_angle=0.25)
+    driver = []
+    for k in range(1500):
+        stamp = 1_700_000_000 * SECOND + k * SECOND // 500
+        position = [k * 0.8 * math.pi / 100 % math.tau]
+        driver.append((ROTOR, stamp, rotor_bytes(stamp, position=position)))
+    lost = {stamp for _, stamp, _ in driver[600:1100]}
+    messages = [m for m in answered(config, driver, home_after=400) if m[1] not in lost]
+    report = validate(messages, config)
+    assert report.verdict == Verdict.PASS
+    again = 'the turns of the single-turn encoder are taken from the outputs again after 1 gap'
+    assert again in texts(report)
+    assert not validate(messages, replace(config, home_angle=0.2)).passed
 
 
 def test_nothing_to_validate_is_unusable(recorded, config):
