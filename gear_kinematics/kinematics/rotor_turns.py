@@ -133,21 +133,27 @@ class RotorTurns:
     counting goes on from the nearest turn.
     """
 
-    longest_silence = 0.0
-    """ns without a sample after which a multi-turn encoder may count anew, so that its turns are
-    unknown at the start, too; 0: it never does."""
-
-    def __init__(self, *, single_turn: bool, max_speed: float, max_acceleration: float) -> None:
+    def __init__(
+        self,
+        *,
+        single_turn: bool,
+        max_speed: float,
+        max_acceleration: float,
+        longest_silence: float = 0.0,
+    ) -> None:
         """Start with no position.
 
         Args:
             single_turn: whether the encoder's position wraps once a turn.
             max_speed: rad/s, the greatest speed of the rotor.
             max_acceleration: rad/s², the greatest acceleration of the rotor.
+            longest_silence: ns without a sample after which a multi-turn encoder may count anew,
+                so that its turns are unknown at the start, too; 0: it never does.
         """
         self.single_turn = single_turn
         self.max_speed = max_speed
         self.max_acceleration = max_acceleration
+        self.longest_silence = longest_silence
         self.unknown_gaps = 0
         self.reset()
 

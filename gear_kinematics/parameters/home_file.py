@@ -13,8 +13,7 @@ from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 SCHEMA = 'gear_kinematics/home/1'
 """Identifies the files and their version."""
 _DATE = '%Y-%m-%d %H:%M UTC'
-_KEPT = 'rotor_zero', 'home_angle'
-_LONGEST_CAUSE = 1000  # characters; a value in it may be as long as the file
+_LONGEST_FAULT = 1000  # characters; a value in it may be as long as the file
 
 
 class HomeFileError(ValueError):
@@ -23,9 +22,9 @@ class HomeFileError(ValueError):
 
 def home_text(parameters: NodeParameters) -> str:
     """Return the content of the file for the zero that is set now."""
-    kept = {name: getattr(parameters, name) for name in _KEPT}
-    document = {'schema': SCHEMA, 'homed': f'{datetime.now(UTC):{_DATE}}', **_gear(parameters)}
-    return str(yaml.dump(document | kept, Dumper=Dumper, sort_keys=False))
+    homed = {'homed': f'{datetime.now(UTC):{_DATE}}', 'rotor_zero': parameters.rotor_zero}
+    document = {'schema': SCHEMA, **homed, **_gear(parameters)}
+    return str(yaml.dump(document, Dumper=Dumper, sort_keys=False))
 
 
 def read_home(path: Path, parameters: NodeParameters) -> tuple[float, str] | None:
@@ -37,15 +36,15 @@ def read_home(path: Path, parameters: NodeParameters) -> tuple[float, str] | Non
         HomeFileError: if it cannot be used, or its zero is of another gear than that of the
             parameters, of another joint or of another kind of encoder.
     """
-    gear = _gear(parameters)
     try:
-        return _check(read_yaml(path, HomeFileError), gear)
+        document = read_yaml(path, HomeFileError)
     except HomeFileError as error:
         if isinstance(error.__cause__, FileNotFoundError):
             return None
         raise
-    except ValueError as error:
-        raise HomeFileError(f'{path}: {str(error)[:_LONGEST_CAUSE]}') from error
+    if fault := _fault(document, _gear(parameters)):
+        raise HomeFileError(f'{path}: {fault[:_LONGEST_FAULT]}')
+    return document['rotor_zero'], document['homed']
 
 
 def _gear(parameters: NodeParameters) -> dict[str, Any]:
@@ -55,18 +54,18 @@ def _gear(parameters: NodeParameters) -> dict[str, Any]:
     return {'gear_ratio': str(parameters.gear.gear_ratio), **own}
 
 
-def _check(document: Any, gear: dict[str, Any]) -> tuple[float, str]:
-    names = 'schema', 'homed', *gear, *_KEPT
+def _fault(document: Any, gear: dict[str, Any]) -> str | None:
+    """Why the document gives no zero of the gear, or None."""
+    names = 'schema', 'homed', 'rotor_zero', *gear
     if not isinstance(document, dict) or document.get('schema') != SCHEMA:
-        raise ValueError(f'no home file: its `schema` is not {SCHEMA}')
+        return f'no home file: its `schema` is not {SCHEMA}'
     if document.keys() != set(names):
-        raise ValueError(f'no home file: it must have {", ".join(names)}')
+        return f'no home file: it must have {", ".join(names)}'
     for name, value in gear.items():
         if document[name] != value:
-            raise ValueError(f'homed with {name} {document[name]!r}, not with {value!r}')
-    for name in _KEPT:
-        if fault := PARAMETERS[name].fault(name, document[name]):
-            raise ValueError(fault)
-    homed = str(document['homed'])
-    datetime.strptime(homed, _DATE).replace(tzinfo=UTC)  # raises ValueError for anything else
-    return document['rotor_zero'], homed
+            return f'homed with {name} {document[name]!r}, not with {value!r}'
+    try:
+        datetime.strptime(document['homed'], _DATE).replace(tzinfo=UTC)
+    except (TypeError, ValueError):
+        return 'homed must be a date such as 2026-03-01 12:00 UTC'
+    return PARAMETERS['rotor_zero'].fault('rotor_zero', document['rotor_zero'])

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from std_srvs.srv import Trigger
 
-from gear_kinematics.kinematics import RotorSample, split_turns
+from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.atomic_file import replace_file
@@ -24,52 +24,52 @@ _SPEED_SPAN = 100_000_000
 encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
 
 
-class Homing:
-    """Sets the zero of a node on request, keeps it, and restores it at the start."""
+def restored(node: Node, path: Path, parameters: NodeParameters) -> NodeParameters:
+    """Set the zero of the home file, if there is one; returns the parameters with it.
 
-    def __init__(self, node: Node, path: Path | None) -> None:
-        """Take the path of the home file, if there is to be one."""
-        self._node = node
-        self._path = path and path.absolute()
-        self._kept = f'not kept: {"not homed yet" if path else "set home_file"}'
+    Raises:
+        HomeFileError: if the file cannot be used.
+    """
+    if not (home := read_home(path, parameters)):
+        return parameters
+    zero, homed = home
+    node.set_parameters([Parameter('rotor_zero', value=zero)])
+    given = parameters.rotor_zero
+    instead = '' if given == zero else f'; that of the parameters, {given:g} rad, is not used'
+    node.get_logger().info(
+        f'rotor_zero {zero:.3f} rad restored from {path}, homed {homed}{instead}'
+    )
+    return replace(parameters, rotor_zero=zero)
+
+
+class Homing:
+    """Sets the zero of a node on request, and keeps it."""
+
+    def __init__(
+        self, node: Node, path: Path | None, rotor_input: RotorInput, monitor: InputMonitor
+    ) -> None:
+        """Open the service; `path` is that of the home file, if there is to be one."""
+        self._node, self._path, self._input, self._monitor = node, path, rotor_input, monitor
+        monitor.zero_kept = 'not kept: set home_file'
+        if path:
+            monitor.zero_kept = f'kept in {path}' if path.exists() else 'not kept: not homed yet'
         self._seen = 0.0  # time of the last valid input; s of a steady clock
         self._earlier: tuple[RotorSample, ...] = ()  # the last one or two, `_SPEED_SPAN` apart
-
-    def restored(self, parameters: NodeParameters) -> NodeParameters:
-        """Return the parameters with the zero of the home file, if there is one, and set it.
-
-        Raises:
-            HomeFileError: if the file cannot be used.
-        """
-        if not self._path or not (home := read_home(self._path, parameters)):
-            return parameters
-        zero, homed = home
-        self._node.set_parameters([Parameter('rotor_zero', value=zero)])
-        given, self._kept = parameters.rotor_zero, f'kept in {self._path}'
-        instead = '' if given == zero else f'; that of the parameters, {given:g} rad, is not used'
-        self._node.get_logger().info(
-            f'rotor_zero {zero:.3f} rad restored from {self._path}, homed {homed}{instead}'
-        )
-        return replace(parameters, rotor_zero=zero)
-
-    def serve(self, rotor_input: RotorInput, monitor: InputMonitor) -> None:
-        """Open the service."""
-        self._input, self._monitor = rotor_input, monitor
-        monitor.zero_kept = self._kept
-        self._node.create_service(Trigger, '~/home', self.answer)
+        self._segment = 0  # of these
+        node.create_service(Trigger, '~/home', self.answer)
 
     def note(self, sample: RotorSample) -> None:
         """Take note of a valid input, which says where the shaft is, and how fast it turns."""
         self._seen = time.monotonic()
-        elapsed = sample.stamp - self._earlier[-1].stamp if self._earlier else -1
-        if elapsed < 0:  # the first one, or the clock was reset
+        if self._segment != self._input.segment:  # other turns, or another zero
+            self._segment, self._earlier = self._input.segment, ()
+        if not self._earlier:
             self._earlier = (sample,)
-        elif elapsed >= _SPEED_SPAN:
+        elif sample.stamp - self._earlier[-1].stamp >= _SPEED_SPAN:
             self._earlier = self._earlier[-1], sample
 
     def keep(self) -> None:
         """Write the zero that was set to the home file."""
-        self._earlier = ()  # with another zero
         if not self._path:
             return
         try:
@@ -81,6 +81,10 @@ class Homing:
 
     def answer(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Declare that the output shaft is at `home_angle` now, or tell why not."""
+        response.success, response.message = self._home()
+        return response
+
+    def _home(self) -> tuple[bool, str]:
         parameters, last = self._input.parameters, self._input.last
         ratio = parameters.gear.gear_ratio
         rotor_angle = ratio.rotor_angle(parameters.home_angle)
@@ -89,43 +93,37 @@ class Homing:
         except RuntimeError:
             last = None
         if last is None:
-            response.message = f'there was no valid {topics.ROTOR_STATE} yet'
-            return response
+            return False, f'there was no valid {topics.ROTOR_STATE} yet'
         if refusal := self._refusal(parameters, last):
-            response.message = refusal
-            return response
+            return False, refusal
         whole, rest = ratio.output_angle(*last.position, math)
         result = self._node.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
-        response.success, response.message = result.successful, result.reason
-        if result.successful:
-            self._input.home(rotor_angle)
-            self._input.last = last._replace(position=split_turns(rotor_angle))
-            response.message = (
-                f'the shaft was at {_degrees(TURN * whole + rest)} and is now '
-                f'{_degrees(parameters.home_angle)} '
-                f'(rotor_zero {zero:.3f} rad, {self._monitor.zero_kept})'
-            )
-        return response
+        if not result.successful:
+            return False, result.reason
+        self._input.home(rotor_angle)
+        was, now = _degrees(TURN * whole + rest), _degrees(parameters.home_angle)
+        kept = f'rotor_zero {zero:.3f} rad, {self._monitor.zero_kept}'
+        return True, f'the shaft was at {was} and is now {now} ({kept})'
 
     def _refusal(self, parameters: NodeParameters, last: RotorSample) -> str:
         """Why the output shaft is not known to be where it is said to be; '' if it is."""
         age = time.monotonic() - self._seen
         if age > parameters.input_timeout:
-            silence = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
-            return f'{silence}: where the shaft is now is not known'
+            came = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+            return f'{came}: where the shaft is now is not known'
         speed = abs(parameters.gear.gear_ratio.output_rate(self._speed(last)))
-        if speed <= parameters.home_max_speed:
-            return ''
-        limit = f'home_max_speed is {parameters.home_max_speed:g} rad/s'
-        return f'the shaft turns at {speed:.3g} rad/s; {limit}'
+        limit = parameters.home_max_speed
+        if speed > limit:
+            return f'the shaft turns at {speed:.3g} rad/s; home_max_speed is {limit:g} rad/s'
+        return ''
 
     def _speed(self, last: RotorSample) -> float:
         """Speed of the rotor, rad/s: the last velocity, or the mean since an earlier position.
 
         That is the last one that is at least `_SPEED_SPAN` older; in the beginning the first one.
-        Of a single message nothing says that the shaft turns.
+        Of a single message nothing says that the shaft turns, nor of one with another zero.
         """
-        [earlier, *_] = self._earlier or [last]
+        [earlier, *_] = self._earlier if self._segment == self._input.segment else [last]
         if last.velocity is not None or last.stamp == earlier.stamp:
             return last.velocity or 0.0
         turns, angle = (b - a for a, b in zip(earlier.position, last.position, strict=True))

@@ -29,7 +29,7 @@ from gear_kinematics.parameters.node_parameters import branch_parameters, unknow
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
-from gear_kinematics.ros.homing import Homing
+from gear_kinematics.ros.homing import Homing, restored
 from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
@@ -69,8 +69,10 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             raise ValueError('; '.join(faults))
         values = {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
         parameters = NodeParameters.of(values)
-        self._homing = Homing(self, self._file(parameters.home_file))
-        self._settings = parameters = self._homing.restored(parameters)
+        if home_file := self._file(parameters.home_file):
+            home_file = home_file.absolute()
+            parameters = restored(self, home_file, parameters)
+        self._settings = parameters
         self._gear = parameters.gear
         self._input = RotorInput(parameters)
         self._reference = TurnReference(self._input)
@@ -97,7 +99,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._display = Display(self, parameters, self._outputs)
             self._display.update(parameters)
         self.add_post_set_parameters_callback(self._configure)
-        self._homing.serve(self._input, self._monitor)
+        self._homing = Homing(self, home_file, self._input, self._monitor)
         # A missing input must be reported even while a simulated clock is paused.
         self.create_timer(
             _REPORT_PERIOD, self._report, clock=Clock(clock_type=ClockType.STEADY_TIME)

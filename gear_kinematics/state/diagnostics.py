@@ -3,7 +3,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple, Self
 
@@ -23,6 +23,8 @@ OK, WARN, ERROR = 0, 1, 2
 _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
+_UNSEEN = 'Lower max_rotor_speed to what the motor reaches, or let its driver send more often.'
+_SLOW = 'Let output_encoder send more often, or raise transmission_error_max_gap.'
 _AMBIGUOUS = 'Calibrate the gear, or lower transmission_error_limit to what it keeps.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
 _NOT_COMPARED = 'Check that both drivers are running, and that their clocks agree.'
@@ -115,6 +117,7 @@ class InputMonitor(DriverMonitor):
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
     _received: int = 0
+    _unknown_turns: int = 0
     _unsent: int = 0
 
     def report(
@@ -124,8 +127,9 @@ class InputMonitor(DriverMonitor):
         elapsed = now - max(self._reported, self.started)
         received = rotor_input.received - self._received
         newly_unsent = self.unsent - self._unsent
+        gaps = rotor_input.unknown_turns - self._unknown_turns
         self._reported, self._received = now, rotor_input.received
-        self._unsent = self.unsent
+        self._unsent, self._unknown_turns = self.unsent, rotor_input.unknown_turns
         rate = received / elapsed if elapsed > 0.0 else 0.0
 
         age = now - (self.started if self.last_input is None else self.last_input)
@@ -134,14 +138,18 @@ class InputMonitor(DriverMonitor):
         errors: list[Fault] = []
         if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
-        origin = {}
-        if reference and rotor_input.parameters.absolute:
-            errors += _reference_faults(reference, encoder_heard=self.encoder_heard)
-            origin = {'reference': reference.origin}
-        elif not rotor_input.referenced:
-            errors.append(Fault('not referenced', _NOT_REFERENCED))
+        if not rotor_input.parameters.absolute:
+            reference = None
+        if not rotor_input.referenced:
+            errors.append(_not_referenced(reference, gaps, encoder_heard=self.encoder_heard))
+        elif reference and reference.disagreement:
+            encoder, rotor = (f'{math.degrees(angle):.2f}°' for angle in reference.disagreement)
+            what = f'output_encoder disagrees: {encoder} by the encoder, {rotor} by the rotor'
+            errors.append(Fault(what, _DISAGREES))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
+        if rotor_input.referenced and reference and reference.too_slow:
+            warnings.append(Fault(f'turns not watched: {reference.too_slow}', _SLOW))
         if newly_unsent:
             advice = 'Look for a listener that is stuck.'
             warnings.append(Fault(f'not sent {newly_unsent}', advice))
@@ -162,9 +170,9 @@ class InputMonitor(DriverMonitor):
             'clock resets': str(rotor_input.resets),
             'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
             'referenced': str(rotor_input.referenced).lower(),
-            'rotor zero (rad)': f'{rotor_input.parameters.rotor_zero:.9g}',
+            'rotor zero (rad)': f'{rotor_input.zero:.9g}',
             'home file': self.zero_kept,
-            **origin,
+            **({'reference': reference.origin} if reference else {}),
             'loop-closure residual (m)': _residual(rotor_input),
         }
         return self._report(errors, warnings, values)
@@ -225,16 +233,16 @@ class EncoderMonitor(DriverMonitor):
         return self._report([], warnings, values)
 
 
-def _reference_faults(reference: TurnReference, *, encoder_heard: bool) -> Iterator[Fault]:
-    """Why the turns are unknown, or that the encoder at the output disagrees with them."""
+def _not_referenced(reference: TurnReference | None, gaps: int, *, encoder_heard: bool) -> Fault:
+    """Why nothing has told the turns, which were lost in so many gaps since the last report."""
+    if not reference:
+        return Fault('not referenced', _NOT_REFERENCED)
     decision = reference.decision
-    if reference.rotor.referenced:
-        if reference.disagreement:
-            encoder, rotor = (f'{math.degrees(angle):.2f}°' for angle in reference.disagreement)
-            what = f'output_encoder disagrees: {encoder} by the encoder, {rotor} by the rotor'
-            yield Fault(what, _DISAGREES)
-        return
-    if not encoder_heard:
+    if gaps > 1:
+        cause, advice = f'{gaps} gaps could hide half a turn', _UNSEEN
+    elif reference.too_slow:
+        cause, advice = reference.too_slow, _SLOW
+    elif not encoder_heard:
         cause, advice = 'output_encoder is silent', _NO_INPUT
     elif decision is None:
         cause = f'{reference.compared} of {SAMPLES} samples of output_encoder compared'
@@ -246,7 +254,7 @@ def _reference_faults(reference: TurnReference, *, encoder_heard: bool) -> Itera
             advice = _UNEXPLAINED
         elif decision.budget - decision.delay < decision.margin:
             advice = 'Stop the output.'
-    yield Fault(f'not referenced: {cause}', f'{advice} Or: {_NOT_REFERENCED}')
+    return Fault(f'not referenced: {cause}', f'{advice} Or: {_NOT_REFERENCED}')
 
 
 def _rejections(counts: Counter[str]) -> Fault:

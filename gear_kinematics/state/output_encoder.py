@@ -93,7 +93,6 @@ class OutputEncoder:
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
         if self._reference and samples:
             samples = self._reference.follow(samples)
-            self._compare_one_segment()
         for sample in samples:
             self.window.add(sample)
         return samples

@@ -79,16 +79,16 @@ class RotorInput:
         self.last: RotorSample | None = None
         self._parameters = parameters
         self._reader = JointReader(parameters.rotor_joint)
-        self._zero = parameters.rotor_zero
+        self.zero = parameters.rotor_zero
+        """The one in use, rad: `rotor_zero`, or what a reference put in its place."""
         self._restarts = 0
-        """Counts homing, references by the output, and parameters for another reference."""
+        """Counts homing, references by the output, and changes of the encoders' parameters."""
         self._turns = RotorTurns(
             single_turn=parameters.single_turn,
             max_speed=parameters.max_rotor_speed,
             max_acceleration=parameters.max_rotor_acceleration,
+            longest_silence=_longest_silence(parameters),
         )
-        self._turns.longest_silence = _longest_silence(parameters)
-        self._turns.forget_turns()
 
     @property
     def parameters(self) -> NodeParameters:
@@ -102,10 +102,10 @@ class RotorInput:
         self._turns.longest_silence = _longest_silence(parameters)
         before = self._parameters
         if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
-            self._zero = parameters.rotor_zero
+            self.zero = parameters.rotor_zero
+            self._restarts += 1
             if parameters.absolute or before.absolute:
                 self._turns.forget_turns()
-                self._restarts += 1
         joint, kind = parameters.rotor_joint, parameters.rotor_encoder
         if (joint, kind) != (before.rotor_joint, before.rotor_encoder):
             self._turns.single_turn = parameters.single_turn
@@ -168,14 +168,17 @@ class RotorInput:
             raise
 
     def home(self, rotor_angle: float) -> float:
-        """Declare that the rotor angle is `rotor_angle` now; returns the new `rotor_zero`.
+        """Declare that the rotor angle is `rotor_angle` now, also in `last`; returns the zero.
 
         Raises:
             RuntimeError: before the first valid message.
         """
-        self._zero = self._turns.home(rotor_angle, self._parameters.rotor_direction)
+        direction = self._parameters.rotor_direction
+        self.zero = self._turns.home(rotor_angle, direction)
         self._restarts += 1
-        return self._zero
+        if self.last:
+            self.last = self.last._replace(position=self._turns.relative_to(self.zero, direction))
+        return self.zero
 
     def refer(self, turns: int, angle: float = 0.0) -> None:
         """Add 2π `turns` + `angle`, rad, to the rotor angle from the next message on.
@@ -184,7 +187,7 @@ class RotorInput:
         """
         direction = self._parameters.rotor_direction
         self._turns.refer(direction * turns)
-        self._zero -= direction * angle
+        self.zero -= direction * angle
         self._restarts += 1
 
     def zero_for(self, rotor_angle: float) -> float:
@@ -234,7 +237,7 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        zero_turns, zero_angle = split_turns(self._zero)
+        zero_turns, zero_angle = split_turns(self.zero)
         direction = self._parameters.rotor_direction
         samples = RotorSamples(
             stamps,
@@ -294,7 +297,7 @@ class RotorInput:
         direction = self._parameters.rotor_direction
         self.last = RotorSample(
             stamp,
-            self._turns.relative_to(self._zero, direction),
+            self._turns.relative_to(self.zero, direction),
             None if velocity is None else direction * velocity,
             None if effort is None else direction * effort,
         )

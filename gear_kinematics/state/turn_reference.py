@@ -50,10 +50,12 @@ class TurnReference:
 
     def restart(self) -> None:
         """Forget all errors, as the count has changed."""
-        self._errors: deque[tuple[ErrorSample, float]] = deque(maxlen=SAMPLES)  # with the delay's
+        self._errors: deque[tuple[float, float, float]] = deque(maxlen=SAMPLES)
+        """What is unexplained, the most that the gear makes of it, and that a delay makes, rad."""
         self._waiting: deque[ErrorSample] = deque()
         self._speeds: deque[tuple[int, float]] = deque()  # later ones are less
         self._began = 0  # ns: since then the motion is known
+        self._interval = 0.0  # s, between the last two errors
         self._disagreeing, self.disagreement = 0, None
         if not self.rotor.referenced:
             self.decision = None
@@ -62,6 +64,15 @@ class TurnReference:
     def compared(self) -> int:
         """Errors about which the motion within a delay is known, up to `SAMPLES`."""
         return len(self._errors)
+
+    @property
+    def too_slow(self) -> str:
+        """That the encoder sends too rarely to tell or watch the turns; '' if it does not."""
+        longest = self.rotor.parameters.transmission_error_max_gap
+        if self._interval <= longest:
+            return ''
+        limit = f'transmission_error_max_gap {longest:g} s'
+        return f'output_encoder every {self._interval:.2g} s, {limit}'
 
     @property
     def uncertainty(self) -> float | None:
@@ -85,12 +96,13 @@ class TurnReference:
         It can begin a new segment, whose errors are yet to come.
         """
         referenced = self.rotor.referenced
-        for sample in samples:
-            for error, delay in self._known_motion(sample):
-                self._errors.append((error, delay))
+        for newest in samples:
+            for sample, delay in self._known_motion(newest):
+                error, known = self._explain(sample)
+                self._errors.append((error, known, delay))
                 if referenced:
-                    self._watch(error, delay)
-                elif len(self._errors) == SAMPLES and self._decide(error):
+                    self._watch(sample, error, known + delay)
+                elif len(self._errors) == SAMPLES and self._decide(sample):
                     return ()
         return samples if referenced else ()
 
@@ -102,7 +114,8 @@ class TurnReference:
         """
         longest = self.rotor.parameters.transmission_error_max_gap
         waiting, speeds, speed = self._waiting, self._speeds, abs(sample.speed)
-        if not waiting or sample.stamp - waiting[-1].stamp > longest * SECOND:
+        self._interval = (sample.stamp - waiting[-1].stamp) / SECOND if waiting else 0.0
+        if not waiting or self._interval > longest:
             waiting.clear()
             speeds.clear()
             self._began = sample.stamp
@@ -117,35 +130,31 @@ class TurnReference:
                 yield waiting[0], speeds[0][1] * longest
             waiting.popleft()
 
-    def _watch(self, sample: ErrorSample, delay: float) -> None:
+    def _explain(self, sample: ErrorSample) -> tuple[float, float]:
+        """Return the error, and the most that the gear makes of it."""
+        parameters = self.rotor.parameters
+        if parameters.single_turn and not math.isnan(sample.half_width):
+            # The calibration tells both; it needs the rotor angle, at least within the turn.
+            return sample.error - sample.deviation, sample.half_width
+        # Play and transmission error: what is in order, peak to peak, as the zero of the encoder
+        # may be anywhere in it.
+        return sample.error, parameters.transmission_error_limit
+
+    def _watch(self, sample: ErrorSample, error: float, budget: float) -> None:
         """Compare with the budget; so many samples beyond it are not explained by their noise."""
-        error, known = self._explain(sample)
         scatter = 0.0 if self.uncertainty is None else self._scatter  # else it was homed
-        if abs(math.remainder(error, TURN)) <= known + delay + scatter:
+        if abs(math.remainder(error, TURN)) <= budget + scatter:
             self._disagreeing, self.disagreement = 0, None
             return
         self._disagreeing += 1
         if self._disagreeing >= SAMPLES:
             by_rotor = TURN * sample.turns + sample.ideal
-            by_encoder = by_rotor + math.remainder(sample.error, TURN)
-            self.disagreement = by_encoder, by_rotor
-
-    def _explain(self, sample: ErrorSample) -> tuple[float, float]:
-        """Return the error, and the most that the gear makes of it."""
-        parameters = self.rotor.parameters
-        # Play and transmission error: what is in order, peak to peak, as the zero of the encoder
-        # may be anywhere in it.
-        error, known = sample.error, parameters.transmission_error_limit
-        if parameters.single_turn and not math.isnan(sample.half_width):
-            # The calibration tells both; it needs the rotor angle, at least within the turn.
-            error, known = sample.error - sample.deviation, sample.half_width
-        return error, known
+            self.disagreement = by_rotor + math.remainder(sample.error, TURN), by_rotor
 
     def _decide(self, last: ErrorSample) -> bool:
         """Decide by the errors that are kept, and reference the count if they allow it."""
-        errors, known = zip(*(self._explain(sample) for sample, _ in self._errors), strict=True)
-        delay = max(delay for _, delay in self._errors)
-        offsets = [math.remainder(error - errors[0], TURN) for error in errors]
+        errors, known, delays = zip(*self._errors, strict=True)
+        delay, offsets = max(delays), [math.remainder(error - errors[0], TURN) for error in errors]
         offset = math.fsum(offsets) / SAMPLES
         # Noise: the true mean is somewhere in the range of the samples.
         scatter = max(max(offsets) - offset, offset - min(offsets)) + delay
@@ -155,18 +164,18 @@ class TurnReference:
         if parameters.single_turn:
             limit = turn_reference.margin(ratio)
             turns, distance = nearest_turns(ratio, error)
-            agree = all(nearest_turns(ratio, each).turns == turns for each in errors)
+            agree = all(nearest_turns(ratio, each)[0] == turns for each in errors)
         else:
             # Any angle has its zero: wait until noise and delay are less than the gear's error.
             limit = 2.0 * parameters.transmission_error_limit
-        found = agree and turn_reference.unambiguous(distance, budget, limit)
         self.decision = Decision(max(abs(distance), budget), budget, delay, limit)
-        if found:
-            self._scatter = scatter
-            self._uncertainty = 0.0 if parameters.single_turn else budget
-            self._refer(turns, error, last)
-            self._found_in = self.rotor.segment
-        return found
+        if not agree or not turn_reference.unambiguous(distance, budget, limit):
+            return False
+        self._scatter = scatter
+        self._uncertainty = 0.0 if parameters.single_turn else budget
+        self._refer(turns, error, last)
+        self._found_in = self.rotor.segment
+        return True
 
     def _refer(self, turns: int, error: float, last: ErrorSample) -> None:
         """Add turns, or what is missing to the measured angle, to the rotor's count."""

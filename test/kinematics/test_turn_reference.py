@@ -39,28 +39,33 @@ def test_turns_are_the_true_ones_or_refused(ratio):
     gear, n = GearRatio(ratio), abs(ratio.numerator)
     limit = math.pi / n
     assert margin(gear) == limit
-    true, counted = random.integers(-5 * n, 5 * n + 1, (2, STARTS))
-    budget = limit * random.uniform(0.01, 1.2, STARTS)
+    truth, count = random.integers(-5 * n, 5 * n + 1, (2, STARTS)).tolist()
+    budgets = limit * random.uniform(0.01, 1.2, STARTS)
     # Anywhere within the budget, just inside, just outside, and as far as the next turn allows.
     just = 1.0 + random.choice((-1e-6, 1e-6), STARTS)
-    size = np.where(random.random(STARTS) < 0.5, random.uniform(0.0, 1.0, STARTS), just) * budget
+    sizes = np.where(random.random(STARTS) < 0.5, random.uniform(0.0, 1.0, STARTS), just) * budgets
     beyond = random.random(STARTS) < 0.2
-    size[beyond] = random.uniform(budget, np.maximum(2.0 * limit - budget, budget))[beyond]
-    error = size * random.choice((-1.0, 1.0), STARTS) + math.tau * random.integers(-2, 3, STARTS)
-    angle = random.uniform(-math.pi, math.pi, STARTS)
-    error += within_turn(ratio, true, angle) - within_turn(ratio, counted, angle)
-    turns, distance = nearest_turns(gear, error)
-    found = unambiguous(distance, budget, limit)
-    np.testing.assert_array_equal(found, (size < budget) & (budget < limit))
-    assert not ((turns - (true - counted)) % n)[found].any()
-    assert found.sum() > STARTS // 3
-    for k in range(100):
-        alone = nearest_turns(gear, float(error[k]))
-        assert alone == (turns[k], distance[k])
-        assert unambiguous(alone.distance, budget[k], limit) == found[k]
-        # Within the period about zero, of a shaft that has turned by T turns of the rotor.
-        rotor = int(counted[k]) + about_zero(
-            gear, alone.turns, math.tau * float(int(counted[k]) / ratio)
-        )
-        assert (rotor - int(true[k])) % n == 0 or not found[k]
-        assert abs(rotor) <= n / 2
+    sizes[beyond] = random.uniform(budgets, np.maximum(2.0 * limit - budgets, budgets))[beyond]
+    errors = sizes * random.choice((-1.0, 1.0), STARTS)
+    errors += math.tau * random.integers(-2, 3, STARTS)
+    angles = random.uniform(-math.pi, math.pi, STARTS)
+    columns = (column.tolist() for column in (budgets, sizes, errors, angles))
+    times_found = 0
+    for true, counted, budget, size, error, angle in zip(truth, count, *columns, strict=True):
+        moved = within_turn(ratio, true, angle) - within_turn(ratio, counted, angle)
+        turns, distance = nearest_turns(gear, error + moved)
+        found = unambiguous(distance, budget, limit)
+        assert found == (size < budget < limit)
+        assert not found or (turns - (true - counted)) % n == 0
+        times_found += found
+    assert times_found > STARTS // 3
+
+
+@pytest.mark.parametrize('ratio', RATIOS, ids=str)
+def test_turns_about_zero_are_the_same_modulo_the_period(ratio):
+    gear, n = GearRatio(ratio), abs(ratio.numerator)
+    random = np.random.default_rng(n)
+    for counted, turns in random.integers(-5 * n, 5 * n + 1, (1000, 2)).tolist():
+        chosen = about_zero(gear, turns, math.tau * float(counted / ratio))
+        assert (chosen - turns) % n == 0
+        assert abs(counted + chosen) <= n / 2

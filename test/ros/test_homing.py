@@ -50,7 +50,7 @@ def test_answer_can_be_checked_by_a_person(homing, tmp_path):
     path = tmp_path / 'home.yaml'
     node = homing(home_file=str(path))
     assert values_of(node)['home file'] == 'not kept: not homed yet'
-    drive(node, [TURNED])
+    drive(node, [TURNED] * 200)
     assert home(node).message == f'{words}kept in {path})'
     again = 'the shaft was at 0.0° and is now 0.0° (rotor_zero -20.394 rad, '
     assert home(node).message == f'{again}kept in {path})'
@@ -90,6 +90,20 @@ def test_after_homing_a_single_turn_encoder_the_dropped_turns_are_no_speed(homin
     assert home(node).success
     node._on_rotor_state(rotor_bytes(2001 * MILLISECOND, position=[15.0]))
     assert home(node).success
+
+
+def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
+    node = homing(rotor_encoder='single_turn', output_encoder_reference='absolute')
+    answers = []
+    for number in range(1, 400):
+        shaft = rotor_bytes(number * MILLISECOND, ['shaft'], [2.0])
+        node._on_output_encoder(shaft)
+        drive(node, [-38.0 % math.tau], number * MILLISECOND)
+        if node._input.referenced:
+            answers.append(node._homing._refusal(node._settings, node._input.last))
+    assert len(answers) > 100
+    assert set(answers) == {''}
+    assert home(node).message.startswith('the shaft was at 114.6° and is now 0.0°')
 
 
 def test_position_that_is_old_is_not_homed(homing):

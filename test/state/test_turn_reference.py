@@ -99,6 +99,10 @@ def test_a_rotor_that_counts_from_its_start_is_set_to_the_measured_angle(positio
     assert bench.rest(2.5, 1) == pytest.approx(2.5, abs=5e-4)
     message, _, reference = bench.report()
     assert (message, reference[:18]) == ('ok', 'output encoder, ± ')
+    # By hand: φ5 = -(reading - zero)/19, where the reading is -19 · 2.5 + 77 - `position`.
+    zero = 77.0 - position
+    values = bench.monitor.report(bench.rotor, 0.0, bench.reference).values
+    assert float(values['rotor zero (rad)']) == pytest.approx(zero, abs=0.02, rel=1e-8)
     assert 0.17 < float(reference[18:-1]) < 0.25  # limit and noise
     first = bench.turn(3.0)
     # An encoder that is silent for a while keeps its zero; one that was switched off gets another.
@@ -169,6 +173,26 @@ def test_when_turns_are_searched():
     bench.set(output_encoder_zero=0.5)
     assert not bench.rotor.referenced
     assert bench.rest(1.0) == pytest.approx(1.0)
+
+
+def test_an_encoder_that_is_too_slow_and_gaps_in_every_period_are_named():
+    bench = Bench()
+    slow = 'output_encoder every 0.002 s, transmission_error_max_gap 0.001 s'
+    for homed, message in ((False, 'not referenced'), (True, 'turns not watched')):
+        for _ in range(2 * SAMPLES):
+            bench.rest(1.0, 1)
+            bench.rest(1.0, 1, measured=False)
+        assert bench.report()[:2] == (
+            f'{message}: {slow}',
+            'Let output_encoder send more often, or raise transmission_error_max_gap.'
+            + (not homed) * ' Or: Move the output to its home angle, then call ~/home.',
+        )
+        bench.rotor.home(-19.0)
+    # At 650 rad/s half a turn takes 4.8 ms.
+    bench.rest(1.0, 10, step=5 * MS)
+    message, advice, _ = bench.report()
+    assert message == 'not referenced: 10 gaps could hide half a turn'
+    assert advice.startswith('Lower max_rotor_speed to what the motor reaches')
 
 
 @pytest.mark.parametrize('settings', [SINGLE, MULTI])
