@@ -54,12 +54,8 @@ def run(options: argparse.Namespace) -> ExitCode:
     recordings = list(_read(options, config))
     if len(recordings) < len(options.recordings):
         return ExitCode.UNUSABLE
-    result = fit(
-        recordings,
-        gear.gear_ratio,
-        gear if isinstance(gear, Mechanism) and not options.fit_ratio else None,
-        estimate_ratio=options.fit_ratio,
-    )
+    mechanism = gear if isinstance(gear, Mechanism) else None
+    result = fit(recordings, gear.gear_ratio, mechanism)
     if result.helps:
         write_text(options.output, result.calibration.text())
     reporter.write(

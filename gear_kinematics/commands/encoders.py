@@ -67,16 +67,12 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
 
 def _add_gear(parser: argparse.ArgumentParser) -> None:
     arguments.add_config(parser)
-    ways = arguments.group(parser, 'gear').add_mutually_exclusive_group()
-    ways.add_argument(
+    arguments.group(parser, 'gear').add_argument(
         '--ratio',
         type=ratio_text,
         metavar='I',
         help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
-        'from the teeth)',
-    )
-    ways.add_argument(
-        '--fit-ratio', action='store_true', help='estimate the gear ratio from the recording'
+        'from the teeth; gearkin commission finds it)',
     )
 
 

@@ -230,7 +230,7 @@ def _task(number: int, path: Path, name: str, options: argparse.Namespace) -> Ta
         path,
         name,
         config,
-        Request(options.rated_torque, corners, options.fit_ratio, options.delay),
+        Request(options.rated_torque, corners, options.delay),
         sources(options),
         options.debug,
     )

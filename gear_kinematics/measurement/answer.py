@@ -11,7 +11,6 @@ from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import Measured, shown
 from gear_kinematics.measurement.middle_line import Cause
-from gear_kinematics.measurement.ratio import ratio_remarks
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, arc_minutes
 from gear_kinematics.report.document import number, printable
 
@@ -116,8 +115,6 @@ def remarks(report: LostMotion) -> list[str]:
 def _remarks(report: LostMotion) -> Iterator[str]:
     recording = report.recording
     yield from report.remarks
-    if report.fitted:
-        yield from ratio_remarks(report.fitted)
     if found := report.figures:
         yield (
             'Output and rotor were both measured: the wind-up is that of the gear.'

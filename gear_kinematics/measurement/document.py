@@ -184,7 +184,6 @@ def _recording(
         'samples': recording.rows,
         'error': recording.damage,
         'gear_ratio': str(report.gear_ratio),
-        'fitted_ratio': plain(report.fitted),
         **(_of_gear(report.figures) if report.figures else {}),
         'measured': report.measured,
         'transmission': plain(report.transmission),

@@ -23,9 +23,9 @@ from gear_kinematics.measurement.figures import (
 )
 from gear_kinematics.measurement.loops import RampError, Ramps, find_ramps
 from gear_kinematics.measurement.measured import HYSTERESIS, Measured
-from gear_kinematics.measurement.ratio import RatioEstimate, check_ratio, fit_ratio
+from gear_kinematics.measurement.ratio import check_ratio
 from gear_kinematics.measurement.reading import read
-from gear_kinematics.measurement.recording import Recording, RecordingError
+from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
 from gear_kinematics.measurement.wording import arc_minutes
 from gear_kinematics.parameters import NodeParameters
@@ -47,8 +47,6 @@ class LostMotion:
     transmission: TransmissionFigures | None = None
     remarks: tuple[str, ...] = ()
     """Sentences about what was found."""
-    fitted: RatioEstimate | None = None
-    """The estimate of the ratio, if it comes from the recording."""
     wrong_ratio: str = ''
     """What is wrong with the ratio, in a sentence; empty if nothing shows."""
 
@@ -83,8 +81,6 @@ class Request:
     """N·m; None: the amplitude of the largest ramps."""
     corners: tuple[float, ...] | None = None
     """N·m, rising, between ranges of stiffness; None: shares of the rated torque."""
-    fit_ratio: bool = False
-    """Whether to estimate the gear ratio."""
     delay: float | None = None
     """s or rows, by which the output's encoder is late; None: estimated."""
 
@@ -104,24 +100,13 @@ def measure(
         RampError, RecordingError: if nothing can be measured.
     """
     encoders, remarks = recording.encoders, recording.sentences
-    fitted, found, wrong = None, None, ''
-    if request.fit_ratio:
-        if not encoders:
-            raise RecordingError('a fit of the ratio needs the angles of rotor and output')
-        fitted = fit_ratio(encoders, gear.gear_ratio)
-        ratio = fitted.ratio()
-        gear = ratio if ratio != gear.gear_ratio else gear
+    found, wrong = None, ''
     if encoders:
         wrong = check_ratio(encoders, gear.gear_ratio)
         travel = parameters.transmission_error_travel
         found = transmission_figures(encoders, gear, travel, request.delay)
     report = LostMotion(
-        recording.name,
-        recording,
-        gear.gear_ratio,
-        transmission=found,
-        fitted=fitted,
-        wrong_ratio=wrong,
+        recording.name, recording, gear.gear_ratio, transmission=found, wrong_ratio=wrong
     )
     if loading := recording.loading(gear.gear_ratio):
         try:

@@ -22,8 +22,6 @@ Array = NDArray[np.float64]
 ENCODER_ERROR = math.radians(1.0)
 """rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
 printed gears by about as much."""
-MOST_TEETH = 200
-"""Teeth of the ring gears that are considered; any pair can be multiplied."""
 _BLOCKS = 23
 """Prime, as blocks of whole cycles of an error would not differ."""
 _SAMPLES = 230, 10_000
@@ -35,8 +33,8 @@ _ROTOR_SHARE = 0.1
 """Of the error, at the output, that the gear may have once per turn of the rotor."""
 _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
 """Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
-_WIDE, _PLAY, _DELAY = 1.0, 0.1, 0.05
-"""Standard deviations, rad, rad and s, that hardly bind slope and offset, play, and delay."""
+_PLAY, _DELAY = 0.1, 0.05
+"""Standard deviations, rad and s, that hardly bind play and delay; 1 rad those of the travel."""
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
 """After a reversal, left out, as play is crossed: share of the whole travel, and at most, rad."""
 _LEAST_NOISE = 1e-9
@@ -44,11 +42,14 @@ _LEAST_NOISE = 1e-9
 _STEP = 0.01
 """s around a sample, for its speed; of a row without times."""
 _TURNS = (*(n / 12 for n in (*range(1, 12), *range(13, 25))), 2.5, 3, 4, 5, 7, 10, 20, 50, 100)
-"""Of the output, that may be advised."""
+"""Of the output, that may be advised; just one is the weak spot, as hardly anything repeats."""
 _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
 _MAX_DISTANCE = 2
-"""Expanded uncertainties within which a fraction or a tooth pair may be the true ratio."""
+"""Expanded uncertainties within which a fraction or a tooth pair may be the true ratio: of 20
+recordings, one has it beyond a single one."""
+_MOST_TEETH = 200
+"""Of the ring gears that are considered; any pair can be multiplied."""
 _SHOWN, _COMPLEX = 10, 20
 """Candidates and tooth pairs that are named; denominators of others over that of the simplest."""
 
@@ -58,24 +59,36 @@ class RatioEstimate:
     """A gear ratio as it was measured."""
 
     measured: Estimate
-    simplest: Fraction
-    """The first candidate."""
-    chance: float
-    """Probability that one as simple or simpler is there by coincidence, at most 1."""
     candidates: tuple[Fraction, ...]
     """Fractions within twice the expanded uncertainty by denominator, the nearest first."""
-    tooth_pairs: tuple[tuple[int, int], ...]
-    """Teeth (zk, zs) of ring gear and satellite that have a ratio within twice the expanded
-    uncertainty, by rising zk up to `MOST_TEETH`."""
-    advice: str
+    advice: str = ''
     """How far to turn the output to tell the ratio; empty if it is taken."""
+
+    def fits(self, ratio: Fraction) -> bool:
+        """Return whether this may be the true ratio."""
+        low, high = _interval(self.measured)
+        return low <= ratio <= high
+
+    @property
+    def simplest(self) -> Fraction:
+        """The first candidate."""
+        return self.candidates[0]
 
     @property
     def taken(self) -> GearRatio | None:
-        """The simplest fraction, if it is in the interval and alone there and around it."""
-        distance = abs(self.measured.value - self.simplest)
-        alone = self.chance < _BY_CHANCE and distance <= (self.measured.uncertainty or 0.0)
-        return GearRatio(self.simplest) if alone else None
+        """The simplest fraction, if it is in the interval and no other is as simple around it."""
+        spread = self.measured.uncertainty or 0.0
+        inside = abs(self.measured.value - self.simplest) <= spread
+        return GearRatio(self.simplest) if inside and spread < self.enough else None
+
+    @property
+    def enough(self) -> float:
+        """Expanded uncertainty below which the simplest fraction is no coincidence."""
+        # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q. A gear to a
+        # higher speed is judged by the inverse.
+        small = min(abs(self.simplest.numerator), self.simplest.denominator)
+        unit = min(1.0, self.measured.value**2)
+        return unit * _BY_CHANCE / (_MAX_DISTANCE * small * (small + 1))
 
     @property
     def plus_minus(self) -> str:
@@ -85,30 +98,16 @@ class RatioEstimate:
         return f'{self.measured.value:.{decimals}f} ± {spread:.{decimals}f}'
 
     @property
+    def tooth_pairs(self) -> tuple[tuple[int, int], ...]:
+        """Teeth (zk, zs) of ring gear and satellite that may have the ratio, by rising zk."""
+        low, high = _interval(self.measured)
+        return tuple(tooth_pairs(low, high, _MOST_TEETH)) if high < 0 else ()
+
+    @property
     def teeth(self) -> str:
         """The first tooth pairs of the simplest ratio, in words; empty without any."""
         pairs = ((zk, zs) for zk, zs in self.tooth_pairs if zs == self.simplest * (zs - zk))
         return ', '.join(f'{zk}/{zs}' for zk, zs in islice(pairs, _SHOWN))
-
-    def ratio(self) -> GearRatio:
-        """The ratio that is taken; raises RecordingError if the recording leaves it open."""
-        if self.taken is None:
-            raise RecordingError(
-                f'the recording leaves the ratio open: {self.plus_minus}, such as '
-                f'{", ".join(map(str, self.candidates))}; {self.advice}, or give it with --ratio'
-            )
-        return self.taken
-
-
-def fit_ratio(encoders: Encoders, assumed: Fraction) -> RatioEstimate:
-    """Estimate the ratio from a recording, as `estimate_ratio` does.
-
-    It must be so near to the assumed one that, between samples, the output turns at most half a
-    turn more or less than by that.
-    """
-    ideal = encoders.at_measured(encoders.ideal(assumed))
-    time = encoders.seconds if encoders.timed else None
-    return estimate_ratio(ideal * float(assumed), ideal + encoders.error(assumed), time)
 
 
 def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
@@ -127,20 +126,24 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
 
 
 def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
-    """Say in a clause which ratio a recording has, if it is clearly not the assumed one."""
+    """Say in a clause which ratio a recording has, if it is clearly not the assumed one.
+
+    It is found if, between samples, the output turns at most half a turn more or less than by the
+    assumed one.
+    """
+    ideal = encoders.at_measured(encoders.ideal(assumed))
+    time = encoders.seconds if encoders.timed else None
     try:
-        found = fit_ratio(encoders, assumed)
+        found = estimate_ratio(ideal * float(assumed), ideal + encoders.error(assumed), time)
     except RecordingError:
         return ''
-    low, high = _interval(found.measured)
-    if low <= assumed <= high:
+    if found.fits(assumed):
         return ''
     measured = f'the recorded ratio is {found.plus_minus}, not {assumed}'
-    if low <= -assumed <= high:
+    if found.fits(-assumed):
         return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
-    teeth = f', with ring gear/satellite teeth such as {found.teeth}' if found.teeth else ''
-    place = 'the simplest' if found.taken else 'one of the simplest'
-    return f'{measured}; --ratio={found.simplest} is {place}{teeth}'
+    such = '' if found.taken else ' it, such as'
+    return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.simplest}'
 
 
 def estimate_ratio(
@@ -168,10 +171,11 @@ def estimate_ratio(
             raise RecordingError(f'the {body} does not turn')
     centred = (rotor - np.mean(rotor)) / np.ptp(rotor)
     slope = float(centred @ (output - np.mean(output)) / (centred @ centred) / np.ptp(rotor))
+    late = 0.0
     times = np.asarray(_STEP * np.arange(len(rotor)) if time is None else time, float)
     direction = Direction(min(_SETTLED * abs(slope) * float(np.ptp(rotor)), _MOST_PLAY))
     steps = (slope * np.diff(rotor, prepend=rotor[0])).tolist()
-    way, late = np.array([direction.move(step) for step in steps], float), 0.0
+    way = np.array([direction.move(step) for step in steps], float)
     for _ in range(3):  # again with the slope and the delay that were found
         kept = np.flatnonzero(way * (times - late >= times[0]) * (times - late <= times[-1]))
         kept = kept[:: -(-len(kept) // _SAMPLES[1]) or 1]
@@ -186,21 +190,21 @@ def estimate_ratio(
         travel = float(np.ptp(at))
         slope, late = slope + fit.slope / travel, late - fit.delay
     parts = Component(fit.spread / travel), Component(fit.scatter / travel, _BLOCKS - 1)
-    found = Estimate(slope, *combined(parts), _BLOCKS)
-    if not _MAX_DISTANCE * (found.uncertainty or 0.0) < abs(slope):
+    measured = Estimate(slope, *combined(parts), _BLOCKS)
+    if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):
         error = f'for errors of {number(math.degrees(encoder_error))}°'
         raise RecordingError(f'the output does not follow the rotor, or turns too little {error}')
-    estimate = _with_candidates(found.inverse())
-    if not estimate.taken:
-        estimate = replace(estimate, advice=_advice(estimate, fit, travel, encoder_error))
-    return estimate
+    measured = measured.inverse()
+    found = RatioEstimate(measured, tuple(islice(_fractions(measured), _SHOWN)))
+    return (
+        found if found.taken else replace(found, advice=_advice(found, fit, travel, encoder_error))
+    )
 
 
-def _columns(rotor: Array, slope: float, error: float, *others: Array) -> Array:
+def _columns(rotor: Array, slope: float, error: float, way: Array, step: Array) -> Array:
     """Each term as large as it may be: (n, terms); slope, offset, play and delay are first."""
     x = (rotor - np.mean(rotor)) / np.ptp(rotor)
-    way, step = others or (np.zeros(len(x)), np.zeros(len(x)))
-    columns = [_WIDE * x, np.full(len(x), _WIDE), _PLAY * way, _DELAY / (2.0 * _STEP) * step]
+    columns = [x, np.ones(len(x)), _PLAY * way, _DELAY / (2.0 * _STEP) * step]
     amplitudes = error, (abs(slope) + _ROTOR_SHARE) * error
     for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
         for k in range(1, most + 1):
@@ -216,16 +220,16 @@ class _Fit:
         rest, self.samples = rest - np.mean(rest), len(rest)
         blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
         sums = np.array([block.T @ block for block in blocks])
-        whole, fitted = sums.sum(axis=0), np.zeros(columns.shape[1])
-        for _ in range(5):  # with the noise that the one before left
-            self.noise = max(_noise(rest - columns @ fitted), _LEAST_NOISE**2)
-            fitted, spread = _solve(whole, self.noise)
-        without = [_solve(whole - block, self.noise)[0][0] for block in sums]
+        whole, left = sums.sum(axis=0), rest
+        for _ in range(5):  # with the noise that the one before left; with 3, ± is 50 % off
+            self.noise = max(_noise(left), _LEAST_NOISE**2)
+            fitted, self.spread = _solve(whole, self.noise)
+            left = rest - columns @ fitted
+        without = (_solve(whole - block, self.noise)[0][0] for block in sums)
         values = pseudo_values([fitted[0], *without])
         # Of the output over the whole travel, rad; spread is by noise and what terms leave open.
-        self.slope, self.spread = _WIDE * float(fitted[0]), _WIDE * spread
-        self.scatter = _WIDE * float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
-        self.delay = _DELAY * float(fitted[3])
+        self.slope, self.delay = float(fitted[0]), _DELAY * float(fitted[3])
+        self.scatter = float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
 
 
 def _solve(sums: Array, noise: float) -> tuple[Array, float]:
@@ -248,56 +252,36 @@ def _noise(residual: Array) -> float:
 def _advice(found: RatioEstimate, fit: _Fit, travel: float, error: float) -> str:
     """How far to turn the output evenly so that the simplest candidate would be alone."""
     ratio = abs(found.measured.value)
-    small = min(abs(found.simplest.numerator), found.simplest.denominator)
-    share = _BY_CHANCE / (_MAX_DISTANCE * small * (small + 1) * max(ratio, 1.0 / ratio))
     # The scatter falls as the uncertainty does that the expected errors explain.
-    needed = fit.spread / travel * ratio * share / (found.measured.uncertainty or math.inf)
+    needed = fit.spread / travel * found.enough / (found.measured.uncertainty or math.inf)
     for turns in _TURNS:
         even = np.linspace(0.0, turns * TURN * ratio, 1500)
-        columns = math.sqrt(fit.samples / len(even)) * _columns(even, 1.0 / ratio, error)
-        spread = _WIDE * _solve(np.pad(columns.T @ columns, (0, 1)), fit.noise)[1]
+        columns = _columns(even, 1.0 / ratio, error, *np.zeros((2, len(even))))
+        sums = fit.samples / len(even) * np.pad(columns.T @ columns, (0, 1))
+        spread = _solve(sums, fit.noise)[1]
         if even[-1] > travel and spread / even[-1] <= needed:
             stops = ' (a gear with stops: confirm its nameplate ratio)' if turns > 1.0 else ''
             return f'turn the output by {360.0 * turns:.0f}° or more{stops}'
     return 'confirm its nameplate ratio, as no motion will tell it'
 
 
-def _with_candidates(measured: Estimate) -> RatioEstimate:
-    """Find the simple fractions and the tooth pairs that fit a measured ratio."""
+def _fractions(measured: Estimate) -> Iterator[Fraction]:
+    """Fractions that may be a ratio, the simplest and nearest first.
+
+    The denominator is that of a gear to a lower speed; of one to a higher speed, the numerator.
+    """
     low, high = _interval(measured)
-    pairs = tooth_pairs(low, high, MOST_TEETH) if high < 0 else ()
-    if inverse := abs(measured.value) < 1.0:  # a gear to a higher speed is judged by the inverse
+    if inverse := abs(measured.value) < 1.0:
         low, high = 1 / high, 1 / low
-    simple = list(islice(_fractions(low, high), _SHOWN))
-    small = simple[0].denominator
-    # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
-    chance = min(1.0, float(high - low) * small * (small + 1) / 2)
-    candidates = tuple(1 / one if inverse else one for one in simple)
-    return RatioEstimate(measured, candidates[0], chance, candidates, tuple(pairs), '')
-
-
-def _fractions(low: Fraction, high: Fraction) -> Iterator[Fraction]:
-    """Simple fractions in an interval: by rising denominator, the nearest to the middle first."""
     least, middle = simplest_fraction(low, high).denominator, float(low + high) / 2
     for q in range(least, _COMPLEX * least):
         whole = range(math.ceil(low * q), math.floor(high * q) + 1)
         for p in sorted(whole, key=lambda p: abs(p - middle * q)):
             if math.gcd(p, q) == 1:
-                yield Fraction(p, q)
+                yield Fraction(q, p) if inverse else Fraction(p, q)
 
 
 def _interval(measured: Estimate) -> tuple[Fraction, Fraction]:
     """Where the true ratio may be: the value and twice its expanded uncertainty around it."""
     value, spread = Fraction(measured.value), Fraction(measured.uncertainty or 0.0)
     return value - _MAX_DISTANCE * spread, value + _MAX_DISTANCE * spread
-
-
-def ratio_remarks(fitted: RatioEstimate) -> Iterator[str]:
-    """Describe an estimated ratio that is taken, in sentences."""
-    yield f'The gear ratio is estimated as {fitted.plus_minus}, and taken as {fitted.taken}.'
-    yield (
-        f'{fitted.simplest} is the simplest fraction within twice that uncertainty; one as simple '
-        f'is there by coincidence with a probability of at most {number(fitted.chance, 2)}.'
-    )
-    if fitted.teeth:
-        yield f'Teeth of ring gear/satellite with such a ratio are, for example, {fitted.teeth}.'

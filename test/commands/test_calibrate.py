@@ -133,23 +133,11 @@ def test_a_calibration_is_replaced(recording, tmp_path):
     assert Calibration.load(target).gear_ratio == -19
 
 
-def test_ratio_can_be_given_and_fitted(recording, tmp_path, capsys):
-    given, fitted = tmp_path / 'given.yaml', tmp_path / 'fitted.yaml'
-    assert main(['calibrate', str(recording), '-o', str(given), '--ratio', '-19']) == 0
-    assert main(['calibrate', '-v', str(recording), '-o', str(fitted), '--fit-ratio']) == 0
-    assert 'The gear ratio is estimated as -19.0' in capsys.readouterr().out
-    for target in (given, fitted):
-        calibration = Calibration.load(target)
-        assert (calibration.gear_ratio, calibration.ring_teeth) == (-19, None)
-
-
-@pytest.mark.parametrize('command', ['calibrate', 'lost-motion'])
-def test_a_ratio_that_is_left_open_gets_one_line(command, shared_path):
-    joint = shared_path('data/dual_encoders/neura_jogging_final_joint1.csv')
-    counts = '--rotor-counts', 2**24, '--output-counts', 2**24
-    line = refusal(command, joint, *counts, '--fit-ratio')
-    assert re.search(r'leaves the ratio open: 121\.\d ± \d\.\d, such as .*121.*; turn', line)
-    assert 'or give it with --ratio' in line
+def test_ratio_can_be_given(recording, tmp_path):
+    target = tmp_path / 'given.yaml'
+    assert main(['calibrate', str(recording), '-o', str(target), '--ratio', '-19']) == 0
+    calibration = Calibration.load(target)
+    assert (calibration.gear_ratio, calibration.ring_teeth) == (-19, None)
 
 
 @pytest.mark.parametrize(('ratio', 'named'), [('7.29', r'-19\.0'), ('19', 'counts backwards')])
@@ -158,6 +146,7 @@ def test_a_wrong_ratio_gets_one_line_with_the_right_one(recording, ratio, named,
     line = refusal('calibrate', recording, '-o', target, '--ratio', ratio)
     assert re.search(rf'the recorded ratio is -1.* ± .*{named}|{named}', line)
     assert '--ratio=-19' in line
+    assert ('gearkin commission' in line) == (ratio != '19')
     assert not target.exists()
 
 

@@ -114,7 +114,7 @@ def test_motion_has_a_transmission_error_and_a_lost_motion_if_the_delay_is_known
     output = capsys.readouterr().out
     assert 'tell the delay with --delay, in rows' in output
     assert 'Inferred' not in output
-    assert main(['lost-motion', str(motion), '--json', '-', '--delay', '0', '--fit-ratio']) == 0
+    assert main(['lost-motion', str(motion), '--json', '-', '--delay', '0']) == 0
     (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert found['gear_ratio'] == '-19'
     transmission = found['transmission']
@@ -164,9 +164,7 @@ def page_of(path):
         (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot must be one of'),
         (['{recording}', '--json', '-', '--html', '-'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are: output, rotor"),
-        (['{recording}', '--fit-ratio'], 'needs the angles of rotor and output'),
         (['{motion}', '--ratio', '19:1'], 'a gear ratio must be an integer, a fraction or a dec'),
-        (['{motion}', '--ratio', '-19', '--fit-ratio'], 'not allowed with argument --ratio'),
         (['{recording}', '--rated-torque=nan'], '--rated-torque'),
         (['{recording}', '--output-counts=2.5'], '--output-counts'),
         (['{recording}', '--angle-unit=gon'], '--angle-unit'),
@@ -374,28 +372,18 @@ def another_gear(folder):
     return write_csv(folder / 'other.csv', rotor=-58.0 / 3.0 * ideal, output=output)
 
 
-@pytest.mark.parametrize('option', ['--ratio', '--config', '--fit-ratio'])
-def test_any_ratio_can_be_given_or_estimated(tmp_path, capsys, option):
+@pytest.mark.parametrize('option', ['--ratio', '--config'])
+def test_any_ratio_can_be_given(tmp_path, capsys, option):
     config = tmp_path / 'other.yaml'
     config.write_text("/**: {ros__parameters: {gear_ratio: '-58/3'}}", 'utf-8')
-    given = {'--ratio': ['-58/3'], '--config': [str(config)], '--fit-ratio': []}[option]
-    words = ['lost-motion', '-v', str(another_gear(tmp_path)), option, *given]
-    report = tmp_path / 'report.json'
-    assert main([*words, '--json', str(report)]) == 0
-    (found,) = json.loads(report.read_text())['recordings']
+    given = {'--ratio': '-58/3', '--config': str(config)}[option]
+    words = ['lost-motion', str(another_gear(tmp_path)), option, given, '--json', '-']
+    assert main(words) == 0
+    (found,) = json.loads(capsys.readouterr().out)['recordings']
     assert found['gear_ratio'] == '-58/3'
     cycles = {order['name']: order['cycles'] for order in found['transmission']['orders']}
     assert (cycles['output × 1'], cycles['rotor × 2']) == ('1', '116/3')
     assert found['transmission']['forward']['value'] == pytest.approx(2e-3, rel=1e-3)
-    output, fitted = capsys.readouterr().out, found['fitted_ratio']
-    if option != '--fit-ratio':
-        assert fitted is None
-        return
-    assert fitted['simplest'] == '-58/3'
-    assert fitted['measured']['value'] == pytest.approx(-58.0 / 3.0, abs=1e-6)
-    assert fitted['tooth_pairs'] == [[61, 58], [122, 116], [183, 174]]
-    assert re.search(r'estimated as -19\.333\d+ ± 0\.0000\d+, and taken as -58/3\.', output)
-    assert 'for example, 61/58, 122/116, 183/174.' in output
 
 
 @pytest.mark.slow

@@ -152,21 +152,6 @@ def test_the_same_gear_has_its_own_zero_in_each_recording():
     assert improvement(result) > 1.0 / 0.15
 
 
-def test_ratio_is_fitted():
-    simulated, _ = one_gear()
-    result = fit([recorded(simulated, 0)], Fraction(-20), estimate_ratio=True)
-    measured = result.fitted_ratio.measured
-    assert abs(measured.value + 19.0) <= measured.uncertainty < 1e-3
-    assert result.calibration.gear_ratio == -19
-    assert (80, 76) in result.fitted_ratio.tooth_pairs
-
-
-def test_ratio_that_is_left_open_is_not_rounded():
-    simulated, _ = one_gear(replace(USUAL, ratio=1457 / 26))
-    with pytest.raises(RecordingError, match=r'open: 56\.03\d+ ± 0\.000\d+, such as 1457/26, '):
-        fit([recorded(simulated, 0)], Fraction(50), estimate_ratio=True)
-
-
 def test_recordings_that_tell_nothing_are_refused():
     simulated, _ = one_gear(duration=0.05)
     with pytest.raises(RecordingError, match='gear 0: 50 output angles are too few'):

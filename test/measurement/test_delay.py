@@ -127,9 +127,9 @@ def test_ratio_of_a_recording_is_named_with_its_uncertainty(assumed, profile, sp
     value, _, uncertainty, *_ = said.split('the recorded ratio is ')[1].split()
     assert abs(float(value) + 19) <= float(uncertainty.rstrip(',')) <= spread
     assert f'not {assumed}' in said
-    assert '--ratio=-19 is' in said
+    assert '--ratio=-19' in said
     assert ('an encoder counts backwards' in said) == (assumed == '19')
-    assert ('80/76' in said) == (assumed != '19')
+    assert ('gearkin commission' in said) == (assumed != '19')
 
 
 @pytest.mark.parametrize('assumed', ['-18', '-20', '-58/3'])

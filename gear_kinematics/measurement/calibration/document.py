@@ -12,7 +12,6 @@ from gear_kinematics.measurement.calibration.result import Fit
 from gear_kinematics.measurement.calibration.terms import output_cycles
 from gear_kinematics.measurement.curves import spectrum_panel
 from gear_kinematics.measurement.envelope import envelope
-from gear_kinematics.measurement.ratio import ratio_remarks
 from gear_kinematics.measurement.recording import Array
 from gear_kinematics.measurement.wording import (
     ARC_MINUTES,
@@ -69,7 +68,6 @@ def document(fit: Fit, target: str) -> Document:
         'coverage': COVERAGE,
         'helps': fit.helps,
         'gear_ratio': str(made.gear_ratio),
-        'fitted_ratio': plain(fit.fitted_ratio),
         'left_out': plain(made.validation) | widths,
         'terms': [
             {
@@ -104,8 +102,6 @@ def remarks(fit: Fit) -> Iterator[str]:
     for r in fit.recordings:
         recording = r.samples.recording
         yield from (f'{recording.name}: {text}' for text in recording.sentences)
-    if fit.fitted_ratio:
-        yield from ratio_remarks(fit.fitted_ratio)
     for name, cause in fit.refused.items():
         yield f'{name} is not fitted: {cause}.'
     for r in fit.recordings:

@@ -41,7 +41,7 @@ from gear_kinematics.measurement.calibration.selection import (
 )
 from gear_kinematics.measurement.calibration.spectrum import Spectrum, as_fraction, spectrum
 from gear_kinematics.measurement.calibration.terms import MOST_DRIFT, Recorded, Samples, thinned
-from gear_kinematics.measurement.ratio import RatioEstimate, fit_ratio, wrong_ratio
+from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, RecordingError
 from gear_kinematics.share import version
 
@@ -66,20 +66,16 @@ def fit(
     recordings: Sequence[Recorded],
     ratio: Fraction,
     mechanism: Mechanism | None = None,
-    *,
-    estimate_ratio: bool = False,
 ) -> Fit:
     """Calibrate a gear.
 
     Args:
         recordings: at least one.
-        ratio: i, exact. If it is to be estimated, so near that, between samples, the output turns
-            at most half a turn more or less than by this ratio.
+        ratio: i, exact.
         mechanism: for the orders of satellite and teeth, if it is known.
-        estimate_ratio: whether to estimate the ratio first.
 
     Raises:
-        RecordingError: if the recordings do not suffice, have another ratio, or leave it open.
+        RecordingError: if the recordings do not suffice, or have another ratio.
     """
     recordings = thinned(recordings)
     for recording, encoders in recordings:
@@ -87,15 +83,9 @@ def fit(
             raise RecordingError(f'{recording.name}: {count} output angles are too few')
         if not np.ptp(encoders.ideal(ratio)) > 0.0:
             raise RecordingError(f'{recording.name}: the rotor does not move')
-        if not estimate_ratio and (wrong := wrong_ratio(encoders, ratio)):
+        if wrong := wrong_ratio(encoders, ratio):
             raise RecordingError(f'{recording.name}: {wrong}')
-    estimate = None
-    if estimate_ratio:
-        longest = max((e for _, e in recordings), key=lambda e: float(np.ptp(e.rotor.turns)))
-        estimate = fit_ratio(longest, ratio)
-        ratio = estimate.ratio()
-    fitting = _Fitting(recordings, ratio, mechanism)
-    return fitting.result(estimate)
+    return _Fitting(recordings, ratio, mechanism).result()
 
 
 class _Fitting:
@@ -242,7 +232,7 @@ class _Fitting:
             return equations, fold, covered
         return self._equations, np.repeat(self._folds, counts), np.ones(len(fold), bool)
 
-    def result(self, fitted_ratio: RatioEstimate | None) -> Fit:
+    def result(self) -> Fit:
         """Everything about the calibration with the selected terms."""
         columns, samples, mechanism = self._selection.columns, self._samples, self._mechanism
         coefficients = self._equations.solve(columns)
@@ -309,7 +299,6 @@ class _Fitting:
             recordings=tuple(FittedRecording(*recording) for recording in recordings),
             spectra=(self._spectrum(before), self._spectrum(after)),
             refused=self._refused,
-            fitted_ratio=fitted_ratio,
         )
 
     def _fitted_terms(self, coefficients: Array) -> tuple[FittedTerm, ...]:

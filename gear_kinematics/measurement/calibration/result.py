@@ -8,7 +8,6 @@ from gear_kinematics.correction.calibration_file import Calibration, Compliance,
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.measurement.calibration.spectrum import Spectrum
 from gear_kinematics.measurement.calibration.terms import Samples, Term
-from gear_kinematics.measurement.ratio import RatioEstimate
 from gear_kinematics.measurement.recording import Array
 
 
@@ -49,5 +48,3 @@ class Fit(NamedTuple):
     """Before and after."""
     refused: Mapping[str, str]
     """Terms that the recordings cannot determine, with the cause."""
-    fitted_ratio: RatioEstimate | None
-    """The ratio, if it was fitted."""

@@ -27,9 +27,6 @@ _BY_CHANCE = 0.025
 """Turns of the rotor within which its zero moved by whole turns; by chance, one in 20 does."""
 _HALF = 0.5
 """Turns of the rotor within which a zero has to be known for its turns to be compared."""
-_MAX_DISTANCE = 2.0
-"""Expanded uncertainties within which a ratio may be the true one: of 20 recordings, one has it
-beyond a single one."""
 _FASTER = 2.0
 """The speed that is allowed / the greatest seen, which is hardly the greatest that there is."""
 _MILLI = 1e3
@@ -180,8 +177,7 @@ def commission(
 
 def agrees(given: GearRatio, ratio: RatioEstimate) -> bool:
     """Return whether a ratio may be the measured one, but for its sign."""
-    distance = abs(abs(given) - abs(ratio.measured.value))
-    return bool(distance <= _MAX_DISTANCE * (ratio.measured.uncertainty or 0.0))
+    return ratio.fits(given) or ratio.fits(-given)
 
 
 def _doubt(ratio: RatioEstimate, travel: float, request: Request) -> str:
