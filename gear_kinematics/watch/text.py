@@ -129,7 +129,9 @@ def table(view: View, answer: Answer | None = None, *, asking: bool = False) -> 
         for driver in view.drivers:
             joints = printable(', '.join(driver.joints))
             parts.append(Text(f'{driver.topic}  {joints}  {driver.rate:.0f} Hz'))
-        parts.append(Text('gearkin init writes a parameter file for one.'))
+        parts.append(
+            Text('gearkin init writes a parameter file; from two encoders, gearkin commission.')
+        )
     if view.recording:
         parts.append(Text.assemble(('● ', 'red'), f'recording to {view.recording}'))
     elif view.failure:

@@ -300,7 +300,8 @@ class Watcher:
         heard = self._gear.heard if self._gear else ()
         silent = [topic for topic in heard if not recorded.counts.get(topic)]
         missing = f'; nothing came on {", ".join(silent)}' if silent else ''
-        command = f'gearkin validate {shlex.quote(str(recorded.path))}'
+        job = 'validate' if self._gear else 'commission'  # there are no outputs without a node
+        command = f'gearkin {job} {shlex.quote(str(recorded.path))}'
         return Answer(f'Recorded {recorded}{missing}:', done=True, command=command)
 
     def _configure(self, topic: str, joint: str) -> Answer:

@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PLAYER = ROOT / 'test/support/played_joint.py'
 PAGE = (ROOT / 'docs/commissioning.md').read_text('utf-8')
 DEGREE = math.pi / 180.0
-SECONDS = 9  # that a person turns the output
+SECONDS = 5  # that a person turns the output
 
 
 def command(*words: str) -> list[str]:
@@ -53,7 +53,7 @@ def simulated() -> Joint:
     drive = Drive(play=0.05 * DEGREE, errors={1.0: 0.1 * DEGREE}, ratio=30.0, noise=1e-5)
     stroke = np.array([0.0, 0.0, 430.0, 430.0, 0.0]) * DEGREE - 1.0  # there and back
     seconds, rotor, output = drive.readings(
-        lambda t: np.interp(t, [0.0, 1.5, 5.0, 6.5, 10.0], stroke), 10.0, 250.0
+        lambda t: np.interp(t, [0.0, 1.0, 2.5, 3.5, 5.0], stroke), 5.0, 250.0
     )
     readings = np.stack([seconds, (2.0 - rotor) % math.tau, output % math.tau], axis=1)
     return Joint(readings, rotor / 30.0, 0.25 * DEGREE, '-30', forgets=False)
@@ -99,7 +99,7 @@ def record(folder: Path) -> str:
         name = person.wait_for(r'gearkin_[\d_-]+')
         person.wait_for(rf'{name}: {SECONDS}\.\d s, ')
         person.type('r')
-        person.wait_for(r'Recorded \d+ messages, 0 lost')
+        person.wait_for(r'Recorded \d+ messages, 0 lost: gearkin commission ')
         person.type('q')
         assert person.end() == 0
     return name
@@ -146,6 +146,6 @@ def test_an_unknown_joint_is_commissioned(joint, tmp_path):
             )
             received = peer.received['output_state']
             received.clear()
-            peer.wait_until(lambda: len(received) >= 1000, 'outputs')
+            peer.wait_until(lambda: len(received) >= 500, 'outputs')
     errors = [math.remainder(m.position[0] - truth[stamp_of(m)], math.tau) for m in received]
     assert max(map(abs, errors)) <= joint.tolerance

@@ -226,7 +226,7 @@ def _ratio(ratio: RatioEstimate, between: GearRatio, request: Request) -> Iterat
     else:
         teeth = f', that of {ratio.teeth} teeth, for example' if ratio.teeth else ''
         evidence = f'{ratio.plus_minus}, the only simple fraction{teeth}'
-        says = 'its sign is that of the ratio: they are relative as long as the gear is not given'
+        says = 'by convention; only a given ratio tells which of both encoders counts backwards'
     if request.teeth:
         yield Value('ring_teeth', request.teeth[0], evidence)
         yield Value('satellite_teeth', request.teeth[1], evidence)
