@@ -92,6 +92,8 @@ def _run(
 ) -> int:
     """Load a program and run it; returns its exit code, or `interrupted` after a signal."""
     _handle(stop_signals, lambda *_: os._exit(interrupted))  # nothing needs to be cleaned up yet
+    # The matrices are small: beside a node and drivers, threads of numpy wait for each other.
+    os.environ.setdefault('OPENBLAS_NUM_THREADS', '1')
     _open_closed_streams()
     try:
         return load()()

@@ -21,7 +21,6 @@ from gear_kinematics.measurement.encoder_step import step_of
 from gear_kinematics.measurement.recording import (
     Array,
     Encoders,
-    Loading,
     Recording,
     RecordingError,
     RotorMotion,
@@ -168,23 +167,17 @@ class States:
         elif not has_effort:
             raise BagError(f'{path}: {rotor} has no effort, and {no_encoder}')
         else:
-            locked = _locked(motion, effort, parameters, sources)
+            ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
+            step = step_of(sources.rotor_counts, motion.turned)
+            seconds = (stamp[known] - stamp[known][0]) / SECOND
+            torque, turned = float(ratio) * effort[known], motion.turned[known]
+            locked = locked_output(torque, turned, step, ratio, seconds)
         if has_effort:
             described.append(f'torque: effort of {rotor} times the ratio, N·m')
         return Recording(
             path, path.name, tuple(described), rows, self._start, encoders, locked,
             tuple(remarks), damage, no_encoder,
         )  # fmt: skip
-
-
-def _locked(
-    motion: RotorMotion, effort: Array, parameters: NodeParameters, sources: Sources
-) -> Loading:
-    ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
-    step = step_of(sources.rotor_counts, motion.turned)
-    seconds = (motion.stamp[known] - motion.stamp[known][0]) / SECOND
-    torque, turned = float(ratio) * effort[known], motion.turned[known]
-    return locked_output(torque, turned, step, ratio, seconds)
 
 
 def _measured(

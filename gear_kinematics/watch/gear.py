@@ -57,9 +57,8 @@ class GearNode:
         self.known = False  # whether it has told its parameters since it started
         self.fault = ''  # why these cannot be used
         self.restarts = -1  # how often it has been seen to start again
+        self.earlier: dict[str, Any] = {}  # parameters before their last change that was seen
         self.homed_zero: float | None = None  # rotor_zero after its last change that was seen
-        self.earlier_zero: float | None = None  # before that, to go back to
-        self.lost_zero: float | None = None  # `homed_zero`, if the node came back with another
         self.outputs: dict[str, str] = {}  # names of its topics by those without remapping
         self.heard: list[str] = []  # names of the topics that it hears
         self.inputs: dict[str, str] = {}  # those of them that are known, as in `outputs`
@@ -120,10 +119,6 @@ class GearNode:
         except RejectedInputError:
             return None
         return Joint(position, velocity, latest.age or 0.0)
-
-    def set_zero(self, zero: float) -> Future:
-        """Set `rotor_zero`, rad."""
-        return self._client.set_parameters([Parameter('rotor_zero', value=zero)])
 
     def reread(self) -> None:
         """Read the parameters once more."""
@@ -186,15 +181,19 @@ class GearNode:
         except ValueError as error:
             self.fault = str(error)
         else:
-            self._follow_zero(parameters.rotor_zero)
+            self._follow(parameters)
             self.parameters, self.fault, self.known = parameters, '', True
             self._deadline = math.inf
 
-    def _follow_zero(self, zero: float) -> None:
-        """See whether the zero has changed, or was lost when the node started again."""
+    def _follow(self, parameters: NodeParameters) -> None:
+        """See what has changed while the node ran."""
         if not (self.known and self.parameters):
-            self.earlier_zero = None
-            self.lost_zero = self.homed_zero if zero != self.homed_zero else None
-        elif zero != (before := self.parameters.rotor_zero):
-            self.earlier_zero = before if zero != self.earlier_zero else None  # that undoes it
-            self.homed_zero, self.lost_zero = zero, None
+            self.earlier = {}
+            return
+        before, now = self.parameters.values(), parameters.values()
+        changed = {name: value for name, value in before.items() if now.get(name) != value}
+        if changed:
+            undone = self.earlier == {name: now[name] for name in changed}
+            self.earlier = {} if undone else changed
+        if 'rotor_zero' in changed:
+            self.homed_zero = parameters.rotor_zero

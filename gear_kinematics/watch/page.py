@@ -49,7 +49,7 @@ _BODY = """\
 <p id="question" role="group" aria-label="home" hidden><span></span>
 <button type="button">Cancel</button> <button type="button">Set it</button></p>
 <p id="answer" role="status"></p>
-<p id="undo" hidden><button type="button">Undo Home</button></p>
+<p id="undo" hidden><button type="button">Undo</button> <span></span></p>
 <p id="command" hidden><code></code> <button type="button">Copy</button></p>
 <p id="recording"></p>
 </div>

@@ -141,14 +141,15 @@ def table(view: View, answer: Answer | None = None, *, asking: bool = False) -> 
     if asking and view.question:
         parts.append(Text(f'{view.question}   y yes   n no', 'bold'))
     record = 'stop recording' if view.recording else 'record'
-    undo = 'u undo home   ' if view.undo else ''
+    undo = printable(f'u undo: {view.undo} again   ') if view.undo else ''
     parts += [Text(), Text(f'h home   {undo}r {record}   q end', 'dim')]
     return Group(*parts)
 
 
 def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]) -> None:
     """Guide through commissioning until nothing is open, or a key or a signal ends it."""
-    due, said, shown = time.monotonic(), '', live.shown()
+    due, said, shown = time.monotonic(), '', live.shown
+    period = _REFRESH if console.is_terminal else _LINES
     with _keys() as key, Live(console=console, auto_refresh=False, transient=True) as screen:
         while not stopped() and shown.known < 1.0:
             live.poll()
@@ -159,12 +160,10 @@ def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]
                     return
             if time.monotonic() < due:
                 continue
-            shown = live.shown()
+            due, shown = due + period, live.shown
             if console.is_terminal:
-                due += _REFRESH
                 screen.update(progress(shown), refresh=True)
                 continue
-            due += _LINES
             known = '; '.join(f'{entry.name} {entry.value}' for entry in shown.entries)
             parts = f'{shown.known:.0%}', shown.advice, shown.heard, known
             if (new := printable(' | '.join(filter(None, parts)))) != said:

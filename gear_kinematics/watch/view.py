@@ -84,7 +84,7 @@ class View:
     rotor: float | None = None  # angle within the turn, degrees
     output: float | None = None
     question: str = ''  # to ask before homing; '' where there is nothing to home
-    undo: bool = False  # whether the last homing can be undone
+    undo: str = ''  # parameters before their last change, to go back to; '' where there is none
     gear: int = 0  # raised when the drawing of the gear may have changed
     commission: Commission | None = None  # while a gear is commissioned
 
@@ -153,9 +153,15 @@ def _homing(gear: GearNode) -> dict[str, Any]:
     where = 'Set the output'
     if output and not _freshness(output):
         where = f'The output is at {_degrees(output.position, 1)}. Set it'
+    earlier = ', '.join(f'{name} {shown(value)}' for name, value in gear.earlier.items())
     # Homing forgets the turns of a single-turn encoder.
-    undo = gear.earlier_zero is not None and not gear.parameters.single_turn
+    undo = '' if gear.parameters.single_turn else earlier
     return {'question': f'{where} to {home:.1f}°?', 'undo': undo}
+
+
+def shown(value: str | float) -> str:
+    """Write the value of a parameter."""
+    return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
 
 
 def values_of(gear: GearNode, rotor: Latest | None) -> Iterator[Entry]:
@@ -208,9 +214,9 @@ def _motion(output: Joint, gear: Gear) -> Iterator[Entry]:
 def _zero(gear: GearNode, zero: float) -> Entry:
     status = gear.statuses.get('rotor input')
     kept = status.values.get('home file', '') if status else ''
-    if gear.lost_zero is None:
+    if gear.homed_zero in (None, zero):
         return Entry('zero', f'{zero:.3f} rad', kept)
-    lost = f'homed before; the zero is lost: it was {gear.lost_zero:.3f} rad; {kept}'
+    lost = f'homed before; the zero is lost: it was {gear.homed_zero:.3f} rad; {kept}'
     return Entry('zero', f'{zero:.3f} rad', lost, 'notable')
 
 

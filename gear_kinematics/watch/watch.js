@@ -131,6 +131,7 @@
     set(record, recording ? 'Stop recording' : 'Record', recording ? 'on' : '');
     home.disabled = !now.question;
     undo.hidden = !now.undo;
+    set(undo.lastElementChild, `sets ${now.undo} again`);
     if (home.disabled) question.hidden = true;
     else fill(question, [now.question]);
     record.disabled = !recording && !running && !now.drivers.length;
@@ -190,7 +191,7 @@
   question.addEventListener('keydown', ({key}) => {
     if (key === 'Escape') ask(false);
   });
-  undo.addEventListener('click', () => send({do: 'undo'}));
+  undo.firstElementChild.addEventListener('click', () => send({do: 'undo'}));
   record.addEventListener('click', () => send({do: recording ? 'stop' : 'record'}));
   form.addEventListener('submit', event => {
     event.preventDefault();

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import replace
 from datetime import datetime
-from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Thread
@@ -16,13 +15,13 @@ from typing import Any, Self
 from rclpy.executors import SingleThreadedExecutor
 from std_srvs.srv import Trigger
 
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import GearRatio, Mechanism
 from gear_kinematics.measurement.commissioning.analysis import Request
 from gear_kinematics.parameters import NodeParameters, default_config
-from gear_kinematics.parameters.new_config import new_config, start_command, unused_name, write_new
+from gear_kinematics.parameters.new_config import new_config, unused_name, write_new
 from gear_kinematics.ros.live import replay_node
-from gear_kinematics.watch import commissioning, graph
-from gear_kinematics.watch.commissioning import LiveCommissioning
+from gear_kinematics.watch import graph
+from gear_kinematics.watch.commissioning import LiveCommissioning, written
 from gear_kinematics.watch.drivers import Driver, Drivers
 from gear_kinematics.watch.gear import GearNode
 from gear_kinematics.watch.recording import RECORDED_TYPES, Recording
@@ -60,9 +59,9 @@ class Watcher:
         self._others: list[str] = []
         self._recording: Recording | None = None
         self._live: LiveCommissioning | None = None
-        self._homings: list[Callable[[], bool]] = []
+        self._asked: list[Callable[[], bool]] = []  # whether the node's answer is awaited
         self._drawing = 0
-        self._failed = ''
+        self._failed = 'Recording begins as soon as there is a node.' if record else ''
         self._found: tuple[Driver, ...] = ()
 
     def __enter__(self) -> Self:
@@ -83,41 +82,38 @@ class Watcher:
         return self._do(self._home)
 
     def undo(self) -> 'Future[Answer]':
-        """Set the zero of the node to that before its last change."""
-        return self._do(partial(self._home, undo=True))
+        """Set parameters of the node to what they were before their last change."""
+        return self._do(self._undo)
 
     def record(self, path: Path | None = None) -> 'Future[Answer]':
         """Begin to record to a folder, by default to a new one in the working directory."""
-        return self._do(lambda answer: answer.set_result(self._record(path)))
+        return self._do(lambda _: self._record(path))
 
     def stop(self) -> 'Future[Answer]':
         """End the recording."""
-        return self._do(lambda answer: answer.set_result(self._stop()))
+        return self._do(lambda _: self._stop())
 
     def configure(self, topic: str, joint: str) -> 'Future[Answer]':
         """Write a parameter file for the joint of a driver into the working directory."""
-        return self._do(lambda answer: answer.set_result(self._configure(topic, joint)))
+        return self._do(lambda _: self._configure(topic, joint))
 
     def commission(self, request: Request, ratio: str) -> 'Future[Answer]':
         """Begin to hear the joints of a gear, or give another ratio, or '' for none."""
-
-        def begin(answer: 'Future[Answer]') -> None:
-            self._live = commissioning.begin(self._live, self._node, request, ratio.strip())
-            answer.set_result(Answer('', done=True))
-
-        return self._do(begin)
+        return self._do(lambda _: self._commission(request, ratio.strip()))
 
     def commissioning(self, step: str) -> 'Future[Answer]':
         """Do one of the steps zero_here, write, take and end."""
         return self._do(lambda answer: self._step(step, answer))
 
-    def _do(self, task: Callable[['Future[Answer]'], None]) -> 'Future[Answer]':
+    def _do(self, task: Callable[['Future[Answer]'], Answer | None]) -> 'Future[Answer]':
+        """Do a task in the thread of ROS; it answers, or keeps the future for later."""
         answer: Future[Answer] = Future()
         answer.set_running_or_notify_cancel()  # whoever waits cannot cancel it
 
         def run() -> None:
             try:
-                task(answer)
+                if told := task(answer):
+                    answer.set_result(told)
             except ValueError as error:
                 answer.set_result(Answer(str(error), done=False))
 
@@ -134,8 +130,7 @@ class Watcher:
                 try:
                     self._watch(executor)
                 finally:
-                    if self._live:
-                        self._live.close()
+                    self._end()
                     if self._recording:
                         self.exit_message = str(self._stop())
                     elif self._to_record:
@@ -161,7 +156,7 @@ class Watcher:
             if end >= next_look:
                 next_look = end + _LOOK
                 self._look()
-            self._homings = [pending for pending in self._homings if pending()]
+            self._asked = [pending for pending in self._asked if pending()]
             if self._recording and self._recording.status().error:
                 self._failed = str(self._stop())
             try:
@@ -176,11 +171,9 @@ class Watcher:
             if self._recording:
                 recorded = self._recording.status()
                 about = f'{recorded.path}: {recorded.seconds:.1f} s, {recorded}'
-                view = replace(view, recording=about, question='', undo=False)
-            commission = live.shown() if live else None
-            self.view = replace(
-                view, drivers=self._found, failure=self._failed, commission=commission
-            )
+                view = replace(view, recording=about, question='', undo='')
+            shown = live.shown if live else None
+            self.view = replace(view, drivers=self._found, failure=self._failed, commission=shown)
 
     def _look(self) -> None:
         """Look at the graph."""
@@ -218,42 +211,70 @@ class Watcher:
             self._drawing += 1
         return replace(view_of(gear, rotor, others), gear=self._drawing)
 
-    def _home(self, answer: 'Future[Answer]', *, undo: bool = False) -> None:
-        """Home the node, or set the zero that it had before."""
+    def _home(self, answer: 'Future[Answer]') -> None:
+        gear = self._changeable()
+        self._await(gear, gear.home.call_async(Trigger.Request()), answer)
+
+    def _undo(self, answer: 'Future[Answer]') -> None:
+        if not (words := self.view.undo):
+            raise ValueError('There is no change to undo.')
+        gear = self._changeable()
+        self._await(gear, gear.set(gear.earlier), answer, f'Undone: {words} again.')
+
+    def _changeable(self) -> GearNode:
+        """The node; raises ValueError if its parameters cannot be changed now."""
         gear = self._gear
         if self._recording:
-            raise ValueError('Stop the recording first: Home would move the zero within it.')
+            raise ValueError('Stop the recording first: the outputs would jump within it.')
         if not (gear and gear.running and gear.home.service_is_ready()):
-            raise ValueError('There is no node to home.')
-        if undo and not self.view.undo:
-            raise ValueError('There is no homing to undo.')
-        zero = gear.earlier_zero if undo else None
-        asked = gear.home.call_async(Trigger.Request()) if zero is None else gear.set_zero(zero)
+            raise ValueError('There is no node.')
+        return gear
+
+    def _await(self, gear: GearNode, asked: Any, answer: 'Future[Answer]', done: str = '') -> None:
+        """Answer when the node has homed, or what is done when it has set parameters."""
         deadline = time.monotonic() + _ANSWER
 
         def pending() -> bool:
             if asked.done():
-                answer.set_result(_homed(asked.result(), zero))
+                answer.set_result(_told(asked.result(), done))
                 gear.reread()
             elif time.monotonic() > deadline:
                 answer.set_result(Answer('The node does not answer.', done=False))
             return not answer.done()
 
-        self._homings.append(pending)
+        self._asked.append(pending)
 
-    def _step(self, step: str, answer: 'Future[Answer]') -> None:
+    def _commission(self, request: Request, ratio: str) -> Answer:
+        """Hear two joints; if these are heard already, only the ratio is another one."""
+        request = replace(request, ratio=GearRatio.parse(ratio) if ratio else None)
+        if request.rotor == request.output:
+            raise ValueError('Choose two joints: that of the rotor and that of the output.')
+        live = self._live
+        if live and (live.request.rotor, live.request.output) == (request.rotor, request.output):
+            live.request = replace(live.request, ratio=request.ratio)
+        else:
+            self._end()
+            self._live = LiveCommissioning(self._node, request)
+        return Answer('', done=True)
+
+    def _step(self, step: str, answer: 'Future[Answer]') -> Answer | None:
         if not (live := self._live):
             raise ValueError('Choose the joints first.')
         if step == 'take':
-            if self._recording:
-                raise ValueError('Stop the recording first: parameters would change within it.')
-            self._homings.append(live.take(self._gear, answer))
-        elif step == 'end':
-            live.close()
-            self._live = None
-            answer.set_result(Answer('', done=True))
-        else:
-            answer.set_result(live.write() if step == 'write' else live.zero_here())
+            gear = self._changeable()
+            values = live.changes(gear)
+            words = f'{gear.name} has taken {", ".join(values)}, until it ends'
+            self._await(gear, gear.set(values), answer, f'{words}; the file keeps them.')
+            return None
+        if step == 'end':
+            self._end()
+            return Answer('', done=True)
+        return live.write() if step == 'write' else live.zero_here()
+
+    def _end(self) -> None:
+        if self._live:
+            self._live.close()
+        self._live = None
 
     def _record(self, path: Path | None) -> Answer:
         if self._recording:
@@ -307,19 +328,15 @@ class Watcher:
     def _configure(self, topic: str, joint: str) -> Answer:
         if not any(driver.topic == topic and joint in driver.joints for driver in self._found):
             raise ValueError(f'There is no joint {joint} on {topic}.')
-        path = unused_name(Path(), default_config().name)
-        write_new(path, new_config(topic, joint, path.name))
-        command = start_command(topic, path.name)
-        return Answer(f'{path} is written. Start:', done=True, command=command)
+        return written(lambda name: new_config(topic, joint, name), topic)
 
 
-def _homed(result: Any, zero: float | None) -> Answer:
-    """Tell what came of homing, or of setting an earlier zero, rad, again."""
-    if zero is None:
-        return Answer(f'{result.message}.', result.success)
-    [outcome] = result.results
-    done = f'rotor_zero is {zero:.3f} rad again, as before homing.'
-    return Answer(done if outcome.successful else f'{outcome.reason}.', outcome.successful)
+def _told(answered: Any, done: str) -> Answer:
+    """What a node answers to Home, or what is done if it has set parameters."""
+    if not done:
+        return Answer(f'{answered.message}.', answered.success)
+    result = answered.result
+    return Answer(done if result.successful else f'{result.reason}.', result.successful)
 
 
 def _keep_parameters(parameters: NodeParameters, folder: Path) -> str:

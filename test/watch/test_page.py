@@ -202,9 +202,9 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     shown = float(re.search(r'rotor_zero (\S+) rad', answer.inner_text())[1])
     assert shown == pytest.approx(rotor_zero(), abs=6e-4) != 0.0
     expect(reading(connected, 'zero')).to_have_text(f'zero{shown:.3f} radnot kept: set home_file')
-    connected.get_by_role('button', name='Undo Home').focus()
+    connected.get_by_role('button', name='Undo').focus()
     connected.keyboard.press('Enter')
-    expect(answer).to_have_text('rotor_zero is 0.000 rad again, as before homing.')
+    expect(answer).to_have_text('Undone: rotor_zero 0 again.')
     expect(connected.locator('#undo')).to_be_hidden()
     assert rotor_zero() == 0.0
 

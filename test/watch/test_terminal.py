@@ -57,9 +57,9 @@ def test_table_in_a_terminal_homes_and_records_with_keys(tmp_path):
         terminal.wait_for('y yes   n no')
         terminal.type('y')
         terminal.wait_for(r'the shaft was at -?\d+\.\d° and is now 0\.0° \(rotor_zero ')
-        terminal.wait_for('u undo home')
+        terminal.wait_for('u undo: rotor_zero 0 again')
         terminal.type('u')
-        terminal.wait_for('rotor_zero is 0.000 rad again, as before homing.')
+        terminal.wait_for(r'Undone: rotor_zero 0 again\.')
         terminal.type('q')
         assert terminal.end() == 0
 
@@ -90,7 +90,7 @@ def test_commands_that_cannot_be_done_are_answered_with_the_cause(tmp_path, monk
 def test_drivers_are_recorded_where_there_is_no_node(tmp_path):
     with Watcher('/nobody/gear_state_publisher') as watcher:
         wait_until(lambda: watcher.view.drivers, 'drivers')
-        assert watcher.home().result(DEADLINE).text == 'There is no node to home.'
+        assert watcher.home().result(DEADLINE).text == 'There is no node.'
         path = tmp_path / 'drivers'
         assert watcher.record(path).result(DEADLINE).done
         wait_until(lambda: ', 1' in watcher.view.recording, 'messages')

@@ -99,8 +99,8 @@ def gear_node(**changes):
             'transmission error': Status('transmission error', 0, 'ok', values, time.monotonic()),
         },
         'joint': joints.get,
-        'earlier_zero': None,
-        'lost_zero': None,
+        'earlier': {},
+        'homed_zero': None,
     }
     return SimpleNamespace(**{**node, **changes})
 
@@ -197,16 +197,16 @@ def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     """Zeros as they are read, and None where the node starts again."""
     node = object.__new__(GearNode)
     node.known, node.parameters = False, None
-    node.homed_zero = node.earlier_zero = node.lost_zero = None
+    node.homed_zero, node.earlier = None, {}
     for zero in zeros:
         node._names, node.known = ['rotor_zero'], zero is not None and node.known
         if zero is not None:
             node._take_parameters([zero])
-    assert (node.earlier_zero, node.lost_zero) == (earlier, lost)
-    shown = {'earlier_zero': earlier, 'lost_zero': lost, 'parameters': node.parameters}
+    assert node.earlier == ({} if earlier is None else {'rotor_zero': earlier})
+    shown = {'earlier': node.earlier, 'homed_zero': node.homed_zero, 'parameters': node.parameters}
     view = view_of(gear_node(**shown), None, ())
     [entry] = [entry for entry in view.values if entry.name == 'zero']
-    assert view.undo == (earlier is not None)
+    assert view.undo == ('' if earlier is None else f'rotor_zero {earlier:g}')
     words = 'homed before; the zero is lost: it was 28.969 rad; not kept: set home_file'
     assert entry.tone == ('notable' if lost else '')
     assert entry.detail == (words if lost else 'not kept: set home_file')
@@ -221,7 +221,7 @@ def test_question_before_homing_says_where_the_output_is():
     assert view_of(gear_node(joint=silent), None, ()).question == 'Set the output to 0.0°?'
     assert view_of(gear_node(known=False), None, ()).question == ''
     single = replace(parameters, rotor_encoder='single_turn')
-    assert not view_of(gear_node(parameters=single, earlier_zero=0.0), None, ()).undo
+    assert not view_of(gear_node(parameters=single, earlier={'rotor_zero': 0.0}), None, ()).undo
 
 
 @pytest.mark.parametrize(('age', 'duration'), [(0.9, None), (5.74, '5.7 s'), (None, '')])
@@ -289,10 +289,10 @@ def test_table_shows_values_and_keys_and_without_a_node_the_drivers():
     for part in ('output angle', '12.5°', '● recording to monday', 'Recording to monday.'):
         assert part in text
     assert 'h home   r stop recording   q end' in text
-    asked = View(question='The output is at 61.5°. Set it to 0.0°?', undo=True)
+    asked = View(question='The output is at 61.5°. Set it to 0.0°?', undo='rotor_zero 0')
     text = printed(table(asked, asking=True))
     assert 'The output is at 61.5°. Set it to 0.0°?   y yes   n no' in text
-    assert 'h home   u undo home   r record   q end' in text
+    assert 'h home   u undo: rotor_zero 0 again   r record   q end' in text
     assert 'Set it' not in printed(table(asked))
     ended = View(state='ended', failure='monday: No space left on device')
     assert 'No space left' in printed(table(ended))
