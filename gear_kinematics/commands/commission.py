@@ -3,29 +3,44 @@
 
 import argparse
 import math
+from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import add_recordings, ratio_text, sources
 from gear_kinematics.commands.files import write_text
-from gear_kinematics.commands.guided import add_live, read_live
-from gear_kinematics.commands.output import message_progress
+from gear_kinematics.commands.joints import choose_joint
+from gear_kinematics.commands.output import (
+    Console,
+    complain,
+    message_progress,
+    warn_of_shared_memory,
+)
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.commissioning import Request, actuator_file, commission
+from gear_kinematics.measurement.commissioning import Channel, Request, actuator_file, commission
 from gear_kinematics.measurement.commissioning.check import judge
 from gear_kinematics.measurement.commissioning.document import check_document, document
-from gear_kinematics.measurement.commissioning.reading import Read, read_positions
+from gear_kinematics.measurement.commissioning.reading import read_positions
 from gear_kinematics.measurement.ratio import ENCODER_ERROR
+from gear_kinematics.measurement.recording import Encoders, Recording
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
+
+_WAIT = 4.0  # s; a driver may find this listener only when it announces itself, every 3 s
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     add_recordings(parser, 'rotor', 'output', 'time', configured=False)
-    add_live(parser)
-    arguments.group(parser, 'recording').add_argument(
+    recording = arguments.group(parser, 'recording')
+    recording.add_argument(
+        '--live',
+        action='store_true',
+        help='hear the drivers now, and guide through turning the output by hand; Enter ends it',
+    )
+    recording.add_argument(
         '--encoder-joint', metavar='NAME', help='of the output (default: the only one)'
     )
     gear = arguments.group(parser, 'gear')
@@ -38,6 +53,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     known.add_argument(
         '--teeth', type=_teeth, metavar='ZK/ZS', help='confirm the teeth of ring gear/satellite'
+    )
+    known.add_argument(
+        '--check', type=Path, metavar='FILE', help='judge this parameter file, and write none'
     )
     gear.add_argument(
         '--encoder-error',
@@ -61,55 +79,96 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar='FILE',
         help='the parameter file; - is stdout (default: %(default)s); replaces nothing',
     )
-    output.add_argument(
-        '--check', type=Path, metavar='FILE', help='judge this parameter file, and write none'
-    )
     arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
     add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Write a parameter file, or judge one."""
-    path = Path(options.output)
+    path, to_stdout = Path(options.output), options.output == '-'
     others = {} if options.check else {'-o': options.output}
-    if others and options.output != '-' and (path.exists() or path.is_symlink()):
+    if others and not to_stdout and (path.exists() or path.is_symlink()):
         raise ValueError(f'{path}: exists already; give another name with -o')
+    if options.live == bool(options.recordings):
+        raise ValueError('name recordings, or --live, which hears the drivers instead')
     reporter = Reporter(options, others=others, brief=not options.verbose)
     file = NodeParameters.load(options.check) if options.check else None
-    if options.live:
-        known = Request(ratio=_ratio(options), encoder_error=math.radians(options.encoder_error))
-        read = [read_live(options, known)]
-    else:
-        read = [_read(options, recording) for recording in options.recordings]
-    if not read:
-        raise ValueError('name recordings, or --live')
-    if len({each[2:] for each in read}) > 1:
-        raise ValueError('the recordings have different topics or joints: are they of one gear?')
     request = Request(
-        rotor=read[0][2],
-        output=read[0][3],
-        ratio=_ratio(options),
+        ratio=file.gear.gear_ratio if file else _ratio(options),
         teeth=options.teeth,
         zero_here=options.zero_here,
         encoder_error=math.radians(options.encoder_error),
     )
-    result = commission([each[:2] for each in read], request)
+    likely = (file.rotor_joint, file.output_encoder_joint) if file else ('', '')
+    recordings, request = (_hear if options.live else _read)(options, request, likely)
+    result = commission(recordings, request)
     if file:
         judgements = list(judge(result, file))
         reporter.write(check_document(result, str(options.check), judgements), [options.check])
         failed = any(each.holds is False for each in judgements)
         return ExitCode.FAILED if failed else ExitCode.DONE
     if not result.fault:
-        text = actuator_file(result, path.name if options.output != '-' else default_config().name)
-        write_text('-', text) if options.output == '-' else write_new(path, text)
+        text = actuator_file(result, default_config().name if to_stdout else path.name)
+        write_text('-', text) if to_stdout else write_new(path, text)
+    elif to_stdout or options.quiet:  # where no report says it
+        complain(result.fault)
     reporter.write(document(result, options.output))
     return ExitCode.FAILED if result.fault else ExitCode.DONE
 
 
-def _read(options: argparse.Namespace, path: Path) -> Read:
+def _read(
+    options: argparse.Namespace, request: Request, likely: tuple[str, str]
+) -> tuple[list[tuple[Recording, Encoders]], Request]:
+    """Read the recordings; likely joints are taken where they exist and no option names others."""
     joints = options.joint, options.encoder_joint
-    with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-        return read_positions(path, sources(options), joints, progress)
+    recordings, channels = [], set()
+    for path in options.recordings:
+        with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
+            read = read_positions(path, sources(options), joints, progress, likely)
+        recordings.append(read[:2])
+        channels.add(read[2:])
+    if len(channels) > 1:
+        raise ValueError('the recordings have different topics or joints: are they of one gear?')
+    [(rotor, output)] = channels
+    return recordings, replace(request, rotor=rotor, output=output)
+
+
+def _hear(
+    options: argparse.Namespace, request: Request, likely: tuple[str, str]
+) -> tuple[list[tuple[Recording, Encoders]], Request]:
+    """Hear both encoders until they tell what is needed, or the user ends it.
+
+    Raises:
+        KeyboardInterrupt: on SIGINT or SIGTERM.
+        ValueError: if there is nothing to hear.
+    """
+    warn_of_shared_memory(participants=1)
+    # These need ROS, unlike most commands.
+    from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
+    from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
+    from gear_kinematics.watch.commissioning import LiveCommissioning  # noqa: PLC0415
+    from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
+    from gear_kinematics.watch.text import guide, list_drivers  # noqa: PLC0415
+
+    console, drivers = Console(stderr=True), listen(_WAIT)
+    list_drivers(drivers, console)
+    heard = {joint for driver in drivers for joint in driver.joints}
+    usual = [joint if joint in heard else None for joint in likely]
+    given = options.rotor_topic, options.joint or usual[0]
+    rotor = choose_joint(drivers, given, 'rotor', '--rotor-topic and --joint')
+    given = options.encoder_topic, options.encoder_joint or usual[1]
+    output = choose_joint(drivers, given, 'output', '--encoder-topic and --encoder-joint', rotor)
+    request = replace(request, rotor=Channel(*rotor), output=Channel(*output))
+    with stopped_by_signals() as stopped, replay_node('') as node:
+        live = LiveCommissioning(node, request, once=True)
+        with closing(live):
+            guide(live, console, stopped)
+        if stopped():
+            raise KeyboardInterrupt
+        live.finish()
+    if not live.collected:
+        raise ValueError(live.fault)
+    return [live.collected], live.request
 
 
 def _ratio(options: argparse.Namespace) -> GearRatio | None:

@@ -180,8 +180,8 @@ def estimate_ratio(
         kept = np.flatnonzero(way * (times - late >= times[0]) * (times - late <= times[-1]))
         kept = kept[:: -(-len(kept) // _SAMPLES[1]) or 1]
         if len(kept) < _SAMPLES[0]:
-            few = f'{len(kept)} samples in motion are too few to estimate the ratio'
-            raise RecordingError(f'{few}, which takes at least {_SAMPLES[0]}')
+            few = f'{len(kept)} samples in motion are too few'
+            raise RecordingError(f'{few}; turn the output until there are {_SAMPLES[0]}')
         around = [times[kept] - late + step for step in (-_STEP, 0.0, _STEP)]
         early, at, after = (np.interp(when, times, rotor) for when in around)
         # The measured angle must not explain itself: errors are periodic in that of the rotor.

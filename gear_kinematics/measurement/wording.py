@@ -19,6 +19,8 @@ PERCENT = f'{100.0 * COVERAGE:g} %'
 """Probability with which an interval contains the value."""
 _EXACT = 1e-5
 """Relative uncertainty below which values are rounded to six digits."""
+_TINY = 1e-9
+"""Uncertainty below which small values have an exponent instead of zeros."""
 
 
 def plus_minus(estimate: Estimate | None, scale: float = 1.0) -> str:
@@ -40,7 +42,7 @@ def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
     if not spread:
         return number(value, 4), '' if spread is None else '0'
     spread *= scale
-    if spread < abs(value) * _EXACT:
+    if spread < max(abs(value) * _EXACT, _TINY):
         return number(value, 6), number(spread, 2)
     decimals = max(0, 1 - math.floor(math.log10(spread)))
     # Zero must have no sign.

@@ -182,10 +182,12 @@ def _progress(result: Commissioning, heard: str) -> Commission:
     advice = GUIDE
     if known == 1.0:
         advice = f'All is known that is needed: {result.answer}'
+    elif ratio and ratio.advice and not result.request.ratio:
+        advice = f'Go on: {ratio.advice}, or give the ratio on the nameplate.'
     elif min(turned) == 1.0:
         advice = result.fault or 'Go on: turn the rotor by more than a turn.'
-        if ratio and ratio.advice and not result.request.ratio:
-            advice = f'Go on: {ratio.advice}, or give the ratio on the nameplate.'
+        if not ratio and result.travel:
+            advice = 'Go on turning the output, slowly: there is not enough motion yet.'
     entries = [Entry(v.name, shown(v.value), v.evidence) for v in result.values]
     for left in result.open:
         so_far = ratio.plus_minus if ratio and left.what == 'ratio' else 'open'

@@ -68,7 +68,13 @@ def test_open_ratio_writes_nothing_unless_it_is_confirmed(positions, tmp_path, c
     csv = write_csv(tmp_path / 'short.csv', **{n: np.repeat(v, 3) for n, v in rows.items()})
     target = tmp_path / 'a.yaml'
     assert main(['commission', str(csv), '-o', str(target)]) == 1
-    assert 'The ratio is open: -' in capsys.readouterr().out
+    assert capsys.readouterr().out.startswith('short.csv: The ratio is open: -')
+    for silent in (['-o', '-'], ['-o', str(target), '--quiet']):
+        assert main(['commission', str(csv), *silent]) == 1
+        out, err = capsys.readouterr()
+        assert not out
+        assert err.startswith('gearkin: The ratio is open: -')
+        assert err.count('\n') == 1
     assert not target.exists()
     assert main(['commission', str(csv), '-o', str(target), '--teeth', '80/70']) == 1
     assert not target.exists()
@@ -123,29 +129,71 @@ def test_what_is_no_recording_is_refused_in_a_line(rows, said, tmp_path):
     assert said in refusal('commission', write_csv(tmp_path / 'a.csv', **rows))
 
 
-@pytest.fixture(scope='module')
-def one_topic(positions, tmp_path_factory):
-    """Give a bag in which both encoders are joints of a topic, beside another."""
-    path = tmp_path_factory.mktemp('bags') / 'joints'
-    template = JointStateTemplate(['motor', 'arm'], velocity=False, effort=False)
-    with BagWriter(path) as writer:
-        for topic in ('/joint_states', '/other'):
-            writer.add_topic(topic, 'sensor_msgs/msg/JointState')
-        for stamp, *row in zip(stamps(positions[0]).tolist(), *positions[1:], strict=True):
-            for topic in ('/joint_states', '/other'):
-                writer.write(topic, stamp, template.encode(stamp, row))
-    return path
+def joint_states(folder, positions, **topics):
+    """Write a bag with topics of joints: of `m`, the rotor; of all others, the output."""
+    with BagWriter(folder / 'bag') as writer:
+        for topic in topics:
+            writer.add_topic(f'/{topic}', 'sensor_msgs/msg/JointState')
+        for stamp, rotor, output in zip(
+            stamps(positions[0]).tolist(), *positions[1:], strict=True
+        ):
+            for topic, joints in topics.items():
+                template = JointStateTemplate(joints, velocity=False, effort=False)
+                values = [rotor if joint == 'm' else output for joint in joints]
+                writer.write(f'/{topic}', stamp, template.encode(stamp, values))
+    return folder / 'bag'
 
 
-def test_topics_and_joints_that_are_several_are_named(one_topic, tmp_path):
-    said = refusal('commission', one_topic)
-    assert 'which topic is rotor_state? /joint_states (joints arm, motor), /other' in said
-    given = ['--rotor-topic', '/joint_states', '--encoder-topic', '/joint_states']
-    said = refusal('commission', one_topic, *given)
-    assert 'which joint of /joint_states (joints arm, motor)? Name it with --joint' in said
-    given += ['--joint', 'motor', '--encoder-joint', 'arm', '-o', str(tmp_path / 'a.yaml')]
-    assert main(['commission', str(one_topic), *given]) == 0
-    assert NodeParameters.load(tmp_path / 'a.yaml').output_encoder_joint == 'arm'
+@pytest.mark.parametrize(
+    ('topics', 'options', 'said'),
+    [
+        (
+            {'a': ['m', 'o'], 'b': ['p', 'q']},
+            '',
+            'which topic is rotor_state? /a (joints m, o), /b (joints p, q); name it with --rotor',
+        ),
+        (
+            {'a': ['m', 'o'], 'b': ['p']},
+            '--rotor-topic /a',
+            'which joint of /a (joints m, o)? Name it with --joint',
+        ),
+        ({'a': ['m']}, '', 'no output_encoder; name its topic with --encoder-topic'),
+        (
+            {'a': ['m'], 'b': ['o'], 'c': ['p']},
+            '--joint m',
+            'no output_encoder; name its topic with --encoder-topic; there are: /a, /b, /c',
+        ),
+    ],
+)
+def test_topics_and_joints_that_are_missing_or_several_are_named(
+    topics, options, said, positions, tmp_path
+):
+    bag = joint_states(tmp_path, [each[:9] for each in positions], **topics)
+    assert said in refusal('commission', bag, *options.split())
+
+
+@pytest.mark.parametrize(
+    ('topics', 'options'),
+    [
+        ({'a': ['m', 'n'], 'b': ['o']}, '--joint m'),  # the only other topic
+        ({'a': ['m', 'o']}, '--joint m --encoder-joint o'),
+        ({'a': ['m'], 'b': ['o'], 'c': ['p']}, '--joint m --encoder-joint o'),
+    ],
+)
+def test_joints_are_found_and_a_check_takes_those_of_the_file(
+    topics, options, positions, tmp_path, capsys
+):
+    bag = str(joint_states(tmp_path, positions, **topics))
+    file = tmp_path / 'a.yaml'
+    assert main(['commission', bag, '-o', str(file), *options.split()]) == 0
+    assert NodeParameters.load(file).output_encoder_joint == 'o'
+    assert main(['commission', bag, '--check', str(file)]) == 0
+    file.write_text(
+        file.read_text().replace("output_encoder_joint: 'o'", "output_encoder_joint: 'x'")
+    )
+    capsys.readouterr()
+    assert main(['commission', bag, '--check', str(file), *options.split()]) == 1
+    assert "output_encoder_joint is 'x', but o" in capsys.readouterr().out
 
 
 @pytest.mark.slow

@@ -110,6 +110,7 @@ def test_figures_that_their_uncertainty_exceeds_stand_out():
         (531.7, 134.2, ('532', '134')),
         (2.0, 0.0, ('2', '0')),
         (1 / 3, 1e-13, ('0.333333', '1e-13')),
+        (3e-15, 4.4e-14, ('3e-15', '4.4e-14')),
     ],
 )
 def test_values_are_written_to_the_second_digit_of_their_uncertainty(value, spread, written):

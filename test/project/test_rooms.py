@@ -274,7 +274,7 @@ def test_imports_within_bag_point_one_way(imports):
 
 def test_commands_import_nothing_of_each_other(imports):
     shared = ('arguments', 'bags', 'drawing', 'encoders', 'extras', 'files', 'output', 'pins')
-    shared += ('reporter', 'guided', 'joints')
+    shared += ('reporter', 'joints')
     commands = {Path(path).stem for path in imports if path.startswith('commands/')}
     commands -= {'__init__', 'cli', *shared}
     assert {'validate', 'compute', 'plot'} < commands

@@ -59,6 +59,7 @@ def hear(monkeypatch, degrees, ratio='', *, seconds=8.0, lost=0, most=40_000):
     [
         (0.0, '', GUIDE, 0.0),
         (40.0, '121', GUIDE, 0.5 * 40.0 / 60.0 + 0.5),
+        (40.0, '', r'Go on: turn the output by 390° or more .*', 0.5 * 40.0 / 60.0 + 0.25),
         (90.0, '', r'Go on: turn the output by .*, or give the ratio on the nameplate\.', 0.75),
         (90.0, '100', 'The given ratio 100 does not agree with the measured -12.*', 0.75),
         (90.0, '121', r'All is known that is needed: The gear has the ratio 121 .*', 1.0),
@@ -71,6 +72,11 @@ def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice
     assert ('turned' not in shown.heard) == (not degrees) or (
         f'turned {degrees:.0f}° on and {degrees:.0f}° back' in shown.heard
     )
+
+
+def test_too_few_samples_are_no_fault_but_advice(monkeypatch):
+    shown = hear(monkeypatch, 90.0, most=400).shown()
+    assert shown.advice == 'Go on turning the output, slowly: there is not enough motion yet.'
 
 
 def test_parameters_are_those_of_the_gear(monkeypatch):

@@ -282,7 +282,8 @@ def _zeros(
     zero, why = 0.0, 'the zero of the encoder is kept'
     if zero_here is not None:
         zero = float(last.encoders.measured[last.row_at(zero_here)])
-        why = f'the output angle is 0 at {zero_here} of {last.recording.name}'
+        at = zero_here if isinstance(zero_here, str) else f'{zero_here:.10g} s'
+        why = f'the output angle is 0 at {at} of {last.recording.name}'
     rotor = last.zeros(between) + float(between) * zero
     mean, spread = float(np.mean(rotor)), float(np.ptp(rotor)) / abs(float(between))
     evidence = f'both encoders then agree on average, within {number(math.degrees(spread))}°'

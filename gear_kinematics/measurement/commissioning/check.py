@@ -31,32 +31,31 @@ def judge(result: Commissioning, file: NodeParameters) -> Iterator[Judgement]:
         ('rotor_joint', result.request.rotor),
         ('output_encoder_joint', result.request.output),
     ):
-        written = getattr(file, name)
-        holds = written in ('', channel.joint) if channel.joint else None
-        yield Judgement(name, repr(written), channel.joint or 'a CSV file has no names', holds)
+        if found := channel.joint:  # a CSV file has none
+            written = getattr(file, name)
+            yield Judgement(name, repr(written), found, written in ('', found))
     if fault := result.longest.unit_fault:
         yield Judgement('unit', 'rad', fault, holds=False)
     ratio, written = file.gear.gear_ratio, str(file.gear.gear_ratio)
     if result.ratio is None:
         yield Judgement('gear_ratio', written, result.fault, None)
         return
-    measured = result.ratio.measured
-    sign = file.rotor_direction * file.output_encoder_direction
     inside = agrees(ratio, result.ratio)
     yield Judgement('gear_ratio', written, result.ratio.plus_minus, inside)
-    turns = 'the same sense' if measured.value > 0.0 else 'opposite senses'
+    same = result.ratio.measured.value > 0.0
+    right = (file.rotor_direction * file.output_encoder_direction * ratio > 0) == same
     yield Judgement(
         'rotor_direction',
         f'{file.rotor_direction}, output_encoder_direction {file.output_encoder_direction}',
-        f'the encoders count in {turns}',
-        holds=bool(sign * ratio * measured.value > 0.0),
+        f'the encoders count in {"the same sense" if same else "opposite senses"}',
+        right,
     )
     kind = next((value for value in result.values if value.name == 'rotor_encoder'), None)
     if kind:
         # Positions of any range are used within the turn where the file says single_turn.
         fits = kind.value == file.rotor_encoder or file.single_turn
         yield Judgement(kind.name, file.rotor_encoder, f'{kind.value}: {kind.evidence}', fits)
-    if inside and sign * ratio * measured.value > 0.0:
+    if inside and right:
         yield _zero(result, file)
     if speed := result.longest.greatest_speed:
         seen, most = f'{number(speed)} rad/s', file.max_rotor_speed
@@ -67,19 +66,18 @@ def _zero(result: Commissioning, file: NodeParameters) -> Judgement:
     """Compare the output angles by both encoders, as the node computes them."""
     last, ratio = result.joints[-1], file.gear.gear_ratio
     by_rotor = file.rotor_direction * (last.turned - file.rotor_zero) / float(ratio)
-    measured = last.encoders.measured - file.output_encoder_zero
-    error = file.output_encoder_direction * measured - by_rotor
+    measured = file.output_encoder_direction * (last.encoders.measured - file.output_encoder_zero)
+    error = measured - by_rotor
     allowed = max(float(np.ptp(error)), result.request.encoder_error)
-    off = float(np.mean(error))
+    period = math.inf
     if file.single_turn:  # turns of the rotor are unknown at the start
-        off = math.remainder(off, TURN / abs(ratio.numerator))
-        if allowed >= TURN / abs(ratio.numerator) / 2:
-            allowed = math.inf
+        period = TURN / abs(ratio.numerator)
     elif last.output.wraps:
-        off = math.remainder(off, TURN)
+        period = TURN
+    off = math.remainder(float(np.mean(error)), period)
     shown = f'{file.rotor_zero:.6f}, output_encoder_zero {file.output_encoder_zero:.6f}'
-    degrees = f'{math.degrees(off):.3f}° apart'
-    if math.isinf(allowed) or getattr(file, 'output_encoder_reference', 'none') == 'absolute':
+    degrees = f'{round(math.degrees(off), 3) + 0.0:.3f}° apart'  # zero has no sign
+    if allowed >= period / 2.0 or file.output_encoder_reference == 'absolute':
         return Judgement('rotor_zero', shown, f'{degrees}: nothing is told by that', None)
     right = file.rotor_zero - file.rotor_direction * float(ratio) * off
     found = f'{right:.6f}: both encoders are {degrees}, of which {math.degrees(allowed):.3f}° are '

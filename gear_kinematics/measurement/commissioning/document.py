@@ -1,12 +1,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The reports on the commissioning of a gear, and on the check of a parameter file."""
 
-import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning
 from gear_kinematics.measurement.commissioning.check import Judgement
 from gear_kinematics.measurement.envelope import envelope
@@ -35,24 +35,23 @@ def document(result: Commissioning, target: str) -> Document:
     values = Table.of_items(
         {
             'parameter': lambda value: value.name,
-            'value': lambda value: printable(str(value.value)),
+            'value': lambda value: _shown(value.value),
             'evidence': lambda value: printable(value.evidence),
         },
         result.values,
         ('', 'value', 'evidence'),
     )
-    verdict = Verdict.FAIL if result.fault else Verdict.PASS
-    return _document('gearkin commission', result, answer, verdict, values)
+    return _document('gearkin commission', result, answer, values)
 
 
 def check_document(result: Commissioning, file: str, judgements: Sequence[Judgement]) -> Document:
     """Return the document on the check of a parameter file."""
     wrong = [each for each in judgements if each.holds is False]
     left = ', '.join(each.name for each in judgements if each.holds is None)
-    answer = '; '.join(f'{each.name} is {each.written}, but {each.found}' for each in wrong)
-    answer = (
-        f'{file} is contradicted: {answer}.' if wrong else f'{file} agrees with the recording.'
-    )
+    answer = f'{file} agrees with the recording.'
+    if wrong:
+        what = '; '.join(f'{each.name} is {each.written}, but {each.found}' for each in wrong)
+        answer = f'{file} is contradicted: {what}.'
     answer += f' Left open: {left}.' if left else ''
     table = Table.of_items(
         {
@@ -65,17 +64,16 @@ def check_document(result: Commissioning, file: str, judgements: Sequence[Judgem
         ('', 'file', 'recording', 'state'),
     )
     verdict = Verdict.FAIL if wrong else Verdict.PASS
-    found = {'judgements': plain(tuple(judgements))}
-    return _document('gearkin commission --check', result, answer, verdict, table, **found)
+    made = _document('gearkin commission --check', result, answer, table, verdict)
+    return replace(made, data={**made.data, 'judgements': plain(tuple(judgements))})
 
 
 def _document(
     title: str,
     result: Commissioning,
     answer: str,
-    verdict: Verdict,
     table: Table,
-    **data: Any,
+    verdict: Verdict | None = None,
 ) -> Document:
     left = Table.of_items(
         {
@@ -89,8 +87,9 @@ def _document(
     remarks = list(result.notes)
     for joint in result.joints:
         remarks += [f'{joint.recording.name}: {sentence}' for sentence in joint.sentences]
+    names = [joint.recording.name for joint in result.joints]
     section = Section(
-        ', '.join(printable(joint.recording.name) for joint in result.joints),
+        printable(', '.join(names)),
         (table, left),
         verdict,
         (Finding('finding', printable(answer)),),
@@ -98,7 +97,9 @@ def _document(
         Figure(tuple(_panels(result))),
     )
     ratio = result.ratio
-    data |= {
+    data = {
+        'schema': 'gear_kinematics/commissioning',
+        'version': 1,
         'answer': answer,
         'ratio': plain(ratio.measured) if ratio else None,
         'gear_ratio': plain(result.request.ratio or result.between) if result.between else None,
@@ -109,41 +110,34 @@ def _document(
         'open': plain(result.open),
         'delay': plain(result.delay),
         'remarks': remarks,
-        'recordings': [joint.recording.name for joint in result.joints],
+        'recordings': names,
     }
-    head = {'schema': 'gear_kinematics/commissioning', 'version': 1}
-    return Document(title, (section,), head | data, verdict)
+    return Document(title, (section,), data, verdict)
 
 
-def _panels(result: Commissioning) -> list[Panel]:
+def _shown(value: str | float) -> str:
+    return f'{value:.6f}' if isinstance(value, float) else printable(str(value))
+
+
+def _panels(result: Commissioning) -> Iterator[Panel]:
     """Draw the rotor over the output with the fitted line, and what is left over it."""
-    joint, turns, degrees = result.longest, 1.0 / math.tau, 180.0 / math.pi
-    output = joint.encoders.measured * degrees
-    lines = [Line('recorded', Pen.THIRD, *envelope(output, joint.turned * turns))]
-    label = 'output angle [°]'
-    if result.ratio is None:
-        return [Panel('rotor over output', label, 'rotor [turns]', tuple(lines))]
-    slope = float(result.between or result.ratio.measured.value)
-    zeros = joint.turned - slope * joint.encoders.measured
-    ends = np.array([output.min(), output.max()])
-    fitted = slope * ends / 360.0 + np.mean(zeros) * turns
-    ratio = str(result.between or result.ratio.plus_minus)
-    lines.append(Line(f'ratio {ratio}', Pen.MODEL, ends, fitted))
-    left = (np.mean(zeros) - zeros) / slope * degrees
-    way = np.gradient(joint.turned) * slope
-    return [
-        Panel('rotor over output', label, 'rotor [turns]', tuple(lines)),
-        Panel(
-            'error about the line',
-            label,
-            'measured less computed output [°]',
-            tuple(
-                Line(name, pen, *envelope(output[rows], left[rows]))
-                for name, pen, rows in (
-                    ('forward', Pen.FIRST, way >= 0.0),
-                    ('backward', Pen.SECOND, way < 0.0),
-                )
-                if rows.any()
-            ),
-        ),
-    ]
+    joint, ratio, label = result.longest, result.ratio, 'output angle [°]'
+    output, rotor = np.degrees(joint.encoders.measured), joint.turned / TURN
+    lines = [Line('recorded', Pen.THIRD, *envelope(output, rotor))]
+    if ratio:
+        slope = float(result.between or ratio.measured.value) / 360.0  # turns per degree
+        zero = np.mean(rotor - slope * output)
+        ends = np.array([output.min(), output.max()])
+        name = f'ratio {result.between or ratio.plus_minus}'
+        lines.append(Line(name, Pen.MODEL, ends, slope * ends + zero))
+    yield Panel('rotor over output', label, 'rotor [turns]', tuple(lines))
+    if ratio:
+        error, forward = output - (rotor - zero) / slope, np.gradient(rotor) * slope >= 0.0
+        ways = ('forward', Pen.FIRST, forward), ('backward', Pen.SECOND, ~forward)
+        errors = (
+            Line(name, pen, *envelope(output[rows], error[rows]))
+            for name, pen, rows in ways
+            if rows.any()
+        )
+        title = 'measured less computed output [°]'
+        yield Panel('error about the line', label, title, tuple(errors))

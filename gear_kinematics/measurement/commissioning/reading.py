@@ -6,7 +6,14 @@ from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.bag import Bag, ReportProgress
-from gear_kinematics.bag.roles import described, find_encoder_topic, find_rotor_topic, joints_on
+from gear_kinematics.bag.roles import (
+    described,
+    find_encoder_topic,
+    find_rotor_topic,
+    joints_on,
+    missing_encoder,
+    other_topic,
+)
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.measurement.commissioning.joint import Joint
@@ -23,6 +30,7 @@ def read_positions(
     sources: Sources,
     joints: Sequence[str | None],
     progress: ReportProgress | None = None,
+    likely: Sequence[str] = ('', ''),
 ) -> Read:
     """Read the positions of both encoders as they were recorded.
 
@@ -31,26 +39,29 @@ def read_positions(
         sources: what is known of its columns or topics.
         joints: of rotor and output in a bag; None: the only ones on their topics.
         progress: see `read_encoders`.
+        likely: joints of rotor and output, which are taken where a topic has them.
 
     Returns:
         The recording, its encoders, and where the rotor and the output are heard.
 
     Raises:
-        BagError, RecordingError: see `read_encoders`; if a topic has several joints.
+        BagError, RecordingError: see `read_encoders`; if topics or joints are missing, or several.
     """
     channels = [Channel(), Channel()]
     if not is_csv(path):
         with Bag(path) as bag:
-            rotor = find_rotor_topic(bag, sources.rotor_topic, joints[0] or '')
+            rotor = find_rotor_topic(bag, sources.rotor_topic, joints[0] or likely[0])
             output = find_encoder_topic(bag, sources.encoder_topic)
+            output = output or other_topic(bag, rotor, joints[1] or likely[1])
+            if not output:
+                raise RecordingError(f'{path}: {missing_encoder(bag)}')
             sources = replace(sources, rotor_topic=rotor, encoder_topic=output)
-            heard = joints_on(bag, [topic for topic in (rotor, output) if topic])
+            heard = joints_on(bag, [rotor, output])
         channels = [
-            Channel(topic, joint or _only(path, topic, heard[topic], option))
-            for topic, joint, option in zip(
-                (rotor, output), joints, ('--joint', '--encoder-joint'), strict=True
+            Channel(topic, joint or _only(path, topic, heard[topic], usual, option))
+            for topic, joint, usual, option in zip(
+                (rotor, output), joints, likely, ('--joint', '--encoder-joint'), strict=True
             )
-            if topic
         ]
     parameters = replace(
         NodeParameters.load(),  # the defaults, with which positions stay as they are
@@ -66,7 +77,9 @@ def read_positions(
     return recording, encoders, channels[0], channels[-1]
 
 
-def _only(path: Path, topic: str, heard: Sequence[str], option: str) -> str:
+def _only(path: Path, topic: str, heard: Sequence[str], likely: str, option: str) -> str:
+    if likely in heard:
+        return likely
     if len(heard) > 1:
         raise RecordingError(
             f'{path}: which joint of {topic}{described(heard)}? Name it with {option}'
