@@ -4,6 +4,7 @@
 import math
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -32,12 +33,17 @@ def wrapped(angle, turn, low=0.0):
     return low + np.remainder(angle - low, turn)
 
 
+@cache
+def driven(ratio, profile):
+    drive = Drive(ratio=ratio, errors={1.0: 5e-4}, noise=5e-5, rotor_step=TURN / 2**14)
+    return drive.readings(profile, 40.0, rate=100.0)
+
+
 def readings(
     ratio=-19.0, senses=(1, 1), zeros=(0.0, 0.0), wraps=(False, False), low=0.0, profile=FULL_TURN
 ):
     """Times, and positions of rotor and output of a real gear, rad."""
-    drive = Drive(ratio=float(ratio), errors={1.0: 5e-4}, noise=5e-5, rotor_step=TURN / 2**14)
-    times, *angles = drive.readings(profile, 40.0, rate=100.0)
+    times, *angles = driven(float(ratio), profile)
     rotor, output = (
         sense * angle + zero for sense, angle, zero in zip(senses, angles, zeros, strict=True)
     )
@@ -140,7 +146,12 @@ def test_power_cycle_between_recordings(change, kind, evidence):
         change % TURN if kind == 'single_turn' else change, abs=0.02
     )
     assert ('next power cycle' in after.evidence) == (change == 1.9)
-    assert 'zero of the rotor after a power cycle' in opened(commissioned(first))
+    alone = commissioned(first)
+    assert 'zero of the rotor after a power cycle' in opened(alone)
+    lines = actuator_file(alone).splitlines()
+    command = [line for line in lines if '--ros-args' in line]
+    assert len(command) == 1  # to be copied
+    assert max(len(line) for line in lines if line not in command) <= 110
 
 
 def test_less_than_a_rotor_turn_leaves_the_kind_open():
@@ -169,6 +180,7 @@ def test_positions_in_another_unit_are_told_and_give_no_file(unit, said):
     times, *angles = readings()
     result = commissioned(recorded(*unit(*angles), times))
     assert not result.between
+    assert all(each.advice for each in result.open)
     with pytest.raises(ValueError, match=said):
         actuator_file(result)
     if result.ratio:  # in the right unit, it is that of the gear
@@ -199,7 +211,7 @@ def test_zero_outside_of_the_recording_is_refused():
     [
         (lambda rotor, output: (output, rotor), 'rotor and output may be exchanged'),
         (lambda rotor, output: (0.0 * rotor, output), 'the rotor does not turn'),
-        (lambda rotor, output: (rotor, 0.0 * output), 'The ratio is open'),
+        (lambda rotor, output: (rotor, 0.0 * output), 'open: the output does not turn'),
         (lambda rotor, output: (rotor[:50], output[:50]), 'samples in motion are too few'),
     ],
 )

@@ -15,7 +15,8 @@ import numpy as np
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.commissioning.joint import Joint, moved
+from gear_kinematics.measurement.commissioning.joint import Joint
+from gear_kinematics.measurement.commissioning.positions import COUNTED
 from gear_kinematics.measurement.ratio import ENCODER_ERROR, RatioEstimate, estimate_ratio
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
 from gear_kinematics.measurement.transmission import transmission_figures
@@ -110,12 +111,8 @@ class Commissioning:
         """The result in a sentence."""
         if self.fault or self.ratio is None:
             return self.fault
-        if given := self.request.ratio:
-            return (
-                f'The gear has the ratio {given} (given, and agrees with {self.ratio.plus_minus}).'
-            )
-        seen = f'{self.ratio.plus_minus}, the only simple fraction'
-        return f'The gear has the ratio {self.between} ({seen}).'
+        given = self.request.ratio
+        return f'The gear has the ratio {given or self.between} ({_agreement(self.ratio, given)}).'
 
 
 def commission(
@@ -133,18 +130,16 @@ def commission(
     """
     joints = tuple(Joint.of(*recording) for recording in recordings)
     longest = max(joints, key=lambda joint: joint.travel)
-    encoders, ratio, between, delay = longest.encoders, None, None, None
-    fault = longest.unit_fault
-    if not longest.travel:
-        fault = fault or 'The ratio is open: the output does not turn.'
-    elif longest.rotor.turn and longest.output.turn:
+    encoders, error = longest.encoders, request.encoder_error
+    ratio, between, delay, fault = None, None, None, longest.unit_fault
+    if longest.rotor.turn and longest.output.turn:
         time = encoders.seconds if encoders.timed else None
         try:
-            ratio = estimate_ratio(longest.turned, encoders.measured, time, request.encoder_error)
-        except RecordingError as error:
-            fault = fault or f'The ratio is open: {error}.'
+            ratio = estimate_ratio(longest.turned, encoders.measured, time, error)
+        except RecordingError as why:
+            fault = fault or f'The ratio is open: {why}.'
         else:
-            fault = fault or _doubt(ratio, longest.travel, request)
+            fault = fault or _doubt(ratio, longest.travel, request.ratio)
     found: list[Value | Open | str] = list(_names(request))
     known = request.ratio or (ratio and ratio.taken)
     if ratio and known and not fault:
@@ -153,13 +148,15 @@ def commission(
         if encoders.timed:
             travel = default_value('transmission_error_travel')
             delay = transmission_figures(encoders, between, travel).delay
-    elif ratio:
+    elif ratio and ratio.advice:
         found.append(Open('ratio', f'{ratio.plus_minus}{_candidates(ratio)}', ratio.advice))
-    change = _change(joints, between, request.encoder_error)
-    kind = _kind(joints, change)
-    found += [kind, *([change] if isinstance(change, Open) else [])]
+    cycle = _power_cycle(joints, between, error)
+    single = cycle == _WITHIN or any(joint.rotor.wraps for joint in joints)
+    found.append(_kind(joints, cycle, single=single))
+    if isinstance(cycle, Open):
+        found.append(cycle)
     if between:
-        found += _zeros(joints[-1], between, request.zero_here, kind, change)
+        found += _zeros(joints[-1], between, request.zero_here, cycle, single=single)
     found += _motion(longest, delay)
     return Commissioning(
         request,
@@ -180,27 +177,22 @@ def agrees(given: GearRatio, ratio: RatioEstimate) -> bool:
     return ratio.fits(given) or ratio.fits(-given)
 
 
-def _doubt(ratio: RatioEstimate, travel: float, request: Request) -> str:
+def _doubt(ratio: RatioEstimate, travel: float, given: GearRatio | None) -> str:
     """Why the exact ratio is not known, in a sentence; else empty."""
-    measured, given = ratio.measured, request.ratio
+    seen = ratio.plus_minus
     if given:
-        if agrees(given, ratio):
-            return ''
+        wrong = f'The given ratio {given} does not agree with the measured {seen}'
+        return '' if agrees(given, ratio) else f'{wrong}{_candidates(ratio)}.'
+    if abs(ratio.measured.value) < 1.0:
         return (
-            f'The given ratio {given} does not agree with the measured {ratio.plus_minus}'
-            f'{_candidates(ratio)}.'
-        )
-    if abs(measured.value) < 1.0:
-        return (
-            f'The ratio is {ratio.plus_minus}: rotor and output may be exchanged; exchange them, '
+            f'The ratio is {seen}: rotor and output may be exchanged; exchange them, '
             f'or confirm with --ratio={ratio.simplest}.'
         )
     if ratio.taken:
         return ''
-    degrees = number(math.degrees(travel))
     return (
-        f'The ratio is open: {ratio.plus_minus} after {degrees}° of the output; {ratio.advice}, '
-        'or confirm with --ratio.'
+        f'The ratio is open: {seen} after {number(math.degrees(travel))}° of the output; '
+        f'{ratio.advice}, or confirm with --ratio.'
     )
 
 
@@ -208,6 +200,12 @@ def _candidates(ratio: RatioEstimate) -> str:
     """The simple fractions that fit, and the teeth, as the end of a clause."""
     fitting = f', such as {", ".join(map(str, ratio.candidates))}'
     return fitting + (f', or teeth such as {ratio.teeth}' if ratio.teeth else '')
+
+
+def _agreement(ratio: RatioEstimate, given: GearRatio | None) -> str:
+    """Why the exact ratio is the right one, as a clause."""
+    seen = ratio.plus_minus
+    return f'given, and agrees with {seen}' if given else f'{seen}, the only simple fraction'
 
 
 def _names(request: Request) -> Iterator[Value]:
@@ -218,14 +216,12 @@ def _names(request: Request) -> Iterator[Value]:
 
 
 def _ratio(ratio: RatioEstimate, between: GearRatio, request: Request) -> Iterator[Value]:
-    given, same = request.ratio, 1
+    given, evidence, same = request.ratio, _agreement(ratio, request.ratio), 1
     if given:
-        evidence = f'given, and agrees with {ratio.plus_minus}'
         same = 1 if given == between else -1
         says = f'the encoders turn {"as" if same > 0 else "against"} the sign of the ratio {given}'
     else:
-        teeth = f', that of {ratio.teeth} teeth, for example' if ratio.teeth else ''
-        evidence = f'{ratio.plus_minus}, the only simple fraction{teeth}'
+        evidence += f', that of {ratio.teeth} teeth, for example' if ratio.teeth else ''
         says = 'by convention; only a given ratio tells which of both encoders counts backwards'
     if request.teeth:
         yield Value('ring_teeth', request.teeth[0], evidence)
@@ -236,63 +232,67 @@ def _ratio(ratio: RatioEstimate, between: GearRatio, request: Request) -> Iterat
     yield Value('output_encoder_direction', 1, 'the sense of the encoder is kept')
 
 
-def _kind(joints: Sequence[Joint], change: str | Open) -> Value | Open:
-    """Find the kind of the rotor's encoder."""
-    most = max(joints, key=lambda joint: (joint.rotor.wraps, joint.rotor.turns)).rotor
-    told = '' if isinstance(change, Open) else f'; {change}'
-    seen = f'the rotor turned {number(most.turns)} turns'
-    if most.wraps:
-        return Value('rotor_encoder', 'single_turn', f'{most.evidence}{told}')
-    if change == _WITHIN:
-        return Value('rotor_encoder', 'single_turn', f'{seen}{told}')
-    if most.counts_turns:
-        return Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap{told}')
-    return Open('rotor_encoder', seen, 'turn the rotor by more than one')
-
-
 _KEPT = 'its zero was the same in all recordings'
 _WITHIN = 'its zero moved by whole turns at most: it is absolute within the turn'
 _LOST = 'its zero moved: it counts from where it was switched on'
 
 
-def _change(joints: Sequence[Joint], between: GearRatio | None, error: float) -> str | Open:
+def _power_cycle(joints: Sequence[Joint], between: GearRatio | None, error: float) -> str | Open:
     """What happened to the rotor's zero between the recordings."""
     what = 'zero of the rotor after a power cycle'
     if len(joints) == 1 or not between:
         return Open(what, 'it takes the ratio and two recordings', 'make one after a power cycle')
-    moves, bound = moved(joints, between, error)
-    wraps = any(joint.rotor.wraps for joint in joints)
+    zeros, ratio = [joint.zeros(between) / TURN for joint in joints], float(between)
+    bound = float(max(*map(np.ptp, zeros), abs(ratio) * error / TURN))
+    # The output's encoder may have begun in the next turn.
+    moves = [
+        min((move, move + ratio, move - ratio), key=abs)
+        for move in np.diff([zero.mean() for zero in zeros]).tolist()
+    ]
     apart = max(abs(move - round(move)) for move in moves)
     if apart > bound:
         return _LOST
     if apart > _BY_CHANCE or bound > _HALF:
         known = f'it moved by {number(max(map(abs, moves)))} turns, ± {number(bound)}'
         return Open(what, known, 'make both recordings over the same angles of the output')
+    wraps = any(joint.rotor.wraps for joint in joints)
     return _WITHIN if wraps or any(map(round, moves)) else _KEPT
+
+
+def _kind(joints: Sequence[Joint], cycle: str | Open, *, single: bool) -> Value | Open:
+    """The kind of the rotor's encoder."""
+    most = max((joint.rotor for joint in joints), key=lambda rotor: (rotor.wraps, rotor.turns))
+    seen = most.evidence if most.wraps else f'the rotor turned {number(most.turns)} turns'
+    if not single:
+        if most.turns <= COUNTED:
+            return Open('rotor_encoder', seen, 'turn the rotor by more than one')
+        seen += ' without a wrap'
+    told = f'; {cycle}' if isinstance(cycle, str) else ''
+    return Value('rotor_encoder', 'single_turn' if single else 'multi_turn', f'{seen}{told}')
 
 
 def _zeros(
     last: Joint,
     between: GearRatio,
     zero_here: float | str | None,
-    kind: Value | Open,
-    change: str | Open,
+    cycle: str | Open,
+    *,
+    single: bool,
 ) -> Iterator[Value]:
     """Find the zeros with which the output angles of both encoders agree on average."""
     zero, why = 0.0, 'the zero of the encoder is kept'
     if zero_here is not None:
         zero = float(last.encoders.measured[last.row_at(zero_here)])
-        at = zero_here if isinstance(zero_here, str) else f'{zero_here:.10g} s'
-        why = f'the output angle is 0 at {at} of {last.recording.name}'
+        moment = zero_here if isinstance(zero_here, str) else f'{zero_here:.13g} s'
+        why = f'the output angle is 0 at {moment} of {last.recording.name}'
+    shown = math.remainder(zero, TURN) if last.output.wraps else zero
+    yield Value('output_encoder_zero', shown, why)
     rotor = last.zeros(between) + float(between) * zero
     mean, spread = float(np.mean(rotor)), float(np.ptp(rotor)) / abs(float(between))
     evidence = f'both encoders then agree on average, within {number(math.degrees(spread))}°'
-    single = isinstance(kind, Value) and kind.value == 'single_turn'
-    if change != _KEPT:
-        true = 'within the turn' if single and change != _LOST else 'until the next power cycle'
+    if cycle != _KEPT:
+        true = 'within the turn' if single and cycle != _LOST else 'until the next power cycle'
         evidence += f'; true {true}: then home, or set output_encoder_reference: absolute'
-    shown = math.remainder(zero, TURN) if last.output.wraps else zero
-    yield Value('output_encoder_zero', shown, why)
     yield Value('rotor_zero', mean % TURN if single else mean, evidence)
 
 
@@ -301,11 +301,11 @@ def _motion(joint: Joint, delay: Estimate | None) -> Iterator[Value | Open | str
     if not joint.encoders.timed:
         yield Open('delay, rates and speeds', 'the recording has no times', 'record them')
         return
-    if delay is None:
+    if delay:
+        yield f'The stamps of the output are late by {plus_minus(delay, _MILLI)} ms.'
+    else:
         advice = 'turn the output there and back three times or more, at different speeds'
         yield Open('delay between the encoders', 'it is not told from hysteresis', advice)
-    else:
-        yield f'The stamps of the output are late by {plus_minus(delay, _MILLI)} ms.'
     both = joint.encoders.rotor.seconds, joint.encoders.seconds
     rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
     yield f'Rates: {rotor} of the rotor, {output} of the output.'

@@ -1,10 +1,15 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The parameter file of a commissioned gear: values with their evidence, and what is open."""
 
+from textwrap import wrap
+
 from gear_kinematics.measurement.commissioning.analysis import Commissioning
 from gear_kinematics.parameters.new_config import quoted, start_command
 from gear_kinematics.parameters.node_parameters import default_config
 from gear_kinematics.report.document import printable
+
+_WIDTH = 100  # characters of a comment in a line
+_INDENT = '    '
 
 
 def actuator_file(result: Commissioning, name: str = default_config().name) -> str:
@@ -15,24 +20,35 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
     """
     if result.fault:
         raise ValueError(result.fault)
-    rotor, output = result.request.rotor.topic, result.request.output.topic
-    heads = [
-        result.answer,
-        f'From {", ".join(joint.recording.name for joint in result.joints)}. Start the node with',
-        f'    {start_command(rotor, name, output)}',
-        'SI units: m, rad, s. Parameters that are not here have their defaults.',
+    names = ', '.join(joint.recording.name for joint in result.joints)
+    command = start_command(result.request.rotor.topic, name, result.request.output.topic)
+    lines = [
+        *_comment(result.answer),
+        *_comment(f'From {names}. Start the node with'),
+        f'#     {printable(command)}',
+        *_comment('SI units: m, rad, s. Parameters that are not here have their defaults.'),
+        '/**:',
+        '  ros__parameters:',
     ]
-    lines = [f'# {printable(text)}' for text in heads]
-    lines += ['/**:', '  ros__parameters:']
     for value in result.values:
-        lines.append(f'    # {printable(value.evidence)}')
-        lines.append(f'    {value.name}: {_yaml(value.value)}')
-    lines += [f'    # {printable(note)}' for note in result.notes]
-    lines += [
-        f'    # Open: {printable(f"{left.what}: {left.known}; {left.advice}")}.'
-        for left in result.open
-    ]
+        lines += [
+            *_comment(value.evidence, _INDENT),
+            f'{_INDENT}{value.name}: {_yaml(value.value)}',
+        ]
+    for text in (
+        *result.notes,
+        *(f'Open: {left.what}: {left.known}; {left.advice}.' for left in result.open),
+    ):
+        lines += _comment(text, _INDENT)
     return '\n'.join([*lines, ''])
+
+
+def _comment(text: str, indent: str = '') -> list[str]:
+    mark = f'{indent}# '
+    return wrap(
+        printable(text), _WIDTH, initial_indent=mark, subsequent_indent=mark,
+        break_long_words=False, break_on_hyphens=False,
+    )  # fmt: skip
 
 
 def _yaml(value: str | float) -> str:

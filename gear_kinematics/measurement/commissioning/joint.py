@@ -2,7 +2,6 @@
 """Both encoders of a gear in one recording, without wraps."""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -42,8 +41,8 @@ class Joint:
     """Samples of another stretch of the recording."""
 
     @classmethod
-    def of(cls, recording: Recording, encoders: Encoders, unit: float = 1.0) -> 'Joint':
-        """Take the wraps out of a recording of positions as they are, in a unit.
+    def of(cls, recording: Recording, encoders: Encoders) -> 'Joint':
+        """Take the wraps out of a recording of positions as they are.
 
         Of a rotor that wraps, the longest stretch without a gap is used: no turn is missed in it.
 
@@ -53,18 +52,15 @@ class Joint:
         motion, seen = encoders.rotor, len(encoders.measured)
         if seen < _MIN_SAMPLES:
             raise RecordingError(f'{recording.path}: only {seen} samples of both encoders')
-        rotor = positions_of((motion.turns * TURN + motion.angle) / unit, encoders.rotor_step)
-        output = positions_of(encoders.measured / unit, encoders.output_step)
+        rotor = positions_of(motion.turns * TURN + motion.angle, encoders.rotor_step)
+        output = positions_of(encoders.measured, encoders.output_step)
         turns, angle = split_turns(rotor.angle)
-        unwrapped = replace(
-            encoders, rotor=motion._replace(turns=turns, angle=angle), measured=output.angle
-        )
-        turned = unwrapped.at_measured(rotor.angle)
+        motion = motion._replace(turns=turns, angle=angle)
+        unwrapped = replace(encoders, rotor=motion, measured=output.angle)
         if rotor.wraps:
-            kept = _longest_stretch(encoders, rotor.angle)
-            unwrapped, turned = unwrapped.chosen(kept), turned[kept]
-        left_out = seen - len(turned)
-        return cls(recording, unwrapped, rotor, output, turned, left_out)
+            unwrapped = unwrapped.chosen(_longest_stretch(encoders, rotor.angle))
+        turned = unwrapped.at_measured(rotor.angle)
+        return cls(recording, unwrapped, rotor, output, turned, seen - len(turned))
 
     @property
     def travel(self) -> float:
@@ -102,20 +98,20 @@ class Joint:
             RecordingError: if there is no sample then.
         """
         if isinstance(moment, str):
-            return 0 if moment == 'START' else len(self.turned) - 1
+            return 0 if moment == 'START' else -1
         if not self.encoders.timed:
             raise RecordingError(f'{self.recording.path}: without times, name START or END')
-        first = float(self.encoders.rotor.stamp[0]) / SECOND
-        since = moment
+        first, since = float(self.encoders.rotor.stamp[0]) / SECOND, moment
         if unit_since_1970(moment) == 1.0:
             since -= first if unit_since_1970(first) else self.recording.start or 0.0
-        apart = np.abs(self.encoders.seconds - since)
-        if apart.min() > _NEAR:
-            end = self.encoders.seconds[-1]
+        seconds = self.encoders.seconds
+        row = int(np.argmin(np.abs(seconds - since)))
+        if abs(seconds[row] - since) > _NEAR:
             raise RecordingError(
-                f'{self.recording.path}: no sample at {moment:.9g} s; it is {end:.6g} s long'
+                f'{self.recording.path}: no sample at {moment:.9g} s; '
+                f'it is {seconds[-1]:.6g} s long'
             )
-        return int(np.argmin(apart))
+        return row
 
 
 def _longest_stretch(encoders: Encoders, angle: Array) -> Array:
@@ -130,19 +126,3 @@ def _longest_stretch(encoders: Encoders, angle: Array) -> Array:
     whole = first == last
     kept: Array = whole & (first == np.argmax(np.bincount(first[whole])))
     return kept
-
-
-def moved(joints: Sequence[Joint], ratio: Fraction, error: float) -> tuple[list[float], float]:
-    """By how many turns of the rotor its zero moves from each recording to the next, and ±.
-
-    Args:
-        joints: at least two recordings.
-        ratio: between the encoders.
-        error: of an encoder, rad.
-    """
-    zeros = [joint.zeros(ratio) / TURN for joint in joints]
-    bound = max(*map(np.ptp, zeros), abs(float(ratio)) * error / TURN)
-    moves = np.diff([zero.mean() for zero in zeros]).tolist()
-    # The output's encoder may have begun in the next turn.
-    beside = [[move + turn * float(ratio) for turn in (0, 1, -1)] for move in moves]
-    return [min(each, key=abs) for each in beside], float(bound)

@@ -5,13 +5,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.encoder_step import Source, Step
+from gear_kinematics.measurement.encoder_step import Array, Source, Step
 from gear_kinematics.report.document import counted
-
-Array = NDArray[np.float64]
 
 _TURNS = {'rad': TURN, 'degrees': 360.0, 'turns': 1.0}
 """A turn in the units that positions may have."""
@@ -58,11 +55,6 @@ class Positions:
         return float(np.ptp(self.angle)) / TURN
 
     @property
-    def counts_turns(self) -> bool:
-        """Whether positions went on beyond a turn."""
-        return not self.wraps and self.turns > COUNTED
-
-    @property
     def fault(self) -> str:
         """What to do where the unit is not rad, as a clause; else empty."""
         if self.turn is None:
@@ -80,11 +72,8 @@ def positions_of(values: Array, step: Step) -> Positions:
         values: (n,), in the order of time, as they were recorded.
         step: of the encoder, in the same unit.
     """
-    span, steps = float(np.ptp(values)), np.diff(values)
-    counted_up = np.round(values)
-    whole = len(np.unique(counted_up)) >= _MIN_LEVELS and bool(
-        np.all(np.abs(values - counted_up) < _ROUNDING)
-    )
+    span, steps, rounded = float(np.ptp(values)), np.diff(values), np.round(values)
+    whole = np.abs(values - rounded).max() < _ROUNDING and len(np.unique(rounded)) >= _MIN_LEVELS
     counts = {'counts': 2.0 ** math.ceil(math.log2(span + 1.0))} if whole else {}
     low, high = _SPAN_OF_WRAP
     for unit, turn in (_TURNS | counts).items():

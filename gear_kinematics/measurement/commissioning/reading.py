@@ -16,7 +16,7 @@ from gear_kinematics.bag.roles import (
 )
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Channel
-from gear_kinematics.measurement.commissioning.joint import Joint
+from gear_kinematics.measurement.commissioning.positions import positions_of
 from gear_kinematics.measurement.csv_files import Sources, is_csv
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
@@ -47,34 +47,34 @@ def read_positions(
     Raises:
         BagError, RecordingError: see `read_encoders`; if topics or joints are missing, or several.
     """
-    channels = [Channel(), Channel()]
+    rotor = output = Channel()
     if not is_csv(path):
         with Bag(path) as bag:
-            rotor = find_rotor_topic(bag, sources.rotor_topic, joints[0] or likely[0])
-            output = find_encoder_topic(bag, sources.encoder_topic)
-            output = output or other_topic(bag, rotor, joints[1] or likely[1])
-            if not output:
+            topics = [find_rotor_topic(bag, sources.rotor_topic, joints[0] or likely[0])]
+            encoder = find_encoder_topic(bag, sources.encoder_topic)
+            encoder = encoder or other_topic(bag, topics[0], joints[1] or likely[1])
+            if not encoder:
                 raise RecordingError(f'{path}: {missing_encoder(bag)}')
-            sources = replace(sources, rotor_topic=rotor, encoder_topic=output)
-            heard = joints_on(bag, [rotor, output])
-        channels = [
+            topics.append(encoder)
+            heard = joints_on(bag, topics)
+        sources = replace(sources, rotor_topic=topics[0], encoder_topic=encoder)
+        rotor, output = (
             Channel(topic, joint or _only(path, topic, heard[topic], usual, option))
             for topic, joint, usual, option in zip(
-                (rotor, output), joints, likely, ('--joint', '--encoder-joint'), strict=True
+                topics, joints, likely, ('--joint', '--encoder-joint'), strict=True
             )
-        ]
+        )
+    # With the defaults, positions stay as they are.
     parameters = replace(
-        NodeParameters.load(),  # the defaults, with which positions stay as they are
-        rotor_joint=channels[0].joint,
-        output_encoder_joint=channels[-1].joint,
+        NodeParameters.load(), rotor_joint=rotor.joint, output_encoder_joint=output.joint
     )
     try:
         recording, encoders = read_encoders(path, parameters, sources, progress)
     except RecordingError as error:
-        if counts := _counts(path, parameters, sources):
+        if is_csv(path) and (counts := _counts(path, parameters, sources)):
             raise RecordingError(f'{error}; {counts}') from error
         raise
-    return recording, encoders, channels[0], channels[-1]
+    return recording, encoders, rotor, output
 
 
 def _only(path: Path, topic: str, heard: Sequence[str], likely: str, option: str) -> str:
@@ -88,23 +88,20 @@ def _only(path: Path, topic: str, heard: Sequence[str], likely: str, option: str
 
 
 def _counts(path: Path, parameters: NodeParameters, sources: Sources) -> str:
-    """Say how many counts a turn has, if a CSV file lacks nothing but these, and wraps show it."""
-    unknown = replace(
-        sources,
-        rotor_counts=sources.rotor_counts or 1,
-        output_counts=sources.output_counts or 1,
-    )
-    if unknown == sources or not is_csv(path):
-        return ''
+    """Say how many counts a turn has, where a CSV file lacks nothing else, and wraps show it."""
+    given = sources.rotor_counts or 1, sources.output_counts or 1
+    sources = replace(sources, rotor_counts=given[0], output_counts=given[1])
     try:
-        joint = Joint.of(*read_encoders(path, parameters, unknown), unit=TURN)
+        _, encoders = read_encoders(path, parameters, sources)
     except RecordingError:
         return ''
+    motion = encoders.rotor
+    sides = {
+        'rotor': positions_of(motion.turns + motion.angle / TURN, encoders.rotor_step),
+        'output': positions_of(encoders.measured / TURN, encoders.output_step),
+    }
     return ', '.join(
-        f'{positions.evidence}: --{role}-counts {positions.turn:.0f}'
-        for role, positions, given in (
-            ('rotor', joint.rotor, sources.rotor_counts),
-            ('output', joint.output, sources.output_counts),
-        )
-        if positions.unit == 'counts' and positions.turn and not given
+        f'{at.evidence}: --{side}-counts {at.turn:.0f}'
+        for side, at in sides.items()
+        if at.unit == 'counts' and at.turn
     )
