@@ -23,6 +23,14 @@ from gear_kinematics.kinematics.rotor_turns import TURN, split_turns, whole_turn
 Array = NDArray[np.float64]
 
 
+def read_only(results: Any) -> None:
+    """Convert the fields of a frozen dataclass to read-only arrays."""
+    for field in fields(results):
+        array = np.asarray(getattr(results, field.name)).view()
+        array.flags.writeable = False
+        object.__setattr__(results, field.name, array)
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class MotionState:
     """The motion of all bodies. `...` is the inputs' broadcast shape, B the number of branches.
@@ -61,10 +69,7 @@ class MotionState:
 
     def __post_init__(self) -> None:
         """Convert the fields to read-only arrays."""
-        for field in fields(self):
-            array = np.asarray(getattr(self, field.name)).view()
-            array.flags.writeable = False
-            object.__setattr__(self, field.name, array)
+        read_only(self)
 
     @classmethod
     def from_orders(

@@ -18,11 +18,17 @@ threshold it carries nothing and the other carries M alone, until its opposite f
 stiffness may be infinite, the formulas below are written with compliances,
 
     cA = 1/kAe = 1/kA + 1/ks        cB = 1/kB        kAe/(kAe + kB) = cB/(cA + cB)
+
+The flanks of a branch that has left mesh stand apart by the angle by which the other branch and
+the shaft yield beyond the interference (zk/zs) dψ_net, rad at the output:
+
+    A: cB M - (zk/zs) dψ_net            B: -cA M - (zk/zs) dψ_net
 """
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple, Self
+from types import ModuleType
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -151,6 +157,48 @@ class Stiffness:
         return 1.0 / self.compliance_a if self.compliance_a else math.inf
 
 
+class Contact(NamedTuple):
+    """The working flanks of one branch under an external torque, as floats or arrays."""
+
+    torque: Any
+    """N·m, at least 0; 0 when the branch is out of mesh."""
+    stand_off: Any
+    """rad at the output, at least 0: the angle between the flanks; 0 in mesh."""
+
+
+class Side(NamedTuple):
+    """One branch of a preload. The load on it is M for branch A, and -M for branch B."""
+
+    preload: float
+    """T0, N·m."""
+    share: float
+    """cB/(cA + cB) of branch A, cA/(cA + cB) of B: how much of the load it is relieved of."""
+    other: float
+    """cB of branch A, cA of B: the compliance of what carries on alone, rad/(N·m)."""
+    twist: float
+    """The interference, rad; 0 if there is play."""
+    play: float
+    """rad; 0 if there is preload."""
+
+    def contact(self, load: Any, xp: ModuleType) -> Contact:
+        """The working flanks under a load.
+
+        The torque is the greatest of T0 - share × load, -load and 0, which are its values with
+        both branches in mesh, with this one alone and with the other alone. Without load, an
+        output with play is taken to rest in its middle.
+
+        Args:
+            load: N·m; a float, or an array of any shape.
+            xp: `math` for a float, else numpy; the results are the same to the bit.
+        """
+        larger: Any = max if xp is math else np.maximum
+        torque = larger(larger(self.preload - self.share * load, -load), 0.0) + 0.0  # no -0.0
+        apart = larger(self.other * load - self.twist, 0.0)
+        if self.play:
+            apart = apart + self.play * (0.5 + 0.5 * (load > 0.0))
+        return Contact(torque, apart * (torque == 0.0))
+
+
 class TorqueSplit(NamedTuple):
     """Response to an external torque; arrays of its shape."""
 
@@ -240,22 +288,25 @@ class Preload:
     def split(self, load: ArrayLike) -> TorqueSplit:
         """Split an external torque between the branches.
 
-        T_A is the greatest of T0 - kAe M/(kAe + kB), -M and 0, which are its values with both in
-        mesh, with A alone and with B alone; likewise T_B of T0 + kB M/(kAe + kB), M and 0.
-
         Args:
             load: M at arm B, N·m; any shape.
         """
         M = np.asarray(load, dtype=np.float64)
         cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
-        both = self.stiffness.compliance
-        branch_a = np.maximum(np.maximum(self.torque - cB / both * M, -M), 0.0)
-        branch_b = np.maximum(np.maximum(self.torque + cA / both * M, M), 0.0)
+        side_a, side_b = self.sides
+        branch_a, branch_b = side_a.contact(M, np).torque, side_b.contact(-M, np).torque
         elastic = np.where(
             self.threshold_b <= M, cB * (branch_b - self.torque), cA * (self.torque - branch_a)
         )
         free = np.sign(M) * self.play / 2.0
-        return TorqueSplit(branch_a + 0.0, branch_b + 0.0, elastic + free + 0.0)  # no -0.0
+        return TorqueSplit(branch_a, branch_b, elastic + free + 0.0)  # no -0.0
+
+    @property
+    def sides(self) -> tuple[Side, Side]:
+        """Branches A and B."""
+        cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
+        both, rest = self.stiffness.compliance, (self._twist, self.play)
+        return Side(self.torque, cB / both, cB, *rest), Side(self.torque, cA / both, cA, *rest)
 
     @property
     def _twist(self) -> float:

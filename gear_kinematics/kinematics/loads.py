@@ -1,0 +1,348 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The loads of all bodies: reactions of mesh, cam and both slots, and the torque of the rotor.
+
+Newton-Euler for each satellite (m3, J3 about O3) and each Oldham coupling (m4, J4 about O4), with
+the accelerations a3, a4 of the closed form and the torque T that the branch gives the output
+shaft; lossless. u(q) = (-sin q, cos q), u'(q) = (-cos q, -sin q), x and y are the slides of the
+coupling, so that O4 - O3 = -x u'(φ5) and O4 = y u(φ5); rs = e zs/(zk - zs). For each branch:
+
+    N3 = m4 a4·u(φ5)                     satellite on coupling, along u(φ5): across its slot
+    N5 = m4 a4·u'(φ5)                    arm on coupling, along u'(φ5): across its slot
+    C5 = -T - y N5                       couple of the arm on the coupling, about O4
+    C3 = J4 φ5'' - C5                    couple of the satellite on the coupling, about O4
+    F_t = (J3 φ5'' + C3 + x N3)/rs       ring on satellite at the pitch point, along u'(θ)
+    F = F_t u'(θ) - abs(F_t) tan(αw) u(θ)    the same with its radial part, away from the ring
+    F_cam = m3 a3 + N3 u(φ5) - F         cam on satellite, at O3
+
+and for the rotor, with φ2'' = i φ5'' and O3 × F_cam = m3 e² φ2'' - x N3 - e F_t:
+
+    τ2 = J2 φ2'' + Σ O3 × F_cam
+
+At rest or without mass: N3 = N5 = 0, C3 = -C5 = T, F_t = T/rs and i τ2 = Σ T. Forces and torques
+are those that the named body exerts; the other of the pair takes the opposite ones. The torque of
+the output shaft's own inertia is no part of T: the shaft gives on Σ T less J5 φ5''.
+
+How the branches share the torque of the output is statically indeterminate: `share_torque`.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from numbers import Real
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gear_kinematics.kinematics.errors import MechanismError
+from gear_kinematics.kinematics.mechanism import Mechanism
+from gear_kinematics.kinematics.motion import Array, BranchPosition, MotionState, read_only
+from gear_kinematics.kinematics.preload import Preload, braced
+
+Pair = tuple[Any, Any]
+_ZERO = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Bodies:
+    """What the loads need to know of the bodies; those of the same kind are alike.
+
+    Raises:
+        MechanismError: listing every value that is not finite or negative, and a pressure angle
+            of π/2 or more.
+    """
+
+    satellite_mass: float = 0.0
+    """m3, kg; the centre of mass is O3."""
+    satellite_inertia: float = 0.0
+    """J3, kg·m², about O3."""
+    coupling_mass: float = 0.0
+    """m4, kg; the centre of mass is O4."""
+    coupling_inertia: float = 0.0
+    """J4, kg·m², about O4."""
+    rotor_inertia: float = 0.0
+    """J2, kg·m², about the motor's axis, on which the rotor with its cams is balanced."""
+    pressure_angle: float = 0.0
+    """αw, rad: the working pressure angle, cos αw = cos α m (zk - zs)/(2 e)."""
+
+    def __post_init__(self) -> None:
+        """List all faults."""
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        faults = [
+            f'{name} must be finite and not negative, not {value!r}'
+            for name, value in given.items()
+            if not (isinstance(value, Real) and 0.0 <= float(value) < math.inf)
+        ]
+        if not faults and self.pressure_angle >= math.pi / 2.0:
+            faults = [f'pressure_angle must be less than π/2, not {self.pressure_angle!r}']
+        if faults:
+            raise MechanismError(faults)
+
+    @property
+    def without_mass(self) -> bool:
+        """Whether the loads are those at rest at any acceleration."""
+        return not any(getattr(self, field.name) for field in fields(self)[:-1])
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Loads:
+    """The loads of all bodies. `...` is the inputs' broadcast shape, B the number of branches.
+
+    All arrays are float64 and read-only; forces in N, in the stator frame, couples in N·m.
+    """
+
+    mesh_tangential: Array
+    """F_t, (..., B): ring on satellite at the pitch point, along u'(θ)."""
+    mesh_force: Array
+    """F, (..., B, 2): the whole force of the ring on the satellite; its length is F_n."""
+    cam_force: Array
+    """F_cam, (..., B, 2): cam on satellite, at O3."""
+    satellite_slot_force: Array
+    """N3 u(φ5), (..., B, 2): satellite on coupling, at O4."""
+    arm_slot_force: Array
+    """N5 u'(φ5), (..., B, 2): arm on coupling, at O4."""
+    satellite_couple: Array
+    """C3, (..., B): satellite on coupling, about O4."""
+    arm_couple: Array
+    """C5, (..., B): arm on coupling, about O4."""
+    rotor_torque: Array
+    """τ2, (...): what the motor has to give, N·m."""
+
+    def __post_init__(self) -> None:
+        """Convert the fields to read-only arrays."""
+        read_only(self)
+
+
+class BranchLoads(NamedTuple):
+    """The loads of one branch, as in `Loads`, as floats or arrays; forces are pairs (x, y)."""
+
+    mesh_tangential: Any
+    mesh_force: Pair
+    cam_force: Pair
+    satellite_slot_force: Pair
+    arm_slot_force: Pair
+    satellite_couple: Any
+    arm_couple: Any
+    rotor_torque: Any
+    """O3 × F_cam: the share of the branch, N·m."""
+
+
+class LoadEquations:
+    """The equations with the constants of one mechanism and its bodies, for floats and arrays.
+
+    Floats and arrays give the same results to the bit.
+    """
+
+    def __init__(self, mechanism: Mechanism, bodies: Bodies) -> None:
+        self._bodies = bodies
+        self._massless = bodies.without_mass
+        self._eccentricity = mechanism.eccentricity
+        self._radius = mechanism.satellite_rolling_radius
+        self._ratio = float(mechanism.gear_ratio)
+        self._radial = math.tan(bodies.pressure_angle)
+        self._orbit_inertia = bodies.satellite_mass * mechanism.eccentricity**2
+
+    def branch(
+        self,
+        position: BranchPosition,
+        arm: Pair,
+        torque: Any,
+        output_acceleration: Any = 0.0,
+        satellite_acceleration: Pair = _ZERO,
+        oldham_acceleration: Pair = _ZERO,
+    ) -> BranchLoads:
+        """Loads of one branch.
+
+        Args:
+            position: of its bodies.
+            arm: u(φ5).
+            torque: T, N·m, of the branch on the output shaft.
+            output_acceleration: φ5'', rad/s².
+            satellite_acceleration: a3, m/s².
+            oldham_acceleration: a4, m/s².
+        """
+        bodies, e, (ux, uy) = self._bodies, self._eccentricity, arm
+        N3 = N5 = orbit = spin3 = spin4 = 0.0
+        inertia_x, inertia_y = _ZERO
+        if not self._massless:
+            (a3x, a3y), (a4x, a4y) = satellite_acceleration, oldham_acceleration
+            N3 = bodies.coupling_mass * (a4x * ux + a4y * uy)
+            N5 = bodies.coupling_mass * (a4y * ux - a4x * uy)
+            inertia_x, inertia_y = bodies.satellite_mass * a3x, bodies.satellite_mass * a3y
+            spin3 = bodies.satellite_inertia * output_acceleration
+            spin4 = bodies.coupling_inertia * output_acceleration
+            orbit = self._orbit_inertia * self._ratio * output_acceleration
+        C5 = 0.0 - torque - position.arm_slide * N5
+        C3 = spin4 - C5
+        lever = position.satellite_slide * N3
+        F_t = (spin3 + C3 + lever) / self._radius
+        theta_x, theta_y = position.satellite[0] / e, position.satellite[1] / e  # u(θ)
+        radial = abs(F_t) * self._radial
+        mesh_x = 0.0 - F_t * theta_y - radial * theta_x
+        mesh_y = F_t * theta_x - radial * theta_y
+        slot_x, slot_y = N3 * ux, N3 * uy
+        return BranchLoads(
+            F_t,
+            (mesh_x, mesh_y),
+            (inertia_x + slot_x - mesh_x, inertia_y + slot_y - mesh_y),
+            (slot_x, slot_y),
+            (0.0 - N5 * uy, N5 * ux),
+            C3,
+            C5,
+            orbit - lever - e * F_t,
+        )
+
+    def rotor_torque(self, branches: Sequence[BranchLoads], output_acceleration: Any = 0.0) -> Any:
+        """τ2, N·m: of the rotor's inertia and the branches."""
+        torque: Any = 0.0
+        if not self._massless:
+            torque = self._bodies.rotor_inertia * self._ratio * output_acceleration
+        for branch in branches:
+            torque = torque + branch.rotor_torque
+        return torque
+
+
+@np.errstate(invalid='ignore')  # values that are not finite give NaN
+def solve(
+    mechanism: Mechanism,
+    state: MotionState,
+    branch_torques: ArrayLike,
+    bodies: Bodies = Bodies(),
+) -> Loads:
+    """Solve the loads of all bodies.
+
+    Args:
+        mechanism: the mechanism.
+        state: its motion, of shape (...), with accelerations if the bodies have mass.
+        branch_torques: T, N·m, that each branch gives the output shaft, (..., B); broadcast with
+            the state.
+        bodies: masses, inertias and pressure angle.
+
+    Raises:
+        ValueError: if `branch_torques` or the state do not fit the mechanism or each other.
+    """
+    torques = np.asarray(branch_torques, dtype=np.float64)
+    count, shape = len(mechanism.branches), state.output_angle.shape
+    if state.satellite_slide.shape != (*shape, count):
+        given = state.satellite_slide.shape[-1]
+        raise ValueError(f'the state is of {given} branches, the mechanism has {count}')
+    if torques.shape[-1:] != (count,):
+        raise ValueError(
+            f'branch_torques must have {count} torques, one of each branch, on their last axis, '
+            f'not the shape {torques.shape}'
+        )
+    try:
+        shape = np.broadcast_shapes(shape, torques.shape[:-1])
+    except ValueError:
+        raise ValueError(
+            f'branch_torques of shape {torques.shape} do not fit a state of shape {shape}'
+        ) from None
+    equations = LoadEquations(mechanism, bodies)
+    arm = -np.sin(state.output_turn_angle), np.cos(state.output_turn_angle)
+    branches = [
+        equations.branch(
+            BranchPosition(
+                _pair(state.satellite_centre, k),
+                _pair(state.oldham_centre, k),
+                state.satellite_slide[..., k],
+                state.arm_slide[..., k],
+            ),
+            arm,
+            torques[..., k],
+            state.output_acceleration,
+            _pair(state.satellite_acceleration, k),
+            _pair(state.oldham_acceleration, k),
+        )
+        for k in range(count)
+    ]
+    *columns, _ = zip(*branches, strict=True)
+    arrays = [_samples_first(column, shape) for column in columns]
+    rotor = equations.rotor_torque(branches, state.output_acceleration)
+    arrays.append(np.broadcast_to(rotor, shape).copy())
+    return Loads(*arrays)  # in the order of the fields
+
+
+class BranchTorques(NamedTuple):
+    """How the branches share the torque of the output, (..., B)."""
+
+    torque: Array
+    """T, N·m, of each branch on the output shaft."""
+    stand_off: Array
+    """rad at the output, at least 0: how far a branch out of mesh stands off; 0 in mesh."""
+
+
+@np.errstate(invalid='ignore')  # values that are not finite give NaN
+def share_torque(
+    mechanism: Mechanism,
+    output_torque: ArrayLike,
+    preload: Preload | None = None,
+    direction: int = 1,
+) -> BranchTorques:
+    """Share the torque of the output between the branches.
+
+    Two branches with a preload have T_A and -T_B of `preload` for the external torque
+    M = -output_torque, also beyond the thresholds; any branches without one have equal shares.
+
+    Args:
+        mechanism: for the number of branches.
+        output_torque: Σ T, N·m, of all branches on the output shaft; any shape (...). At rest
+            it is i × rotor torque.
+        preload: of two branches.
+        direction: 1 if ring gear A is turned against ring gear B in the positive direction, so
+            that branch A pushes the output in the positive direction; -1 if in the negative one.
+
+    Raises:
+        ValueError: if `preload` is given and there are not two branches, or `direction` is
+            neither 1 nor -1.
+    """
+    torque = np.asarray(output_torque, dtype=np.float64)
+    shares = TorqueSharing(mechanism, preload, direction).branches(torque, np)
+    torques, apart = zip(*shares, strict=True)
+    shape = torque.shape
+    return BranchTorques(_samples_first(torques, shape), _samples_first(apart, shape))
+
+
+class TorqueSharing:
+    """`share_torque` with its constants, for floats and arrays with the same results to the bit.
+
+    Raises:
+        ValueError: as `share_torque`.
+    """
+
+    def __init__(self, mechanism: Mechanism, preload: Preload | None, direction: int) -> None:
+        if direction not in (1, -1):
+            raise ValueError(f'direction must be 1 or -1, not {direction!r}')
+        self._count, self._sides = len(mechanism.branches), None
+        if preload is not None:
+            braced(mechanism)
+            self._sides = preload.sides
+        self._direction = float(direction)
+
+    def branches(self, torque: Any, xp: ModuleType) -> list[Pair]:
+        """Torque (N·m) and stand-off (rad) of each branch; `xp` is `math` for floats."""
+        if self._sides is None:
+            return [(torque / self._count, 0.0)] * self._count
+        side_a, side_b = self._sides
+        sign = self._direction
+        load = -sign * torque
+        torque_a, stand_off_a = side_a.contact(load, xp)
+        torque_b, stand_off_b = side_b.contact(-load, xp)
+        # No -0.0.
+        return [(sign * torque_a + 0.0, stand_off_a), (0.0 - sign * torque_b, stand_off_b)]
+
+
+def _pair(points: Array, branch: int) -> Pair:
+    return points[..., branch, 0], points[..., branch, 1]
+
+
+def _samples_first(column: Sequence[Any], shape: tuple[int, ...]) -> Array:
+    """Write the values of the branches, or pairs of them, into one array (*shape, B[, 2])."""
+    inner = (len(column), 2) if isinstance(column[0], tuple) else (len(column),)
+    array = np.empty((*shape, *inner))
+    for k, value in enumerate(column):
+        if isinstance(value, tuple):
+            array[..., k, 0], array[..., k, 1] = value
+        else:
+            array[..., k] = value
+    return array
