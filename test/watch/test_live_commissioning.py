@@ -75,7 +75,7 @@ def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice
 
 
 def test_too_few_samples_are_no_fault_but_advice(monkeypatch):
-    shown = hear(monkeypatch, 90.0, most=400).shown()
+    shown = hear(monkeypatch, 90.0, most=400).shown
     assert shown.advice == 'Go on turning the output, slowly: there is not enough motion yet.'
 
 
