@@ -46,11 +46,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             help=f'greatest accepted error of {_OF[quantity]} (default: %(default)g)',
         )
     limits.add_argument(
-        '--allow-offset',
-        action='store_true',
-        help='accept a constant offset of the output angle that no rotor_zero explains',
-    )
-    limits.add_argument(
         '--strict',
         action='store_true',
         help='judge all messages, even where the recorder may have lost some, and fail a node '
@@ -105,7 +100,6 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
         replace(config, calibration=str(calibration or '')),
         config=str(file),
         tolerances=tolerances,
-        allow_offset=options.allow_offset,
         strict=options.strict,
         only_joint=options.joint is None,
         rotor_topic=options.rotor_topic,

@@ -119,10 +119,7 @@ def diagnose(gear: Gear, fit: AngleFit, tolerance: float) -> str | None:
     """Describe a systematic deviation of the output angles from a gear's, beyond a tolerance."""
     offset = fit.offset(tolerance)
     if offset is not None:
-        return (
-            f'the recorded output angle is off by a constant {offset:.12g} rad; '
-            '--allow-offset accepts it'
-        )
+        return f'the recorded output angle is off by a constant {offset:.12g} rad'
     slope = fit.slope()
     if slope is None:
         return None

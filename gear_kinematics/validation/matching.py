@@ -130,8 +130,6 @@ class OutputTopic:
     ) -> None:
         """Start without messages; `label` is the joint or the frame that they name."""
         self.name, self.label, self.errors = name, label, errors
-        self.offset = 0.0
-        """Known offset of a recorded output angle, rad."""
         self.series = SeriesRecorder(errors)
         self.matcher = Matcher()
         self._gear, self._tolerances, self._solver, self._changes = expectation

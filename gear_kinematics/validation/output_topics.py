@@ -56,7 +56,6 @@ class JointStateTopic(OutputTopic):
         states = self._states
         self._faults[f'no joint {self.label!r}'].add(samples['stamp'][~states.joint_found[rows]])
         recorded = states.values[rows, : len(self.units)]
-        recorded -= [self.offset * (field == 'position') for field in self.units]
         least, most = np.stack(self._expected(samples), axis=-1)
         # Any value between them is as expected.
         expected = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)

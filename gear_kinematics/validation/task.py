@@ -41,8 +41,6 @@ class Task:
     config: str = ''
     """Their file."""
     tolerances: Tolerances = _TOLERANCES
-    allow_offset: bool = False
-    """Whether to accept a constant offset of the output angle alone, which no zero explains."""
     strict: bool = False
     """Whether to judge all missing and extra messages, even if the recorder may have caused them
     (see `recorder`), and to fail a recording with another rotor_zero, as after homing."""

@@ -111,7 +111,7 @@ class Validator:
         self._window = np.zeros(0, columns)
         """The latest samples."""
         self._prefix_open = not parameters.frame_prefix
-        self._offset_open = task.allow_offset or not task.strict or parameters.absolute
+        self._zero_open = not task.strict or parameters.absolute
         self._findings: list[Finding] = []
 
     def feed(self, batches: Iterable[Sequence[Message]]) -> None:
@@ -185,8 +185,8 @@ class Validator:
         there = any(messages.data for messages in batch.values())
         if self._prefix_open and there:
             self._find_prefix(batch)
-        if self._offset_open and there:
-            self._find_offset(batch)
+        if self._zero_open and there:
+            self._find_zero(batch)
         for topic, messages in batch.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
@@ -254,11 +254,11 @@ class Validator:
                         self._findings.append(Finding(text))
                     return
 
-    def _find_offset(self, batch: _Batch) -> None:
-        """Determine the offset to accept, if any, from the first batch with outputs.
+    def _find_zero(self, batch: _Batch) -> None:
+        """Determine the rotor's zero from the first batch with outputs, as homing moves it.
 
-        Homing moves the rotor's zero and therefore the poses; if there are some, and they agree
-        better without that, only the output angle has an offset, which is accepted on request.
+        It moves the poses too: if there are some, and they agree better without that, only the
+        output angle has an offset, which is a fault.
         """
         outputs = batch[self._topics.output]
         few = {**self._sorted(()), self._topics.rotor: batch[self._topics.rotor]}
@@ -267,7 +267,7 @@ class Validator:
         for part in parts:
             trial = self._trial(part, self._parameters)
             offset = trial.output.fit.offset(self._task.tolerances.angle)
-            self._offset_open = not trial.output.fit.count
+            self._zero_open = not trial.output.fit.count
             if offset is None:
                 break
         if offset is None:
@@ -276,25 +276,20 @@ class Validator:
         zero = self._parameters.rotor_zero - turned
         if abs(zero) > LARGEST_ANGLE:  # garbage, not homing
             return
-        text = f'the recorded output angle is off by a constant {offset:.12g} rad'
         moved = replace(self._parameters, rotor_zero=zero)
         if self._trial(parts[-1], moved).position_error <= trial.position_error:
             self._input.parameters = moved
-            before = f'{self._parameters.rotor_zero:.12g}'
             way = 'by the output encoder' if self._references else 'as after homing'
-            text += f': compared with rotor_zero {zero:.12g} instead of {before}, {way}'
-        elif self._task.allow_offset:
-            for output in self._outputs.values():
-                output.offset = offset
-            text = f'accepted: {text}'
-        else:
-            return
-        self._findings.append(Finding(text))
+            text = (
+                f'the recorded output angle is off by a constant {offset:.12g} rad: compared with '
+                f'rotor_zero {zero:.12g} instead of {self._parameters.rotor_zero:.12g}, {way}'
+            )
+            self._findings.append(Finding(text))
 
     def _trial(self, batch: _Batch, parameters: NodeParameters) -> 'Validator':
         """Return what validates a batch with other parameters."""
         parameters = replace(parameters, output_encoder_reference='none')
-        task = replace(self._task, parameters=parameters, allow_offset=False, strict=True)
+        task = replace(self._task, parameters=parameters, strict=True)
         trial = Validator(task, self._topics, solver=self._expectation.solver)
         trial._take({name: batch[name] for name in self._topics})
         return trial

@@ -120,8 +120,6 @@ def test_a_bag_that_is_given_twice_is_validated_once(bags):
         ('wrong', ['--tolerance-position', '1'], 1),
         ('good', ['--tolerance-angle', '0', '--tolerance-position', '0'], 0),
         ('shifted', [], 1),
-        ('shifted', ['--allow-offset'], 0),
-        ('wrong', ['--allow-offset'], 1),
         ('namespaced', [], 0),
         ('good', ['--rotor-topic', '/rotor_state', '--output-topic', '/output_state'], 0),
         ('good', ['--rotor-topic', '/output_state', '--output-topic', '/rotor_state'], 1),

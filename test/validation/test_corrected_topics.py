@@ -78,7 +78,7 @@ def changed(messages, topic: str, number: int, **fields):
 @pytest.mark.parametrize('share', [0.2, 0.35, 0.5, 0.65, 0.8])
 def test_recording_may_begin_at_any_time(config, servo, share):
     begin = [k for k, m in enumerate(servo) if m[0] == '/rotor_state'][round(share * 3000)]
-    report = validate(servo[begin:], config, allow_offset=True)
+    report = validate(servo[begin:], config)
     assert report.verdict == Verdict.PASS, report.findings
     assert topic_of(report, STATE).compared >= (1.0 - share) * 3000 - 1
 
@@ -211,7 +211,7 @@ def test_prefix_and_zero_are_those_of_the_other_outputs(config, changes):
     rotor = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
     other = replace(config, **changes)
     messages = corrected(answered(rotor, other), other)
-    report = validate(messages, config, allow_offset=True)
+    report = validate(messages, config)
     assert report.verdict == Verdict.PASS, report.findings
     if 'rotor_zero' in changes:
         assert validate(messages, config, strict=True).verdict == Verdict.FAIL

@@ -234,13 +234,12 @@ def test_a_value_that_is_not_finite_or_absent_is_found(
 def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topic, field, value):
     """As from a flipped bit: nothing overflows, and everything else is compared."""
     changed, stamp = change_one(recorded, topic, fill(field, value))
-    for name in ('servo', 'allowed'):
-        report = validate(changed, config, allow_offset=name == 'allowed')
-        assert report.verdict == Verdict.FAIL
-        assert sum(t.compared for t in report.topics) >= 598
-        worst = {f.worst_stamp for t in report.topics for f in t.fields if not f.passed}
-        assert worst <= {stamp, None}
-        assert not any('times the expected one' in text for text in texts(report))
+    report = validate(changed, config)
+    assert report.verdict == Verdict.FAIL
+    assert sum(t.compared for t in report.topics) >= 598
+    worst = {f.worst_stamp for t in report.topics for f in t.fields if not f.passed}
+    assert worst <= {stamp, None}
+    assert not any('times the expected one' in text for text in texts(report))
 
 
 @pytest.mark.parametrize('value', [1.4e154, 1e300])
@@ -424,25 +423,10 @@ def test_what_is_wrong_with_all_messages_is_named(recorded, config, topic, edit,
     assert any('exceeds the tolerance' in text for text in others)
 
 
-def test_an_offset_of_the_output_angle_alone_is_named_and_accepted_on_request(recorded, config):
-    for messages, passed, said in (
-        (
-            change_all(recorded, OUTPUT, add('position', 0.125)),
-            True,
-            ['accepted: the recorded output angle is off by a constant 0.125 rad'],
-        ),
-        (recorded, True, []),
-        (change_one(recorded, OUTPUT, add('position', 0.1))[0], False, []),
-        (change_all(recorded[:3], OUTPUT, fill('position', 1e17)), False, None),
-    ):
-        report = validate(messages, config, allow_offset=True)
-        assert report.passed == passed
-        assert texts(report) == said or said is None
-        assert passed == (field_of(report, OUTPUT, 'position').max_error < 1e-12)
-    refused = validate(change_all(recorded, OUTPUT, add('position', 0.125)), config)
-    assert texts(refused) == [
-        'the recorded output angle is off by a constant 0.125 rad; --allow-offset accepts it'
-    ]
+def test_an_offset_of_the_output_angle_alone_is_named(recorded, config):
+    report = validate(change_all(recorded, OUTPUT, add('position', 0.125)), config)
+    assert not report.passed
+    assert texts(report) == ['the recorded output angle is off by a constant 0.125 rad']
 
 
 def test_a_prefix_is_that_of_the_parameters_or_the_one_that_all_outputs_have(recorded, config):
