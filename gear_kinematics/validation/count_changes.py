@@ -183,7 +183,7 @@ class CountChanges:
 
     def _learn_changes(self, samples: Array, position: FieldSamples) -> None:
         """Learn the changes within segments, each from the first output that is off by it."""
-        number, expected, error = samples['number'], position.expected[:, 0], position.error
+        number, expected, error = samples['number'], position.expected, position.error
         moved = np.zeros(len(error))
         while (wrong := ~(np.abs(error - moved) <= self._tolerance)).any():
             first = int(np.argmax(wrong))

@@ -1,26 +1,39 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A validation as a document."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
 from gear_kinematics.report.document import (
     OUTCOME,
     Case,
+    Cell,
     Document,
+    Layout,
     Section,
+    Table,
+    Tone,
     Verdict,
     counted,
+    number,
     printable,
 )
 from gear_kinematics.validation.figure import figure, moving
-from gear_kinematics.validation.findings import answer, described, faults, field_name, findings
-from gear_kinematics.validation.report import BagReport
-from gear_kinematics.validation.tables import bag_name, summary, tables
+from gear_kinematics.validation.findings import (
+    answer,
+    described,
+    faults,
+    field_name,
+    findings,
+    worst_field,
+)
+from gear_kinematics.validation.report import BagReport, FieldReport, InputReport, TopicReport
 
 SCHEMA = 'gear_kinematics/report'
 VERSION = 1
+
+Row = tuple[Cell, ...]
 
 
 def document(reports: Sequence[BagReport]) -> Document:
@@ -29,6 +42,7 @@ def document(reports: Sequence[BagReport]) -> Document:
     counts = ', '.join(f'{count[verdict]} {OUTCOME[verdict]}' for verdict in Verdict)
     # No bags at all count as unusable.
     verdict = next((v for v in reversed(Verdict) if count[v]), Verdict.UNUSABLE)
+    columns = 'bag', 'verdict', 'compared', 'largest error', 'tolerance', 'first finding'
     return Document(
         'gearkin validate',
         tuple(map(_section, reports)),
@@ -39,16 +53,20 @@ def document(reports: Sequence[BagReport]) -> Document:
             'bags': [_bag(report) for report in reports],
         },
         verdict,
-        summary(reports),
+        Table(columns, tuple(map(_summary, reports)), words=('', 'verdict', 'first finding')),
         f'{counted(len(reports), "bag")}: {counts}' if len(reports) != 1 else '',
     )
+
+
+def _name(report: BagReport) -> str:
+    return printable(report.bag) or '(no name)'
 
 
 def _section(report: BagReport) -> Section:
     drawn = figure(report)
     return Section(
-        bag_name(report),
-        tables(report),
+        _name(report),
+        tuple(_tables(report)),
         report.verdict,
         tuple(findings(report)),
         figure=drawn,
@@ -61,8 +79,8 @@ def _section(report: BagReport) -> Section:
 
 def _bag(report: BagReport) -> dict[str, Any]:
     """Return the JSON content about a bag; docs/report.schema.json describes it."""
-    content = asdict(replace(report, series=(), lanes=(), mechanism=None))
-    for left_out in ('series', 'lanes', 'mechanism', 'module', 'elapsed'):
+    content = asdict(replace(report, series=(), mechanism=None))
+    for left_out in ('series', 'mechanism', 'module', 'elapsed'):
         del content[left_out]
     content['findings'] = [one.text for one in findings(report) if one.kind == 'finding']
     content['causes'] = [described(finding, report) for finding in report.causes]
@@ -87,3 +105,84 @@ def _cases(report: BagReport) -> Iterator[Case]:
         for name in (topic.topic, *(field_name(topic, field) for field in topic.fields)):
             at_fault = (described(one, report) for one in faults(report) if one.topic == name)
             yield Case(printable(name), tuple(at_fault))
+
+
+def _tables(report: BagReport) -> Iterator[Table]:
+    """Yield the tables about a bag; the first describes the reference of the comparison."""
+    yield Table.of_values(
+        Layout.INLINE,
+        ('config', printable(report.config)),
+        ('gear ratio', printable(report.gear_ratio)),
+        ('messages', str(report.messages)),
+    )
+    if report.rotor:
+        yield _input_table(report.rotor)
+    yield Table.of_items(TOPIC, report.topics)
+    fields = (_field(field_name(t, field), field) for t in report.topics for field in t.fields)
+    yield Table(_FIELDS, tuple(fields))
+
+
+def _summary(report: BagReport) -> Row:
+    """What was compared in a bag, and its first finding."""
+    field = worst_field(report)
+    error, tolerance = (field.max_error, field.tolerance) if field else (None, None)
+    unit = printable(field.unit) if field else ''
+    return (
+        Cell(_name(report)),
+        Cell(OUTCOME[report.verdict], Tone.PLAIN if report.passed else Tone.BAD),
+        Cell(str(sum(topic.compared for topic in report.topics))),
+        _measured(error, unit),
+        _measured(tolerance, unit),
+        Cell(next((found.text for found in findings(report)), '')),
+    )
+
+
+def _input_table(rotor: InputReport) -> Table:
+    rejected = {f'rejected, {printable(cause)}': n for cause, n in sorted(rotor.rejected.items())}
+    counts = {'rejected': sum(rotor.rejected.values()), **rejected, 'gaps': rotor.gaps}
+    return Table.of_values(
+        Layout.INLINE,
+        ('joint', printable(rotor.joint)),
+        ('messages', str(rotor.messages)),
+        ('valid', str(rotor.valid)),
+        *((name, _count(count, Tone.NOTABLE)) for name, count in counts.items()),
+        ('rate', _measured(rotor.rate, 'Hz', digits=6)),
+        ('duration', _measured(rotor.duration, 's', digits=6)),
+        ('max speed', _measured(rotor.max_speed, 'rad/s', digits=6)),
+        about=('input', printable(rotor.topic)),
+    )
+
+
+TOPIC: Mapping[str, Callable[[TopicReport], str | Cell]] = {
+    'topic': lambda topic: printable(topic.topic),
+    'messages': lambda topic: str(topic.messages),
+    'compared': lambda topic: Cell(str(topic.compared), *[Tone.BAD] * (not topic.compared)),
+    'missing': lambda topic: _count(topic.missing),
+    'extra': lambda topic: _count(topic.extra),
+    'out of order': lambda topic: _count(topic.out_of_order),
+    'left out': lambda topic: Cell(str(sum(topic.left_out.values()) or ''), Tone.NOTABLE),
+}
+"""The columns about a topic."""
+_FIELDS = 'field', 'compared', 'absent', 'not finite', 'max error', 'tolerance', 'rms error'
+
+
+def _field(name: str, field: FieldReport) -> Row:
+    unit = printable(field.unit)
+    errors = (field.max_error, field.tolerance, field.rms_error) if field.compared else [None] * 3
+    greatest, *others = (_measured(error, unit) for error in errors)
+    return (
+        Cell(name, unit=unit),
+        Cell(str(field.compared)),
+        _count(field.absent),
+        _count(field.non_finite),
+        Cell(greatest.text, Tone.BAD if field.is_beyond else Tone.PLAIN, unit),
+        *others,
+    )
+
+
+def _measured(value: float | None, unit: str, digits: int = 3) -> Cell:
+    return Cell('' if value is None else number(value, digits), unit=unit)
+
+
+def _count(count: int, tone: Tone = Tone.BAD) -> Cell:
+    return Cell(str(count), tone if count else Tone.NONE)

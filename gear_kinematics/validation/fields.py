@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.validation.occurrences import Occurrences
-from gear_kinematics.validation.report import Curve, FieldReport, Series
+from gear_kinematics.validation.report import FieldReport, Series
 from gear_kinematics.wire.cdr import SECOND
 
 Array = NDArray[Any]
@@ -21,27 +21,24 @@ _MAX_SAMPLES = 2000
 
 
 class FieldSamples(NamedTuple):
-    """A field of compared messages; it can have several parts, such as the bodies of poses."""
+    """A field of compared messages."""
 
-    recorded: Array
-    """(n, parts); NaN where it is absent."""
-    expected: Array
-    """(n, parts); NaN where it is absent."""
     error: Array
     """(n,): recorded minus expected, or its magnitude; infinite where the recorded value is not
     finite, NaN where the field is absent."""
     one_sided: Array = np.zeros(0, np.intp)
     """(m,): indices of the messages with the field in input or output only."""
+    recorded: Array = np.zeros(0)
+    """(n,), where the error is that of one number; NaN where it is absent."""
+    expected: Array = np.zeros(0)
+    """As `recorded`."""
 
 
 class FieldErrors:
     """Statistics of the errors of one field, collected batch by batch."""
 
-    def __init__(
-        self, name: str, unit: str, tolerance: float, parts: Sequence[str] = ('',)
-    ) -> None:
-        """Start without samples; the parts are plotted, and have names if there are several."""
-        self.name, self.tolerance, self.parts = name, tolerance, parts
+    def __init__(self, name: str, unit: str, tolerance: float) -> None:
+        self.name, self.tolerance = name, tolerance
         self.non_finite = Occurrences()
         self.absent = Occurrences()
         self._worst = FieldReport(name, unit, tolerance)
@@ -83,15 +80,16 @@ class FieldErrors:
 
 
 class _Rows(NamedTuple):
-    """Samples of all fields of compared messages."""
+    """Errors of all fields of compared messages."""
 
     stamp: Array
     rotor_angle: Array
-    fields: Sequence[FieldSamples]
+    error: Array
+    """(n, fields)."""
 
 
 class SeriesRecorder:
-    """Keeps one sample of each interval: the worst one, if it is beyond a tolerance."""
+    """Keeps the worst error of each field in each interval of messages."""
 
     def __init__(self, fields: Sequence[FieldErrors]) -> None:
         """Start without samples of these fields."""
@@ -103,7 +101,8 @@ class SeriesRecorder:
         """Add compared messages (n,): stamps, ns, rotor angles, rad, and their fields."""
         if not len(stamp):
             return
-        self._kept.append(self._thinned(_Rows(stamp, rotor_angle, fields), self._interval))
+        error = np.column_stack([field.error for field in fields])
+        self._kept.append(self._thinned(_Rows(stamp, rotor_angle, error), self._interval))
         while sum(len(rows.stamp) for rows in self._kept) > _MAX_SAMPLES:
             self._kept = [self._thinned(_joined(self._kept), 2)]
             self._interval *= 2
@@ -113,67 +112,32 @@ class SeriesRecorder:
         if not self._kept:
             return None
         rows = _joined(self._kept)
-        curves = [
-            _curve(field, samples)
-            for field, samples in zip(self._fields, rows.fields, strict=True)
-            if not (np.isnan(samples.recorded).all() and np.isnan(samples.expected).all())
-        ]
+        errors = {
+            field.name: error.tolist()
+            for field, error in zip(self._fields, rows.error.T, strict=True)
+            if not np.isnan(error).all()
+        }
         time = (rows.stamp - start) / SECOND
-        return Series(topic, time.tolist(), rows.rotor_angle.tolist(), tuple(curves))
+        return Series(topic, time.tolist(), rows.rotor_angle.tolist(), errors)
 
     def _thinned(self, rows: _Rows, interval: int) -> _Rows:
-        """Keep one sample of each interval, of a field beyond its tolerance the worst one."""
-        excess = np.zeros(len(rows.stamp))
-        for field, samples in zip(self._fields, rows.fields, strict=True):
-            size = _size(samples.error)
-            share = size / max(field.tolerance, sys.float_info.min)
-            excess = np.maximum(excess, np.where(size > field.tolerance, share, 0.0))
-        worst = _greatest(excess, interval)
-        middle = np.minimum(np.arange(0, len(excess), interval) + interval // 2, len(excess) - 1)
-        chosen = np.where(excess[worst] > 0.0, worst, middle)
-        fields = []
-        for field, samples in zip(self._fields, rows.fields, strict=True):
-            # The worst error always, the values of another sample if they agree anyway.
-            size = _size(samples.error)
-            worst = _greatest(size, interval)
-            shown = np.where(size[worst] > field.tolerance, worst, chosen)
-            values = samples.recorded[shown], samples.expected[shown]
-            fields.append(FieldSamples(*values, samples.error[worst]))
-        return _Rows(rows.stamp[chosen], rows.rotor_angle[chosen], fields)
+        """Keep the moment at which most of a tolerance was used, and the worst of each field."""
+        tolerance = [max(field.tolerance, sys.float_info.min) for field in self._fields]
+        # Errors of absent values are less than any other.
+        size = np.where(np.isnan(rows.error), -1.0, np.abs(rows.error))
+        share = (size / tolerance).max(axis=1, keepdims=True)
+        moment = _greatest(share, interval)[:, 0]
+        error = np.take_along_axis(rows.error, _greatest(size, interval), axis=0)
+        return _Rows(rows.stamp[moment], rows.rotor_angle[moment], error)
 
 
 def _joined(kept: Sequence[_Rows]) -> _Rows:
-    stamps, angles, fields = zip(*kept, strict=True)
-    samples = (
-        FieldSamples(*map(np.concatenate, zip(*of, strict=True)))
-        for of in zip(*fields, strict=True)
-    )
-    return _Rows(np.concatenate(stamps), np.concatenate(angles), list(samples))
+    return _Rows(*map(np.concatenate, zip(*kept, strict=True)))
 
 
 def _greatest(size: Array, interval: int) -> Array:
-    """Index of the greatest of each interval of sizes, (n,), none of which is below -1."""
-    padded = np.pad(size, (0, -len(size) % interval), constant_values=-1.0)
-    found: Array = np.arange(0, len(size), interval) + padded.reshape(-1, interval).argmax(axis=1)
-    return found
-
-
-def _curve(field: FieldErrors, samples: FieldSamples) -> Curve:
-    """Return the curve of the part that is farthest off where the field is worst."""
-    recorded, expected, error, _ = samples
-    worst = int(np.argmax(_size(error)))
-    off = np.abs(recorded[worst] - expected[worst])
-    part = int(np.argmax(np.nan_to_num(off, nan=np.inf)))
-    return Curve(
-        field.name,
-        field.parts[part],
-        recorded[:, part].tolist(),
-        expected[:, part].tolist(),
-        error.tolist(),
-    )
-
-
-def _size(error: Array) -> Array:
-    """Magnitudes of errors; those of absent values are less than any other."""
-    size: Array = np.where(np.isnan(error), -1.0, np.abs(error))
-    return size
+    """Rows of the greatest of each interval of sizes, (n, fields)."""
+    padding = (0, -len(size) % interval), (0, 0)
+    padded = np.pad(size, padding, constant_values=-np.inf)
+    within = padded.reshape(-1, interval, size.shape[1]).argmax(axis=1)
+    return np.asarray(np.arange(0, len(size), interval)[:, np.newaxis] + within)

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import Finding, Gap, InputReport
 from gear_kinematics.wire.cdr import SECOND
 
@@ -15,23 +14,20 @@ Array = NDArray[np.float64]
 
 _MIN_GAP = 5.0  # median periods
 _MAX_LISTED = 10  # listed gaps
-_PERIODS_FOR_MEDIAN = 65_536
 
 
 class InputHealth:
-    """Collects statistics of the samples, batch by batch, in bounded memory."""
+    """Collects statistics of the samples, batch by batch."""
 
     def __init__(self, max_speed: float) -> None:
         """Start without samples; the rotor can turn at `max_speed`, rad/s."""
-        self.gaps = Occurrences()
         self._max_speed = max_speed
         self._first_stamp: int | None = None
-        self._last_stamp: int | None = None
-        self._last_angle = 0.0
+        self._last: tuple[int, float] | None = None  # stamp, ns, and angle, rad
         self._duration = 0.0
-        self._period_count = 0
-        self._waiting: list[tuple[NDArray[np.int64], Array, Array]] = []
-        self._median = 0.0
+        self._period = 0.0
+        """s, the median of the first batch."""
+        self._gaps = 0
         self._longest: list[Gap] = []
         self._overspeed = 0
         self._fastest = 0.0
@@ -40,28 +36,28 @@ class InputHealth:
         """Add the next samples: stamps in ns, angles in rad, (n,)."""
         if not len(stamp):
             return
-        if self._last_stamp is None:
+        if self._first_stamp is None:
             self._first_stamp = int(stamp[0])
-            self._last_stamp, self._last_angle = int(stamp[0]), float(rotor_angle[0])
-        period = np.diff(stamp, prepend=self._last_stamp) / SECOND
-        turned = np.diff(rotor_angle, prepend=self._last_angle)
-        self._last_stamp, self._last_angle = int(stamp[-1]), float(rotor_angle[-1])
+        last_stamp, last_angle = self._last or (stamp[0], rotor_angle[0])
+        self._last = int(stamp[-1]), float(rotor_angle[-1])
+        period = np.diff(stamp, prepend=last_stamp) / SECOND
+        turned = np.diff(rotor_angle, prepend=last_angle)
         forward = period > 0.0  # neither a duplicate nor a restart
         period, turned, stamp = period[forward], turned[forward], stamp[forward]
+        if not len(period):
+            return
         self._duration += float(period.sum())
         speed = np.abs(turned) / period
-        self._fastest = max(self._fastest, float(speed.max(initial=0.0)))
+        self._fastest = max(self._fastest, float(speed.max()))
         self._overspeed += int(np.count_nonzero(speed > self._max_speed))
-        self._waiting.append((stamp, period, turned))
-        if not self._median:
-            self._period_count += len(period)
-            if self._period_count < _PERIODS_FOR_MEDIAN:
-                return
-        self._find_gaps()
+        self._period = self._period or float(np.median(period))
+        long = np.flatnonzero(period > _MIN_GAP * self._period)
+        self._gaps += len(long)
+        gaps = [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in long]
+        self._longest = sorted(self._longest + gaps, key=lambda gap: -gap.seconds)[:_MAX_LISTED]
 
     def report(self, rotor_input: RotorInput, topic: str) -> InputReport:
         """Report on everything so far."""
-        self._find_gaps()
         return InputReport(
             topic=topic,
             joint=rotor_input.parameters.rotor_joint,
@@ -73,31 +69,15 @@ class InputHealth:
             unnormalised_stamps=rotor_input.unnormalised_stamps,
             resets=rotor_input.resets,
             first_stamp=self._first_stamp,
-            rate=1.0 / self._median if self._median else 0.0,
+            rate=1.0 / self._period if self._period else 0.0,
             duration=self._duration,
-            gaps=self.gaps.count,
+            gaps=self._gaps,
             jumps=rotor_input.unknown_turns,
             overspeed=self._overspeed,
             max_speed=self._fastest,
             longest_gaps=tuple(self._longest),
             referenced=not rotor_input.unknown_turns,
         )
-
-    def _find_gaps(self) -> None:
-        """Find gaps in the waiting periods, compared with the median of the first ones."""
-        if not self._waiting:
-            return
-        stamps, periods, angles = zip(*self._waiting, strict=True)
-        stamp, period, turned = map(np.concatenate, (stamps, periods, angles))
-        self._waiting.clear()
-        if not self._median and len(period):
-            self._median = float(np.median(period))
-        long = np.flatnonzero(period > _MIN_GAP * self._median)
-        self.gaps.add_spans(stamp[long] - np.round(SECOND * period[long]).astype(int), stamp[long])
-        longest = long[np.argsort(-period[long], kind='stable')[:_MAX_LISTED]]
-        self._longest += [Gap(int(stamp[k]), float(period[k]), float(turned[k])) for k in longest]
-        self._longest.sort(key=lambda gap: -gap.seconds)
-        del self._longest[_MAX_LISTED:]
 
 
 def _mostly_rejected(rotor: InputReport) -> Iterator[Finding]:

@@ -212,15 +212,3 @@ class OutputTopic:
             if found.count:
                 text = f'{fault}: {counted(found.count, "message")}'
                 yield Finding(text, stamp=found.first, when='the first at')
-
-    def events(self) -> dict[str, Occurrences]:
-        """Return what makes the topic fail, apart from errors, by its name."""
-        events = {
-            'missing': self.missing.inputs,
-            'extra': self.matcher.extra,
-            'out of order': self.matcher.out_of_order,
-        }
-        for errors in self.errors:
-            events[f'{errors.name} not finite'] = errors.non_finite
-            events[f'{errors.name} absent'] = errors.absent
-        return events

@@ -63,10 +63,10 @@ class JointStateTopic(OutputTopic):
         error = np.where(wanted & there, finite_or_infinite(recorded - expected), np.nan)
         fields = [
             FieldSamples(
-                recorded[:, k : k + 1],
-                expected[:, k : k + 1],
                 error[:, k],
                 np.flatnonzero(wanted[:, k] != there[:, k]),
+                recorded[:, k],
+                expected[:, k],
             )
             for k in range(len(self.units))
         ]
@@ -118,18 +118,16 @@ class OutputState(JointStateTopic):
         rotor_angle, (position, *others) = super()._compare(rows, samples)
         while self._changes.learn(samples, position):
             rotor_angle, expected = _rotor_angle(samples), self._ideal_angle(samples)
-            error = finite_or_infinite(position.recorded[:, 0] - expected)
+            error = finite_or_infinite(position.recorded - expected)
             error[np.isnan(position.error)] = np.nan
-            position = position._replace(expected=expected[:, np.newaxis], error=error)
-        self._changes.note(samples, position.expected[:, 0])
-        fields = position, *others
-        for factor, field in zip(self._factors.values(), fields[1:], strict=True):
-            factor.update(field.recorded[:, 0], field.expected[:, 0])
-        output_angle = fields[0].recorded[:, 0]
-        error = output_angle - fields[0].expected[:, 0]
+            position = position._replace(expected=expected, error=error)
+        self._changes.note(samples, position.expected)
+        for factor, field in zip(self._factors.values(), others, strict=True):
+            factor.update(field.recorded, field.expected)
+        error = position.recorded - position.expected
         usable = np.isfinite(error)
-        self.fit.update(rotor_angle[usable], output_angle[usable], error[usable])
-        return rotor_angle, fields
+        self.fit.update(rotor_angle[usable], position.recorded[usable], error[usable])
+        return rotor_angle, (position, *others)
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains errors of the angle, or else of the velocity and the effort."""
@@ -153,13 +151,12 @@ class BodyPoses(OutputTopic):
         branches = [branch.name for branch in mechanism.branches]
         tolerances = expectation.tolerances
         self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
-        coordinates = [f'{body} {axis}' for body in self._bodies for axis in 'xyz']
         super().__init__(
             name,
             frame_id,
             expectation,
-            FieldErrors('position', 'm', tolerances.position, coordinates),
-            FieldErrors('orientation', 'rad', tolerances.angle, self._bodies),
+            FieldErrors('position', 'm', tolerances.position),
+            FieldErrors('orientation', 'rad', tolerances.angle),
         )
         self._mechanism = mechanism
         self._axial = np.array([[b.axial_position] for b in mechanism.branches] * 2)
@@ -188,22 +185,11 @@ class BodyPoses(OutputTopic):
         x, y, z = np.moveaxis(poses[..., :3] - expected, -1, 0)
         position = np.hypot(np.hypot(x, y), z).max(axis=1)
         self._order.update(poses[..., :3], expected, position, stamp)
-        angle = state.output_turn_angle[:, np.newaxis]
-        recorded = 2.0 * np.arctan2(poses[..., 5], poses[..., 6])
-        orientation = _orientation_error(poses[..., 3:], angle)
-        shape = len(rows), 3 * len(self._bodies)
-        return _rotor_angle(samples), (
-            FieldSamples(
-                poses[..., :3].reshape(shape),
-                expected.reshape(shape),
-                np.where(known, finite_or_infinite(position), np.nan),
-            ),
-            FieldSamples(
-                recorded - TURN * np.round((recorded - angle) / TURN),
-                np.broadcast_to(angle, recorded.shape),
-                np.where(known, finite_or_infinite(orientation), np.nan),
-            ),
-        )
+        orientation = _orientation_error(poses[..., 3:], state.output_turn_angle[:, np.newaxis])
+        return _rotor_angle(samples), [
+            FieldSamples(np.where(known, finite_or_infinite(error), np.nan))
+            for error in (position, orientation)
+        ]
 
 
 def _orientation_error(quaternions: Array, angle: Array) -> Array:

@@ -66,7 +66,6 @@ class Missing:
         """Numbers of missing outputs that are not judged, by cause."""
         self.ended_early: float | None = None
         """s from the last input with an output to the last input, if that is too long."""
-        self._unjudged = Occurrences()
         self.last_answered: int | None = None
         """When the last input with an output was received, ns."""
         self._is_open = False  # whether the last judged input has no output
@@ -75,7 +74,6 @@ class Missing:
         """Process inputs, (n,), by whether they are answered; a cause leaves them unjudged."""
         if cause:
             self.left_out[cause] += int(np.count_nonzero(~answered))
-            self._unjudged.add(stamp[~answered])
         else:
             self.inputs.add(stamp[~answered])
             if len(answered):
@@ -90,7 +88,7 @@ class Missing:
         self.update(received[:end], stamp[:end], answered[:end])
         self.update(received[end:], stamp[end:], answered[end:], AFTER)
         if self.last_answered is None:
-            self.inputs.add_all(self._unjudged)
+            self.inputs.count += self.left_out.total()
             self.left_out.clear()
         elif late:
             self.ended_early = (int(received[-1]) - self.last_answered) * 1e-9

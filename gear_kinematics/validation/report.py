@@ -149,19 +149,6 @@ class InputReport:
 
 
 @dataclass(frozen=True, slots=True)
-class Curve:
-    """A field over the time of its series; the lists are as long."""
-
-    field: str
-    part: str
-    """What of the field: the coordinate of a pose that is farthest off, such as `oldham_b x`."""
-    recorded: list[float]
-    expected: list[float]
-    error: list[float]
-    """The worst of each interval: recorded minus expected, or the magnitude of a vector."""
-
-
-@dataclass(frozen=True, slots=True)
 class Series:
     """A thinned-out record of a topic over time for plots; all lists have the same length."""
 
@@ -169,21 +156,9 @@ class Series:
     time: list[float]
     """s, since the first sample of the input."""
     rotor_angle: list[float]
-    curves: tuple[Curve, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Lane:
-    """When something happened on a topic."""
-
-    topic: str
-    event: str
-    """Such as `missing`."""
-    count: int
-    spans: list[tuple[float, float]]
-    """First and last time, s, since the first sample of the input; neighbours are joined."""
-    fails: bool = True
-    """Whether the bag fails because of it."""
+    errors: dict[str, list[float]] = field(default_factory=dict)
+    """By the names of the fields, the worst of each interval: recorded minus expected, or the
+    magnitude of a vector."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,8 +182,6 @@ class BagReport:
     """Of the recording as a whole; `explain` adds the faults of topics and fields."""
     series: tuple[Series, ...] = ()
     """Of the output topics with anything to compare."""
-    lanes: tuple[Lane, ...] = ()
-    """What happened on the topics, where anything did."""
     mechanism: Mechanism | None = None
     """The mechanism for which the outputs were recomputed."""
     module: float = 0.0

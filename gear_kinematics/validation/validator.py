@@ -31,10 +31,9 @@ from gear_kinematics.validation.matching import (
     OutputTopic,
     Solver,
 )
-from gear_kinematics.validation.occurrences import Occurrences, lanes
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState
 from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
-from gear_kinematics.validation.report import BagReport, Finding, Lane
+from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.turn_references import TurnReferences
 from gear_kinematics.wire.cdr import MalformedMessageError
@@ -76,7 +75,6 @@ class Validator:
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
         self._health = input_health.InputHealth(parameters.max_rotor_speed)
-        self._rejected = Occurrences()
         self._inputs = RecordedInputs(strict=task.strict)
         self._begun: dict[str, int] = {}  # when the first message of each topic was received, ns
         angle, homing = task.tolerances.angle, not task.strict
@@ -166,7 +164,6 @@ class Validator:
             topics=topics,
             findings=findings,
             series=tuple(found for found in series if found),
-            lanes=tuple(self._lanes(start)) if rotor.valid else (),
             mechanism=self._gear if isinstance(self._gear, Mechanism) else None,
             module=self._parameters.module,
         )
@@ -202,7 +199,6 @@ class Validator:
         messages = batch[self._topics.rotor]
         samples = self._input.accept_batch(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
-        self._rejected.add(samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
         columns = {name: getattr(samples, name) for name, _ in SAMPLES[1:]}
         columns['number'] = self._samples + np.arange(len(samples.stamp))
@@ -323,10 +319,3 @@ class Validator:
             yield from group.causes()
         if corrected and not self._correction:
             yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
-
-    def _lanes(self, start: int) -> Iterator[Lane]:
-        """Yield a lane for everything that happened on the topics, with the time 0 at a stamp."""
-        events = {'gaps': self._health.gaps, 'rejected': self._rejected}
-        yield from lanes(self._topics.rotor, events, start, fails=False)
-        for output in self._outputs.values():
-            yield from lanes(output.name, output.events(), start)

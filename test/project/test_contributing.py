@@ -10,7 +10,7 @@ from types import ModuleType
 import pytest
 
 from gear_kinematics.commands import cli
-from gear_kinematics.validation import input_health, tables
+from gear_kinematics.validation import document, input_health
 
 ROOT = Path(__file__).resolve().parents[2]
 BAG = ROOT / 'bags' / 'driver_faults'
@@ -38,8 +38,8 @@ def test_a_check_fails_a_bag_and_says_why(name, monkeypatch, capsys):
 
 def test_a_field_of_the_report_is_in_every_form(monkeypatch, capsys, tmp_path):
     pytest.importorskip('plotly')
-    added = eval(FIELD, vars(tables))  # noqa: S307, our own
-    monkeypatch.setattr(tables, 'TOPIC', {**tables.TOPIC, **added})
+    added = eval(FIELD, vars(document))  # noqa: S307, our own
+    monkeypatch.setattr(document, 'TOPIC', {**document.TOPIC, **added})
     files = {form: tmp_path / form for form in ('html', 'junit')}
     written = [word for form, path in files.items() for word in (f'--{form}', str(path))]
     assert cli.main(['validate', '-v', str(BAG), *written]) == 0

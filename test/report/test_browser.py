@@ -19,7 +19,7 @@ from gear_kinematics.report.document import Document, Figure, Line, Panel, Pen, 
 from gear_kinematics.report.html import to_html
 from gear_kinematics.shape.outlines import bodies
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.report import Curve, Series
+from gear_kinematics.validation.report import Series
 
 pytestmark = pytest.mark.slow
 
@@ -46,8 +46,7 @@ def browser():
 
 @pytest.fixture(scope='module')
 def tab(browser, tmp_path_factory):
-    curve = Curve('position', '', *[[0.0] * 41] * 3)
-    series = Series('/output_state', TIMES, ANGLES, (curve,))
+    series = Series('/output_state', TIMES, ANGLES, {'position': [0.0] * 41})
     reports = [
         replace(samples.PASSING, series=(series,), mechanism=mechanism, module=module)
         for mechanism, module in MECHANISMS

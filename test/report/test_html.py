@@ -23,7 +23,7 @@ from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.report.symmetric_log import SymmetricLog
 from gear_kinematics.validation.document import document
-from gear_kinematics.validation.report import Curve, Series
+from gear_kinematics.validation.report import Series
 
 
 def to_html(reports):
@@ -145,7 +145,7 @@ def test_tables_show_what_is_bad():
         "//*[self::td or self::dd][contains(@class, 'bad') or contains(@class, 'notable')]"
     )
     notable = [cell.text for cell in tree.xpath("//dd[contains(@class, 'notable')]")]
-    assert notable == ['5', '3', '2', '1', '1', '7', '1', '2', '1', '4', 'no']
+    assert notable == ['5', '3', '2', '2']
 
 
 def test_page_begins_with_cause_and_figure_and_ends_with_folded_tables():
@@ -170,12 +170,15 @@ def test_page_begins_with_cause_and_figure_and_ends_with_folded_tables():
     assert not section.xpath('.//details[@open]')
 
 
-def test_mechanism_stands_where_the_error_was_greatest():
+def test_mechanism_stands_at_the_moment_of_the_gravest_finding():
     rotor = replace(samples.FAILING.rotor, first_stamp=samples.START)
-    tree = parse(without_plotly(to_html([replace(samples.FAILING, rotor=rotor)])))
+    wrong = replace(samples.FAILING.topics[0], faults=())
+    failing = replace(samples.FAILING, rotor=rotor, topics=(wrong,))
+    tree = parse(without_plotly(to_html([failing])))
     # The worst sample is 2.5 s from the start, and there is one every 10 ms.
     assert tree.xpath('//input[@type="range"]/@value') == ['250']
-    missing = replace(samples.FAILING, rotor=rotor, topics=(replace(samples.OUTPUT, missing=11),))
+    missing = replace(wrong, fields=samples.OUTPUT.fields)
+    missing = replace(samples.FAILING, rotor=rotor, topics=(missing,))
     tree = parse(without_plotly(to_html([missing])))
     assert tree.xpath('//input[@type="range"]/@value') == ['100']
     tree = parse(without_plotly(to_html([samples.PASSING])))
@@ -188,83 +191,48 @@ def panels(plots):
     return [[t['name'] for t in plots['data'] if t['yaxis'] == axis] for axis in axes]
 
 
-def test_figure_begins_with_what_failed_recorded_over_expected():
+def test_figure_shows_the_errors_of_what_failed():
     plots = figure(samples.FAILING)
     output, _ = samples.FAILING.series
-    [position] = output.curves
     assert plots['time'] == pytest.approx(output.time)
-    assert panels(plots) == [
-        ['expected', 'recorded'],
-        ['error'],
-        ['/rotor_state gaps', '/output_state missing', '/output_state extra'],
-        ['rotor angle'],
-    ]
-    expected, recorded, error = plots['data'][:3]
-    assert expected['y'] == pytest.approx(position.expected, rel=1e-7)
-    assert recorded['y'] == pytest.approx(position.recorded, rel=1e-7)
-    assert error['customdata'] == pytest.approx(position.error, rel=1e-3, abs=0)
-    assert plots['data'][-1]['y'] == pytest.approx(output.rotor_angle, rel=1e-7)
-    page = parse(without_plotly(to_html([samples.FAILING])))
-    assert [name.text for name in page.iter('button')] == ['Play', 'expected', 'recorded']
-    passed = panels(figure(samples.PASSING))
-    assert passed == [['expected', 'recorded'], ['error'], ['error'], ['rotor angle']]
+    assert panels(plots) == [['error'], ['rotor angle']]
+    error, rotor = plots['data']
+    assert error['customdata'] == pytest.approx(output.errors['position'], rel=1e-3, abs=0)
+    assert rotor['y'] == pytest.approx(output.rotor_angle, rel=1e-7)
+    assert panels(figure(samples.PASSING)) == [['error'], ['rotor angle']]
 
 
-def test_figure_has_a_curve_for_every_field_that_failed():
+def test_figure_has_a_panel_for_every_field_that_failed():
     names = ('position', 'velocity', 'effort', 'orientation')
     fields = tuple(replace(samples.POSITION, name=name, max_error=1.0) for name in names)
-    curves = tuple(Curve(name, '', [0.0, 1.0], [0.0, 0.0], [0.0, 1.0]) for name in names)
+    errors = {name: [0.0, 1.0] for name in names}
     report = replace(
         samples.FAILING,
         topics=(replace(samples.OUTPUT, fields=fields),),
-        series=(Series('/output_state', [0.0, 1.0], [0.0, 1.0], curves),),
-        lanes=(),
+        series=(Series('/output_state', [0.0, 1.0], [0.0, 1.0], errors),),
     )
     plots = figure(report)
-    assert panels(plots) == [['expected', 'recorded'], ['error']] * 4 + [['rotor angle']]
+    assert panels(plots) == [['error']] * 4 + [['rotor angle']]
     titles = [note['text'] for note in plots['layout']['annotations']]
     assert titles == [f'/output_state {name}' for name in names]
 
 
-def test_lanes_come_first_where_no_value_is_wrong():
-    """Events are lines with an end, and have their count beside their name."""
-    missing = replace(samples.FAILING, topics=(replace(samples.OUTPUT, missing=11),))
-    plots = figure(missing)
-    assert panels(plots)[0] == [f'{lane.topic} {lane.event}' for lane in samples.FAILING.lanes]
-    gaps, lost, _ = plots['data'][:3]
-    assert gaps['x'] == pytest.approx([1.76, 1.8, None, 3.09, 3.1, None], nan_ok=True)
-    assert lost['x'] == [1.0, 1.02, None, 2.0, 2.0, None]
-    texts = [shape['label']['text'] for shape in plots['layout']['shapes'] if 'label' in shape]
-    assert texts[:3] == [
-        '/rotor_state gaps: 2',
-        '/output_state missing: 11',
-        '/output_state extra: 8',
-    ]
-
-
 def test_figure_marks_the_tolerances():
-    passing = figure(samples.PASSING)
-    by_axis = {}
-    for shape in passing['layout']['shapes']:
-        by_axis.setdefault(shape['yref'], []).append(shape['y0'])
-    # Angle errors have a sign, position errors have none.
-    assert len(by_axis['y2']) == 2
-    assert sum(by_axis['y2']) == 0
-    assert len(by_axis['y3']) == 1
-    # An error beyond the tolerance is drawn beyond its line.
-    failing = figure(samples.FAILING)
-    line = max(shape['y0'] for shape in failing['layout']['shapes'] if shape['yref'] == 'y2')
-    assert max(failing['data'][2]['y']) > line
-    assert max(passing['data'][2]['y']) < max(by_axis['y2'])
+    passing, failing = figure(samples.PASSING), figure(samples.FAILING)
+    for plots in (passing, failing):  # an error beyond the tolerance is drawn beyond its line
+        shapes = plots['layout']['shapes']
+        levels = [shape['y0'] for shape in shapes if shape['yref'] == 'y1']
+        assert (len(levels), sum(levels)) == (2, 0)
+        assert (max(plots['data'][0]['y']) > max(levels)) == (plots is failing)
+    poses = replace(samples.PASSING, topics=(samples.POSES,))  # whose errors have no sign
+    shapes = figure(poses)['layout']['shapes']
+    assert [shape['yref'] for shape in shapes].count('y1') == 1
 
 
 def test_values_that_are_no_numbers_leave_holes():
     plots = figure(samples.NOT_FINITE)
     assert plots['time'] == [0.0, None]
-    expected, recorded, error, *_ = plots['data']
-    assert expected['y'] == [None, 1.0]
-    assert recorded['y'] == [0.0, 1.0]
-    assert error['y'] == [None, None]
+    assert plots['data'][0]['y'] == [None, None]
     assert plots['data'][-1]['y'] == [0.0, None]
     assert plots['turned'] == {'rotor': [0.0, None], 'output': [0.0, None]}
 
@@ -287,9 +255,7 @@ MECHANISM = Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.p
 def moving(angles, period=0.001, mechanism=MECHANISM):
     count = len(angles)
     time = [period * k for k in range(count)]
-    zeros = [0.0] * count
-    curve = Curve('position', '', zeros, zeros, zeros)
-    series = (Series('/output_state', time, angles, (curve,)),)
+    series = (Series('/output_state', time, angles, {'position': [0.0] * count}),)
     return replace(samples.PASSING, series=series, mechanism=mechanism)
 
 

@@ -44,14 +44,10 @@ def test_pipe_has_one_row_per_line_in_the_order_of_the_report():
     name = f'{samples.FAILING.bag}: '
     tables = [line.removeprefix(name) for line in lines if f'{name}/rotor_state' in line]
     assert tables[0].startswith('/rotor_state: joint: rotor; messages: 4013; valid: 4008; ')
-    assert tables[0].endswith('overspeed: 4; max speed: 314.159 rad/s; referenced: no')
-    end = 'until stamp: 1700000001923456789 ns; silence: 0.0423 s; rotor turned: 13.2 rad'
-    assert tables[1] == f'/rotor_state gap 1: {end}'
-    assert len(tables) == 3
-    assert (
-        f'{name}/output_state position: worst at stamp: 1700000002623456789 ns; '
-        'worst at rotor angle: 785.398163 rad'
-    ) in lines
+    assert tables[0].endswith(
+        'gaps: 2; rate: 1000 Hz; duration: 3.999 s; max speed: 314.159 rad/s'
+    )
+    assert len(tables) == 1
 
 
 def test_every_fault_is_a_sentence_that_names_and_locates_it():
@@ -161,7 +157,7 @@ def test_terminal_cuts_nothing_off(width):
     assert long.bag in text.replace('\n', '')
     words = set(visible(samples.FAILING, width=1000).split())
     assert set(re.sub('─+', '', visible(samples.FAILING, width=width)).split()) <= words
-    for value in ('1700000002623456789', '785.398163 rad', '4.3e-19', '4.4e-14', '13.2 rad'):
+    for value in ('1700000002623456789', '785.398163 rad', '4.3e-19', '4.4e-14'):
         assert value in text
 
 

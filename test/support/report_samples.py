@@ -8,12 +8,10 @@ from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.report import (
     BagReport,
-    Curve,
     FieldReport,
     Finding,
     Gap,
     InputReport,
-    Lane,
     Series,
     TopicReport,
 )
@@ -66,19 +64,11 @@ def series(error: float = 3.2e-15, count: int = 400) -> tuple[Series, ...]:
     """Give a run up to speed whose error grows to the given one."""
     time = [4.0 * k / count for k in range(count)]
     rotor = [40.0 * t * t + math.sin(9 * t) for t in time]
-    ideal = [-angle / 19 for angle in rotor]
     angle = [error * (k / count) ** 8 * math.cos(k) for k in range(count)]
     position = [1.1e-3 * abs(error) * (k / count) ** 4 for k in range(count)]
-    radius = [1.1e-3 * math.cos(a) for a in ideal]
-    recorded = [a + e for a, e in zip(ideal, angle, strict=True)]
     return (
-        Series('/output_state', time, rotor, (Curve('position', '', recorded, ideal, angle),)),
-        Series(
-            '/body_poses',
-            time,
-            rotor,
-            (Curve('position', 'oldham_b x', radius, radius, position),),
-        ),
+        Series('/output_state', time, rotor, {'position': angle}),
+        Series('/body_poses', time, rotor, {'position': position}),
     )
 
 
@@ -149,11 +139,6 @@ FAILING = replace(
         Finding('The turns of the encoder were not known between 1.8 s and the end.'),
     ),
     series=series(2e-3),
-    lanes=(
-        Lane('/rotor_state', 'gaps', 2, [(1.76, 1.8), (3.09, 3.1)], fails=False),
-        Lane('/output_state', 'missing', 11, [(1.0, 1.02), (2.0, 2.0)]),
-        Lane('/output_state', 'extra', 8, [(1.0, 1.1)]),
-    ),
 )  # fmt: skip
 
 UNUSABLE = BagReport(
@@ -182,10 +167,7 @@ HOSTILE_NAMES = replace(
                 fields=(replace(POSITION, name=HOSTILE, unit=HOSTILE, max_error=1.0),)),
     ),
     findings=(Finding(HOSTILE, cause=True),),
-    series=(
-        Series(HOSTILE, [0.0, 1.0], [0.0, 1.0], (Curve(HOSTILE, HOSTILE, *[[0.0, 1.0]] * 3),)),
-    ),
-    lanes=(Lane(HOSTILE, HOSTILE, 1, [(0.5, 0.5)]),),
+    series=(Series(HOSTILE, [0.0, 1.0], [0.0, 1.0], {HOSTILE: [0.0, 1.0]}),),
 )  # fmt: skip
 
 UNPRINTABLE = replace(
@@ -220,13 +202,9 @@ NOT_FINITE = replace(
             '/output_state',
             [0.0, math.nan],
             [0.0, math.inf],
-            (
-                Curve('position', '', [0.0, 1.0], [math.nan, 1.0], [math.nan, -math.inf]),
-                Curve('velocity', '', [0.0, math.inf], [0.0, 1.0], [0.0, math.inf]),
-            ),
+            {'position': [math.nan, -math.inf], 'velocity': [0.0, math.inf]},
         ),
     ),
-    lanes=(Lane('/output_state', 'missing', 1, [(math.nan, math.inf)]),),
 )
 
 EXACT = replace(
