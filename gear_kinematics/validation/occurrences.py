@@ -20,3 +20,9 @@ class Occurrences:
         if self.first is None and len(stamps):
             self.first = int(stamps[0])
         self.count += len(stamps)
+
+    def add_all(self, others: 'Occurrences') -> None:
+        """Add those of another object."""
+        if self.first is None:
+            self.first = others.first
+        self.count += others.count

@@ -8,7 +8,6 @@ and the recorder has settled; an output counts as extra only if its input would 
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,29 +30,10 @@ _QUIET_TIME = 150_000_000  # ns without a loss after which it has settled earlie
 _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5
 """Median periods between inputs; beyond, an input between them was not recorded."""
-_SILENCE = 2.5
-"""Median periods between inputs; beyond, the recorder lost all topics. It excuses losses, and must
-therefore be more than the jitter of a driver."""
 _MAX_STAMPS = 32_768  # of inputs
 _MAX_RESETS = 64  # of the stamps
 _MAX_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
-_ALWAYS = -(2**62)  # ns
-_APART = 2**40  # ns between the clocks before and after a reset of the stamps
-
-
-class Inputs(NamedTuple):
-    """Inputs in the order of their reception."""
-
-    received: Array
-    """(n,), ns."""
-    stamp: Array
-    """(n,), ns."""
-    answered: Flags
-    """(n, topics): whether the input has its output."""
-
-    def where(self, chosen: Flags) -> 'Inputs':
-        """Select some of them."""
-        return Inputs(self.received[chosen], self.stamp[chosen], self.answered[chosen])
+_NEVER = 2**62  # ns
 
 
 class Missing:
@@ -66,32 +46,40 @@ class Missing:
         """Numbers of missing outputs that are not judged, by cause."""
         self.ended_early: float | None = None
         """s from the last input with an output to the last input, if that is too long."""
-        self.last_answered: int | None = None
-        """When the last input with an output was received, ns."""
-        self._is_open = False  # whether the last judged input has no output
+        self._after = Occurrences()  # inputs after the last one with an output
+        self._after_since = 0  # when the first of them was received, ns
+        self._last_answered: int | None = None  # when it was received, ns
 
-    def update(self, received: Array, stamp: Array, answered: Flags, cause: str = '') -> None:
-        """Process inputs, (n,), by whether they are answered; a cause leaves them unjudged."""
-        if cause:
-            self.left_out[cause] += int(np.count_nonzero(~answered))
-        else:
-            self.inputs.add(stamp[~answered])
-            if len(answered):
-                self._is_open = not answered[-1]
+    def leave_out(self, answered: Flags, cause: str) -> None:
+        """Count inputs, (n,), that are not judged by whether they have their output."""
+        if count := int(np.count_nonzero(~answered)):
+            self.left_out[cause] += count
+
+    def update(self, received: Array, stamp: Array, answered: Flags) -> None:
+        """Judge inputs, (n,), by whether they have their output."""
+        end = 0
         if answered.any():
-            self.last_answered = int(received[answered][-1])
+            end = len(np.trim_zeros(answered, 'b'))
+            self._judge_after()
+            self.inputs.add(stamp[:end][~answered[:end]])
+            self._last_answered = int(received[end - 1])
+        if not self._after.count and end < len(received):
+            self._after_since = int(received[end])
+        self._after.add(stamp[end:])
 
-    def close(self, received: Array, stamp: Array, answered: Flags, *, strict: bool) -> None:
-        """Process the last inputs, of which those after the last output count if `strict`."""
-        late = self._is_open and not answered.any()
-        end = len(answered) if late or strict else len(np.trim_zeros(answered, 'b'))
-        self.update(received[:end], stamp[:end], answered[:end])
-        self.update(received[end:], stamp[end:], answered[end:], AFTER)
-        if self.last_answered is None:
-            self.inputs.count += self.left_out.total()
-            self.left_out.clear()
-        elif late:
-            self.ended_early = (int(received[-1]) - self.last_answered) * 1e-9
+    def close(self, last: int, *, strict: bool) -> None:
+        """Judge the inputs after the last output; the last one was received at a time, ns."""
+        late = self._after.count and last - self._after_since > _MAX_END
+        if strict or late or self._last_answered is None:
+            self._judge_after()
+        elif self._after.count:
+            self.left_out[AFTER] += self._after.count
+        if late and self._last_answered is not None:
+            self.ended_early = (last - self._last_answered) * 1e-9
+
+    def _judge_after(self) -> None:
+        self.inputs.add_all(self._after)
+        self._after = Occurrences()
 
 
 class Completeness:
@@ -101,104 +89,75 @@ class Completeness:
         """Start with no input; `strict` judges everything, as if the recorder lost nothing."""
         self.topics = {topic: Missing() for topic in topics}
         self._rotor = rotor
-        self._unanswered = Missing()  # inputs without an output on any topic
+        self._on_all = Missing()  # inputs without an output on any topic
         self._strict = strict
-        self._start = self._settled = _ALWAYS if strict else None
-        self._waiting: list[Inputs] = []
+        self._start = self._settled = -_NEVER if strict else _NEVER
+        """When all topics were recorded, and the last loss until the recorder had settled, ns."""
+        self._last = 0  # when the last input was received, ns
 
-    def update(self, inputs: Inputs, begun: Mapping[str, int]) -> None:
-        """Process the next inputs; the latest ones wait, as the outputs may end there.
+    def update(
+        self, received: Array, stamp: Array, answered: Flags, begun: Mapping[str, int]
+    ) -> None:
+        """Process the next inputs in the order of their reception.
 
-        `begun` has the times from which topics are recorded, ns, by their names.
+        Args:
+            received: when they were, (n,), ns.
+            stamp: (n,), ns.
+            answered: whether they have their outputs, (n, topics).
+            begun: the times from which topics are recorded, ns, by their names.
         """
-        if not len(inputs.received):
+        if not len(received):
             return
-        names = self._rotor, *self.topics
-        if self._start is None and begun.keys() >= set(names):
-            self._start = max(begun[name] for name in names)
-        start = np.inf if self._start is None else self._start
-        before, last = inputs.received < start, inputs.received[-1]
-        self._take(inputs.where(before), BEFORE)
-        self._waiting.append(inputs.where(~before))
-        if last > start + _SETTLING_TIME:
-            inputs = self._settle()
-            due = inputs.received < last - _MAX_END
-            self._take(inputs.where(due))
-            self._waiting = [inputs.where(~due)]
+        self._last = int(received[-1])
+        names = {self._rotor, *self.topics}
+        if self._start == _NEVER and begun.keys() >= names:
+            self._start = self._settled = max(begun[name] for name in names)
+        before = received < self._start
+        settling = ~before & (received <= self._settle(received[~answered.all(axis=1)]))
+        judged = ~(before | settling)
+        columns = [*zip(self.topics.values(), answered.T, strict=True)]
+        for missing, own in (*columns, (self._on_all, answered.any(axis=1))):
+            missing.leave_out(own[before], BEFORE)
+            missing.leave_out(own[settling], SETTLING)
+            missing.update(received[judged], stamp[judged], own[judged])
+
+    def _settle(self, losses: Array) -> int:
+        """The last loss in an uninterrupted series from the start on, after further ones, ns."""
+        first = losses[(losses >= self._start) & (losses <= self._start + _SETTLING_TIME)]
+        pauses = np.flatnonzero(np.diff(first, prepend=self._settled) > _QUIET_TIME)
+        series = first[: pauses[0]] if len(pauses) else first
+        self._settled = int(series[-1]) if len(series) else self._settled
+        return self._settled
 
     def close(self) -> None:
-        """Judge the inputs that are still waiting, after the last input."""
-        if not self._waiting:
-            return
-        received, stamp, answered = self._settle()
-        due = received < received[-1:] - _MAX_END
-        self._take(Inputs(received, stamp, answered).where(due))
-        for topic, own in self._columns(answered[~due]):
-            strict = self._strict and topic is not self._unanswered
-            topic.close(received[~due], stamp[~due], own, strict=strict)
+        """Judge the inputs after the last outputs."""
+        for missing in (*self.topics.values(), self._on_all):
+            missing.close(self._last, strict=self._strict)
 
     def causes(self) -> Iterator[Finding]:
         """Yield why messages may be missing."""
         texts = [
             f'{name} ends {topic.ended_early:.3f} s before {self._rotor}: the node may have ended'
             for name, topic in self.topics.items()
-            if topic.ended_early is not None
+            if topic.ended_early is not None and not self._strict
         ]
         missing = {name: topic.inputs.count for name, topic in self.topics.items()}
         lost = [
             f'{counted(count, "message")} of {name}' for name, count in missing.items() if count
         ]
         complete = [name for name, count in missing.items() if not count]
-        unanswered = self._unanswered.inputs.count if self._unanswered.last_answered else 0
-        if len(missing) > 1 and lost and not texts and set(missing.values()) == {unanswered}:
+        on_all = self._on_all.inputs.count
+        if len(missing) > 1 and lost and not texts and set(missing.values()) == {on_all}:
             texts.append(
-                f'{counted(unanswered, "message")} of {self._rotor} without any output: '
+                f'{counted(on_all, "message")} of {self._rotor} without any output: '
                 'the node did not receive them, or was blocked'
             )
-        elif lost and complete and not unanswered:
+        elif lost and complete:
             texts.append(
                 f'{", ".join(lost)} missing, but none of {", ".join(complete)}: the node had the '
                 'inputs, and the messages were lost on their way to the recording'
             )
         yield from (Finding(text, cause=True, missing=True) for text in texts)
-
-    def _columns(self, answered: Flags) -> Iterator[tuple[Missing, Flags]]:
-        """Pair all that is counted with whether inputs have their output."""
-        yield from zip(self.topics.values(), answered.T, strict=True)
-        yield self._unanswered, np.asarray(answered.any(axis=1))
-
-    def _take(self, inputs: Inputs, cause: str = '') -> None:
-        for topic, answered in self._columns(inputs.answered):
-            topic.update(inputs.received, inputs.stamp, answered, cause)
-
-    def _settle(self) -> Inputs:
-        """Return the waiting inputs that were received after the recorder had settled."""
-        inputs = Inputs(*map(np.concatenate, zip(*self._waiting, strict=True)))
-        if self._settled is None:
-            start = _ALWAYS if self._start is None else self._start
-            first = inputs.received <= start + _SETTLING_TIME
-            self._settled = _settled(inputs.where(first))
-        settled = inputs.received > self._settled
-        self._take(inputs.where(~settled), SETTLING)
-        return inputs.where(settled)
-
-
-def _settled(inputs: Inputs) -> int:
-    """Time of the last loss in an uninterrupted series from the first input on, ns."""
-    received, stamp, answered = inputs
-    if len(received) < 2:  # noqa: PLR2004, for a period
-        return _ALWAYS
-    incomplete = received[~answered.all(axis=1)]
-    period = np.diff(stamp)
-    silent = np.flatnonzero(period > _SILENCE * np.median(period))
-    losses = [(moment, moment) for moment in incomplete.tolist()]
-    losses += zip(received[silent].tolist(), received[silent + 1].tolist(), strict=True)
-    settled, last = _ALWAYS, int(received[0])
-    for begin, end in sorted(losses):
-        if begin - last > _QUIET_TIME:
-            break
-        settled = last = max(last, end)
-    return settled
 
 
 class RecordedInputs:
@@ -213,34 +172,25 @@ class RecordedInputs:
         self._strict = strict
         self._ages: list[list[int]] = []
         """Time of reception - stamp of the first and the last input since each reset, ns."""
-        self._clock: list[int] = []
-        """What is added to the stamps since each reset, ns, so that those of two never mix."""
         self._known = np.zeros(0, np.int64)
-        """The latest stamps on that clock."""
-        self._complete = True
+        """The latest stamps + the first of these ages: one clock for all, ns."""
         self._last = np.zeros(0, np.int64)
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
         """Add inputs (n,), ns, and the stamps of rejected ones, (m,)."""
-        before = self._last if len(self._last) else stamp[:1]
-        resets = np.diff(stamp, prepend=before) < -CLOCK_RESET
-        self._last = np.append(self._last, stamp)[-1:]
-        ages = received - stamp
-        added = [self._known]
-        for rows in np.split(np.arange(len(stamp)), np.flatnonzero(resets)):
-            if len(rows):
-                first, last = ages[rows[[0, -1]]].tolist()
-                if not self._ages or resets[rows[0]]:
-                    self._ages.append([first, last])
-                    moved = self._clock[-1] - self._ages[-2][0] if self._clock else 0
-                    self._clock.append(first + moved + _APART)
-                self._ages[-1][1] = last
-            if self._ages:
-                added += [stamp[rows] + self._clock[-1], rejected + self._clock[-1]]
-        known = np.concatenate(added)
-        self._complete = self._complete and len(known) <= _MAX_STAMPS
-        self._known = known[-_MAX_STAMPS:]
-        del self._ages[:-_MAX_RESETS], self._clock[:-_MAX_RESETS]
+        if len(stamp):
+            before = self._last if len(self._last) else stamp[:1] + 2 * CLOCK_RESET
+            begins = np.diff(stamp, prepend=before) < -CLOCK_RESET
+            self._last = stamp[-1:]
+            clock = len(self._ages) + np.cumsum(begins) - 1
+            age = received - stamp
+            self._ages += [[first, first] for first in age[begins].tolist()]
+            self._ages[-1][1] = int(age[-1])
+            stamp = stamp + np.array(self._ages)[clock, 0]
+        if self._ages:
+            rejected = rejected + self._ages[-1][0]
+            self._known = np.concatenate([self._known, stamp, rejected])[-_MAX_STAMPS:]
+            del self._ages[:-_MAX_RESETS]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Whether the inputs of outputs (n,), ns, were not recorded."""
@@ -248,22 +198,14 @@ class RecordedInputs:
             return np.zeros(len(stamp), bool)
         if not self._ages:
             return np.ones(len(stamp), bool)
-        age, ages = received - stamp, np.array(self._ages)
-        low, high = ages.min(axis=1)[:, None], ages.max(axis=1)[:, None]
-        distance = np.abs(age - np.clip(age, low, high))
-        stamp = stamp + np.array(self._clock)[np.argmin(distance, axis=0)]
+        first, last = np.array(self._ages).T[..., np.newaxis]
+        age = received - stamp
+        distance = np.abs(age - np.clip(age, np.minimum(first, last), np.maximum(first, last)))
+        stamp = stamp + first[np.argmin(distance, axis=0), 0]
         known = np.unique(self._known)
+        period = float(np.median(np.diff(known))) if len(known) > 1 else 0.0
+        bounds = np.concatenate([[-_NEVER], known, [_NEVER]])
         after = np.searchsorted(known, stamp)
-        bounds = np.concatenate([[known[0]], known, [known[-1]]])
-        period = np.diff(known)
-        longest = HOLE * float(np.median(period)) if len(period) else np.inf
-        gap = bounds[after + 1] - bounds[after]
-        in_hole = (gap > longest) & (bounds[after + 1] != stamp)
-        in_hole &= (gap < _APART // 2) | (distance.min(axis=0) < _MAX_DELAY)
-        too_early = (after == 0) & self._complete & (stamp < known[0])
-        too_late = after == len(known)
-        return np.asarray(
-            in_hole
-            | (too_early & (np.abs(age - ages[0, 0]) < _MAX_DELAY))
-            | (too_late & (np.abs(age - ages[-1, 1]) < _MAX_DELAY))
-        )
+        in_hole = bounds[after + 1] - bounds[after] > HOLE * period
+        there = bounds[after + 1] == stamp
+        return np.asarray(in_hole & ~there & (distance.min(axis=0) < _MAX_DELAY))

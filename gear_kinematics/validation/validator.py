@@ -32,7 +32,7 @@ from gear_kinematics.validation.matching import (
     Solver,
 )
 from gear_kinematics.validation.output_topics import BodyPoses, OutputState
-from gear_kinematics.validation.recorder import Completeness, Inputs, RecordedInputs
+from gear_kinematics.validation.recorder import Completeness, RecordedInputs
 from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.turn_references import TurnReferences
@@ -230,7 +230,7 @@ class Validator:
         for group in self._groups:
             matchers = [self._outputs[name].matcher for name in group.topics]
             answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
-            group.update(Inputs(oldest['received'], oldest['stamp'], answered), self._begun)
+            group.update(oldest['received'], oldest['stamp'], answered, self._begun)
         for output in self._outputs.values():
             output.matcher.drop(count)
         self._window = self._window[count:]
