@@ -7,28 +7,9 @@ In a test of another package:
     assert report.passed, explain(report)
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from gear_kinematics.validation.findings import explain
-    from gear_kinematics.validation.report import BagReport
-    from gear_kinematics.validation.task import Task, Tolerances
-    from gear_kinematics.validation.validate_bag import validate
+from gear_kinematics.validation.findings import explain
+from gear_kinematics.validation.report import BagReport
+from gear_kinematics.validation.task import Task, Tolerances
+from gear_kinematics.validation.validate_bag import validate
 
 __all__ = ['BagReport', 'Task', 'Tolerances', 'explain', 'validate']
-
-_MODULES = {
-    'BagReport': 'report',
-    'Task': 'task',
-    'Tolerances': 'task',
-    'explain': 'findings',
-    'validate': 'validate_bag',
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is used, as most commands need few of them."""
-    if name not in _MODULES:
-        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
-    return getattr(import_module(f'{__name__}.{_MODULES[name]}'), name)

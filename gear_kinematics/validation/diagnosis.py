@@ -2,8 +2,6 @@
 """Causes of deviations: an offset, another mechanism, unit or shaft, another order of poses."""
 
 import math
-from collections import defaultdict
-from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from itertools import permutations
@@ -15,7 +13,7 @@ from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_v
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.validation.occurrences import Occurrences, Stamps
+from gear_kinematics.validation.occurrences import Stamps
 from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
@@ -215,29 +213,19 @@ class PoseOrder:
         """Start with no poses of bodies, in the expected order, with a tolerance, m."""
         self._bodies = bodies
         self._tolerance = tolerance
-        self._found: defaultdict[tuple[int, ...], Occurrences] = defaultdict(Occurrences)
+        self.cause: Finding | None = None
 
     def update(self, recorded: Array, expected: Array, error: Array, stamp: Stamps) -> None:
         """Add positions (n, bodies, 3) and the greatest error of each message (n,), m."""
-        wrong = np.flatnonzero(error > self._tolerance)
-        if not len(wrong) or len(self._bodies) > _MAX_BODIES:
+        wrong = error > self._tolerance
+        if self.cause or not wrong.any() or len(self._bodies) > _MAX_BODIES:
             return
-        worst = int(np.argmax(np.where(np.isfinite(error), error, -1.0)))
+        first = int(np.argmax(wrong))
         for order in permutations(range(len(self._bodies))):
-            if self._fits(recorded[worst], expected[worst, order]):
-                fits = self._fits(recorded[wrong], expected[wrong][:, order])
-                self._found[order].add(stamp[wrong[fits]])
+            if np.abs(recorded[first] - expected[first, order]).max() <= self._tolerance:
+                names = ', '.join(self._bodies[k] for k in order)
+                text = f'the poses are in another order: {names}'
+                self.cause = Finding(
+                    text, cause=True, stamp=int(stamp[first]), when='the first at'
+                )
                 return
-
-    def causes(self, messages: int) -> Iterator[Finding]:
-        """Describe the orders found in a number of messages."""
-        for order, found in self._found.items():
-            text = f'the poses are in another order: {", ".join(self._bodies[k] for k in order)}'
-            if found.count == messages:
-                yield Finding(text, cause=True)
-            else:
-                text = f'in {found.count} of {messages} messages {text}'
-                yield Finding(text, cause=True, stamp=found.first, when='the first at')
-
-    def _fits(self, recorded: Array, expected: Array) -> NDArray[np.bool_]:
-        return np.asarray(np.abs(recorded - expected).max(axis=(-2, -1)) <= self._tolerance)

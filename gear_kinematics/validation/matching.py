@@ -120,8 +120,6 @@ def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
 class OutputTopic:
     """One output topic: matches its messages, keeps late ones for a batch, collects faults."""
 
-    missing: Missing
-    """Its missing messages, which the `Completeness` of the topics finds."""
     _layout: Callable[[bytes], Layout]
     """Returns the layout of a message."""
 
@@ -132,6 +130,7 @@ class OutputTopic:
         self.name, self.label, self.errors = name, label, errors
         self.series = SeriesRecorder(errors)
         self.matcher = Matcher()
+        self.missing = Missing()
         self._gear, self._tolerances, self._solver, self._changes = expectation
         self._unrecorded = 0  # messages whose input was not recorded
         self._malformed = Occurrences()  # when they were received, as they have no stamp
@@ -183,7 +182,7 @@ class OutputTopic:
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains the errors."""
-        raise NotImplementedError
+        yield from ()
 
     def report(self) -> TopicReport:
         """Return the report so far."""

@@ -76,10 +76,6 @@ class JointStateTopic(OutputTopic):
         """The least and the greatest value of each field; NaN where it is absent."""
         raise NotImplementedError
 
-    def causes(self) -> Iterator[Finding]:
-        """Yield nothing."""
-        yield from ()
-
     def _ideal_angle(self, samples: Array) -> Array:
         """The ideal output angle at samples, (n,), rad."""
         turns, angle = samples['turns'], samples['angle']
@@ -163,8 +159,8 @@ class BodyPoses(OutputTopic):
         self._order = PoseOrder(self._bodies, tolerances.position)
 
     def causes(self) -> Iterator[Finding]:
-        """Yield the other orders of the poses."""
-        return self._order.causes(self.matcher.compared)
+        """Yield another order of the poses."""
+        yield from filter(None, [self._order.cause])
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))

@@ -7,7 +7,7 @@ and the recorder has settled; an output counts as extra only if its input would 
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,9 +85,9 @@ class Missing:
 class Completeness:
     """Finds missing outputs on topics with the same inputs, recorded from the same time on."""
 
-    def __init__(self, rotor: str, topics: Sequence[str], *, strict: bool) -> None:
+    def __init__(self, rotor: str, topics: Mapping[str, Missing], *, strict: bool) -> None:
         """Start with no input; `strict` judges everything, as if the recorder lost nothing."""
-        self.topics = {topic: Missing() for topic in topics}
+        self.topics = topics
         self._rotor = rotor
         self._on_all = Missing()  # inputs without an output on any topic
         self._strict = strict

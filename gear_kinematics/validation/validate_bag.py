@@ -24,7 +24,6 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
-from gear_kinematics.wire.joint_reader import JOINT_MISSING
 from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 _BATCH = 8192  # messages of a live node that are validated together
@@ -92,29 +91,23 @@ def _topics(task: Task, bag: Bag, *, outputs: bool) -> Topics:
 def _with_only_joint(task: Task, bag: Bag, rotor: str) -> Task:
     """Return the task with the only joint on the rotor's topic, if its own is not there."""
     joint = task.parameters.rotor_joint
-    found = only_joint(bag, rotor, joint) if task.only_joint else joint
+    found = only_joint(bag, rotor, joint) if task.only_joint and joint else joint
     return replace(task, parameters=replace(task.parameters, rotor_joint=found))
 
 
 def _recorded(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
-    """Validate the recorded outputs; if no message has the joint, with the only joint there."""
+    """Validate the recorded outputs."""
     topics = _topics(task, bag, outputs=True)
     corrected = find_corrected_topics(bag, topics.output)
     encoder = encoder_beside(bag, topics.rotor) if task.parameters.absolute else ''
     names = (*topics, *corrected.values(), *filter(None, [encoder]))
-
-    def judged(task: Task) -> BagReport:
-        validator = Validator(task, topics, corrected, encoder=encoder)
-        return _report(validator, bag.batches(names, progress))
-
-    report = judged(task)
-    if report.rotor and report.rotor.rejected.get(JOINT_MISSING) == report.rotor.messages:
-        other = _with_only_joint(task, bag, topics.rotor)
-        if other != task:
-            report = judged(other)
-            joint = other.parameters.rotor_joint
-            taken = Finding(f'{joint}, the only joint on {topics.rotor}, is taken')
-            report = replace(report, findings=(taken, *report.findings))
+    judged = _with_only_joint(task, bag, topics.rotor)
+    validator = Validator(judged, topics, corrected, encoder=encoder)
+    report = _report(validator, bag.batches(names, progress))
+    if judged != task:
+        joint = judged.parameters.rotor_joint
+        taken = Finding(f'{joint}, the only joint on {topics.rotor}, is taken')
+        report = replace(report, findings=(taken, *report.findings))
     return report
 
 

@@ -85,15 +85,14 @@ class Validator:
         self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
         self._segment = -1, 0  # the latest one, and the number of its first sample
-        self._groups: list[Completeness] = []
-        self._outputs: dict[str, OutputTopic] = {}
+        self._groups: list[tuple[Completeness, Sequence[OutputTopic]]] = []
         joint = parameters.frame_prefix + parameters.output_joint
         self.output = OutputState(topics.output, joint, self._expectation)
         self.poses = None
         if isinstance(gear, Mechanism) and topics.poses:
             frame = parameters.frame_prefix + _FRAME
             self.poses = BodyPoses(topics.poses, frame, gear, self._expectation)
-        self._judge(*filter(None, (self.output, self.poses)))
+        self._judge(*filter(None, (self.output, self.poses)))  # a node publishes both
         self._why_unjudged = why_unjudged(
             task.calibration, single_turn=parameters.single_turn, absolute=parameters.absolute
         )
@@ -131,7 +130,7 @@ class Validator:
         for _ in range(2):  # late messages wait for one more batch
             self._take(self._sorted(()))
         self._drop(len(self._window))
-        for group in self._groups:
+        for group, _ in self._groups:
             group.close()
         if self._changes.found:  # which the correction knows nothing of
             why = 'the zero of the rotor changes during the recording'
@@ -140,9 +139,9 @@ class Validator:
         rotor = self._health.report(self._input, self._topics.rotor)
         topics = tuple(
             output.report()
-            for name, output in self._outputs.items()
+            for output in self._outputs
             # Without a calibration, the node publishes nothing on the topics of the correction.
-            if (output.matcher.messages or name in self._topics) and name in judged
+            if (output.matcher.messages or output.name in self._topics) and output.name in judged
         )
         if error is None and not rotor.valid:
             error = f'no usable rotor states: {self._input.why_rejected or "no messages"}'
@@ -152,7 +151,7 @@ class Validator:
         findings = *self._found(), *checked
         passed = not any(finding.fails for finding in findings) and all(t.passed for t in topics)
         start = rotor.first_stamp or 0
-        series = (output.series.series(name, start) for name, output in self._outputs.items())
+        series = (output.series.series(output.name, start) for output in self._outputs)
         return BagReport(
             bag=str(self._task.bag),
             verdict=Verdict.UNUSABLE if error else Verdict.PASS if passed else Verdict.FAIL,
@@ -170,12 +169,13 @@ class Validator:
 
     def _judge(self, *outputs: OutputTopic) -> None:
         """Compare outputs that are recorded from the same time on."""
-        names = [output.name for output in outputs]
-        group = Completeness(self._topics.rotor, names, strict=self._task.strict)
-        self._groups.append(group)
-        for output in outputs:
-            output.missing = group.topics[output.name]
-            self._outputs[output.name] = output
+        missing = {output.name: output.missing for output in outputs}
+        group = Completeness(self._topics.rotor, missing, strict=self._task.strict)
+        self._groups.append((group, outputs))
+
+    @property
+    def _outputs(self) -> list[OutputTopic]:
+        return [output for _, outputs in self._groups for output in outputs]
 
     @np.errstate(all='ignore')
     def _take(self, batch: _Batch) -> None:
@@ -188,9 +188,10 @@ class Validator:
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
         self._add_samples(batch)
-        for name, output in self._outputs.items():
-            output.take(batch[name].data, batch[name].received, self._window, self._inputs)
-        done = np.all([output.matcher.matched for output in self._outputs.values()], axis=0)
+        for output in self._outputs:
+            messages = batch[output.name]
+            output.take(messages.data, messages.received, self._window, self._inputs)
+        done = np.all([output.matcher.matched for output in self._outputs], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
@@ -212,7 +213,7 @@ class Validator:
         if self._references and self._encoder:
             self._references.take(messages, batch[self._encoder], new)
         self._window = np.concatenate([self._window, new])
-        for output in self._outputs.values():
+        for output in self._outputs:
             output.matcher.extend(len(new))
 
     def _firsts(self, segment: Array, number: Array) -> Array:
@@ -227,11 +228,10 @@ class Validator:
     def _drop(self, count: int) -> None:
         """Drop the oldest samples, whose outputs are there or count as missing."""
         oldest = self._window[:count]
-        for group in self._groups:
-            matchers = [self._outputs[name].matcher for name in group.topics]
-            answered = np.column_stack([matcher.matched[:count] for matcher in matchers])
+        for group, outputs in self._groups:
+            answered = np.column_stack([output.matcher.matched[:count] for output in outputs])
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
-        for output in self._outputs.values():
+        for output in self._outputs:
             output.matcher.drop(count)
         self._window = self._window[count:]
 
@@ -244,7 +244,7 @@ class Validator:
                     self._prefix_open = False
                     if prefix := label.removesuffix(output.label):
                         self._parameters = replace(self._parameters, frame_prefix=prefix)
-                        for each in self._outputs.values():
+                        for each in self._outputs:
                             each.label = prefix + each.label
                         text = f'frame_prefix {prefix!r} is taken from the outputs'
                         self._findings.append(Finding(text))
@@ -256,16 +256,14 @@ class Validator:
         It moves the poses too: if there are some, and they agree better without that, only the
         output angle has an offset, which is a fault.
         """
-        outputs = batch[self._topics.output]
-        few = {**self._sorted(()), self._topics.rotor: batch[self._topics.rotor]}
-        few[self._topics.output] = TopicMessages(outputs.data[:_FEW], outputs.received[:_FEW])
-        parts = (few,) if self._references else (few, batch)  # it can change in the batch
-        for part in parts:
-            trial = self._trial(part, self._parameters)
-            offset = trial.output.fit.offset(self._task.tolerances.angle)
-            self._zero_open = not trial.output.fit.count
-            if offset is None:
-                break
+        rotor = self._topics.rotor
+        few = {  # as it can change in the batch
+            topic: TopicMessages(messages.data[:_FEW], messages.received[:_FEW])
+            for topic, messages in batch.items()
+        } | {rotor: batch[rotor]}
+        trial = self._trial(few, self._parameters)
+        self._zero_open = not trial.output.fit.count
+        offset = trial.output.fit.offset(self._task.tolerances.angle)
         if offset is None:
             return
         turned = self._parameters.rotor_direction * self._gear.gear_ratio.rotor_angle(offset)
@@ -273,7 +271,7 @@ class Validator:
         if abs(zero) > LARGEST_ANGLE:  # garbage, not homing
             return
         moved = replace(self._parameters, rotor_zero=zero)
-        if self._trial(parts[-1], moved).position_error <= trial.position_error:
+        if self._trial(few, moved).position_error <= trial.position_error:
             self._input.parameters = moved
             way = 'by the output encoder' if self._references else 'as after homing'
             text = (
@@ -303,19 +301,15 @@ class Validator:
         rotor = self._topics.rotor
         if isinstance(self._gear, Mechanism) and not self.poses:
             yield Finding(f'no poses are recorded: {self.output.name} alone is compared')
-        corrected = self._begun.keys() & set(self._corrected.values())
-        if corrected and self._correction:
-            file = self._task.parameters.calibration
-            yield Finding(f'the corrected output is compared with that of {file}')
         yield from self._findings
         yield from self._changes.notes(self._input.parameters)
         if self._references:
             yield from self._references.findings(self._changes)
-        for output in self._outputs.values():
+        for output in self._outputs:
             yield from output.causes()
         if self._input.mostly_rejected and self._input.missing_joint:
             yield Finding(f'{rotor}: {self._input.missing_joint}', cause=True)
-        for group in self._groups:
+        for group, _ in self._groups:
             yield from group.causes()
-        if corrected and not self._correction:
+        if not self._correction and self._begun.keys() & set(self._corrected.values()):
             yield Finding(f'the corrected output is not judged: {self._why_unjudged}')
