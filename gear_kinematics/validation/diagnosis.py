@@ -13,7 +13,6 @@ from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_v
 from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.validation.occurrences import Stamps
 from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
@@ -215,7 +214,9 @@ class PoseOrder:
         self._tolerance = tolerance
         self.cause: Finding | None = None
 
-    def update(self, recorded: Array, expected: Array, error: Array, stamp: Stamps) -> None:
+    def update(
+        self, recorded: Array, expected: Array, error: Array, stamp: NDArray[np.int64]
+    ) -> None:
         """Add positions (n, bodies, 3) and the greatest error of each message (n,), m."""
         wrong = error > self._tolerance
         if self.cause or not wrong.any() or len(self._bodies) > _MAX_BODIES:

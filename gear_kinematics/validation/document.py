@@ -1,16 +1,25 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A validation as a document."""
+"""A validation as a document: its tables, its figure and its test cases."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, replace
 from typing import Any
 
+import numpy as np
+
+from gear_kinematics.kinematics import solve, split_turns
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import (
     OUTCOME,
+    Array,
     Case,
     Cell,
     Document,
+    Figure,
     Layout,
+    Line,
+    Panel,
+    Pen,
     Section,
     Table,
     Tone,
@@ -19,7 +28,7 @@ from gear_kinematics.report.document import (
     number,
     printable,
 )
-from gear_kinematics.validation.figure import figure, moving
+from gear_kinematics.report.mechanism import MovingMechanism
 from gear_kinematics.validation.findings import (
     answer,
     described,
@@ -28,10 +37,17 @@ from gear_kinematics.validation.findings import (
     findings,
     worst_field,
 )
-from gear_kinematics.validation.report import BagReport, FieldReport, InputReport, TopicReport
+from gear_kinematics.validation.report import (
+    BagReport,
+    FieldReport,
+    InputReport,
+    Series,
+    TopicReport,
+)
 
-SCHEMA = 'gear_kinematics/report'
-VERSION = 1
+_SCHEMA = 'gear_kinematics/report'
+_VERSION = 1
+_TIME = 'time [s]'
 
 Row = tuple[Cell, ...]
 
@@ -47,8 +63,8 @@ def document(reports: Sequence[BagReport]) -> Document:
         'gearkin validate',
         tuple(map(_section, reports)),
         {
-            'schema': SCHEMA,
-            'version': VERSION,
+            'schema': _SCHEMA,
+            'version': _VERSION,
             'verdict': verdict,
             'bags': [_bag(report) for report in reports],
         },
@@ -186,3 +202,63 @@ def _measured(value: float | None, unit: str, digits: int = 3) -> Cell:
 
 def _count(count: int, tone: Tone = Tone.BAD) -> Cell:
     return Cell(str(count), tone if count else Tone.NONE)
+
+
+def figure(report: BagReport) -> Figure | None:
+    """Return the errors of what failed over time, or else of the first field; None of nothing."""
+    series = {one.topic: one for one in report.series if one.time}
+    compared = [
+        (field, _error_panel(field_name(topic, field), field, found))
+        for topic in report.topics
+        if (found := series.get(topic.topic))
+        for field in topic.fields
+        if field.name in found.errors
+    ]
+    if not compared:
+        return None
+    panels = [panel for field, panel in compared if not field.passed] or [compared[0][1]]
+    first = report.series[0]
+    line = _line(first.time, 'rotor angle', Pen.FAINT, first.rotor_angle)
+    return Figure((*panels, Panel('', _TIME, 'rotor angle [rad]', (line,))), stacked=True)
+
+
+def _error_panel(title: str, field: FieldReport, series: Series) -> Panel:
+    """Draw an error within its tolerance."""
+    line, levels = _line(series.time, 'error', Pen.SECOND, series.errors[field.name]), []
+    if tolerance := field.tolerance:
+        levels = [(tolerance, 'tolerance'), (-tolerance, '')]
+    shown = tuple(levels if (line.y < 0.0).any() else levels[:1])
+    label = printable(f'error [{field.unit}]')
+    return Panel(title, _TIME, label, (line,), levels=shown, scale='symlog')
+
+
+def _line(time: Sequence[float], name: str, pen: Pen, values: Sequence[float]) -> Line:
+    return Line(name, pen, np.asarray(time, float), np.asarray(values, float))
+
+
+def moving(report: BagReport) -> MovingMechanism | None:
+    """Return the mechanism at the moment of the gravest finding; None of a gear without bodies."""
+    mechanism = report.mechanism
+    if not (mechanism and report.series and report.series[0].time):
+        return None
+    angles = np.asarray(report.series[0].rotor_angle, np.float64)
+    turns, angle = split_turns(angles)
+    state = solve(mechanism, angles)
+    output_turns = np.round((state.output_angle - state.output_turn_angle) / TURN)
+    time = np.asarray(report.series[0].time, np.float64)
+    worst = next((found.time for found in findings(report) if found.time is not None), time[0])
+    return MovingMechanism(
+        mechanism,
+        report.module,
+        time,
+        _degrees(turns, angle),
+        _degrees(output_turns, state.output_turn_angle),
+        int(np.argmin(np.nan_to_num(np.abs(time - worst), nan=np.inf))),
+    )
+
+
+def _degrees(turns: Array, angle: Array) -> Array:
+    """Return angles in degrees, minus the whole turns of the first sample."""
+    with np.errstate(invalid='ignore'):  # infinite turns
+        degrees: Array = 360.0 * (turns - turns[0]) + np.degrees(angle)
+    return degrees

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gear_kinematics.validation.occurrences import Occurrences
 from gear_kinematics.validation.report import FieldReport, Series
 from gear_kinematics.wire.cdr import SECOND
 
@@ -18,6 +17,27 @@ Array = NDArray[Any]
 
 _MAX_SAMPLES = 2000
 """Samples of the record, which is halved when there are more."""
+
+
+class Occurrences:
+    """How often something happened to messages, and when first."""
+
+    def __init__(self) -> None:
+        self.count = 0
+        self.first: int | None = None
+        """Stamp of the one that was added first, ns."""
+
+    def add(self, stamps: Array) -> None:
+        """Add what happened at stamps, (n,), ns."""
+        if self.first is None and len(stamps):
+            self.first = int(stamps[0])
+        self.count += len(stamps)
+
+    def add_all(self, others: 'Occurrences') -> None:
+        """Add those of another object."""
+        if self.first is None:
+            self.first = others.first
+        self.count += others.count
 
 
 class FieldSamples(NamedTuple):

@@ -14,8 +14,13 @@ import numpy as np
 from gear_kinematics.kinematics import Gear, MotionState
 from gear_kinematics.report.document import counted
 from gear_kinematics.validation.count_changes import CountChanges
-from gear_kinematics.validation.fields import Array, FieldErrors, FieldSamples, SeriesRecorder
-from gear_kinematics.validation.occurrences import Occurrences
+from gear_kinematics.validation.fields import (
+    Array,
+    FieldErrors,
+    FieldSamples,
+    Occurrences,
+    SeriesRecorder,
+)
 from gear_kinematics.validation.recorder import NO_INPUT, Missing, RecordedInputs
 from gear_kinematics.validation.report import Finding, TopicReport
 from gear_kinematics.validation.task import Tolerances

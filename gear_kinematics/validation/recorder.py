@@ -13,15 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.report.document import counted
-from gear_kinematics.validation.occurrences import Occurrences
+from gear_kinematics.validation.fields import Occurrences
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.joint_reader import CLOCK_RESET
 
 Array = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
-BEFORE = 'before every topic was recorded'
-SETTLING = 'while the recorder settled'
+BEFORE = 'before the recorder settled'
 AFTER = 'after the last output'
 NO_INPUT = 'whose input was not recorded'
 
@@ -92,7 +91,7 @@ class Completeness:
         self._on_all = Missing()  # inputs without an output on any topic
         self._strict = strict
         self._start = self._settled = -_NEVER if strict else _NEVER
-        """When all topics were recorded, and the last loss until the recorder had settled, ns."""
+        """When all topics were recorded, and the last loss until the recorder settled, ns."""
         self._last = 0  # when the last input was received, ns
 
     def update(
@@ -112,22 +111,19 @@ class Completeness:
         names = {self._rotor, *self.topics}
         if self._start == _NEVER and begun.keys() >= names:
             self._start = self._settled = max(begun[name] for name in names)
-        before = received < self._start
-        settling = ~before & (received <= self._settle(received[~answered.all(axis=1)]))
-        judged = ~(before | settling)
+        self._settle(received[~answered.all(axis=1)])
+        judged = received > self._settled
         columns = [*zip(self.topics.values(), answered.T, strict=True)]
         for missing, own in (*columns, (self._on_all, answered.any(axis=1))):
-            missing.leave_out(own[before], BEFORE)
-            missing.leave_out(own[settling], SETTLING)
+            missing.leave_out(own[~judged], BEFORE)
             missing.update(received[judged], stamp[judged], own[judged])
 
-    def _settle(self, losses: Array) -> int:
-        """The last loss in an uninterrupted series from the start on, after further ones, ns."""
+    def _settle(self, losses: Array) -> None:
+        """Take further losses into the uninterrupted series of them from the start on."""
         first = losses[(losses >= self._start) & (losses <= self._start + _SETTLING_TIME)]
         pauses = np.flatnonzero(np.diff(first, prepend=self._settled) > _QUIET_TIME)
         series = first[: pauses[0]] if len(pauses) else first
         self._settled = int(series[-1]) if len(series) else self._settled
-        return self._settled
 
     def close(self) -> None:
         """Judge the inputs after the last outputs."""

@@ -2,7 +2,7 @@
 """Validates a bag, in this process, another one or on a Dask cluster."""
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,6 @@ from typing import Any
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
-    Topics,
     corrected_beside,
     encoder_beside,
     find_corrected_topics,
@@ -68,7 +67,7 @@ def validate_bag(
     begun = time.monotonic()
     try:
         with Bag(task.bag) as bag:
-            report = _live(task, bag, progress, play) if play else _recorded(task, bag, progress)
+            report = _judged(task, bag, progress, play)
     except BagError as error:
         report = unusable(task.bag, str(error), task.config)
     except Exception as error:
@@ -78,70 +77,52 @@ def validate_bag(
     return replace(report, elapsed=time.monotonic() - begun)
 
 
-def _topics(task: Task, bag: Bag, *, outputs: bool) -> Topics:
-    return find_topics(
-        bag,
-        {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic},
-        outputs=outputs,
-        poses=isinstance(task.parameters.gear, Mechanism),
-        joint=task.parameters.rotor_joint,
-    )
-
-
-def _with_only_joint(task: Task, bag: Bag, rotor: str) -> Task:
-    """Return the task with the only joint on the rotor's topic, if its own is not there."""
-    joint = task.parameters.rotor_joint
-    found = only_joint(bag, rotor, joint) if task.only_joint and joint else joint
-    return replace(task, parameters=replace(task.parameters, rotor_joint=found))
-
-
-def _recorded(task: Task, bag: Bag, progress: ReportProgress | None) -> BagReport:
-    """Validate the recorded outputs."""
-    topics = _topics(task, bag, outputs=True)
-    corrected = find_corrected_topics(bag, topics.output)
-    encoder = encoder_beside(bag, topics.rotor) if task.parameters.absolute else ''
-    names = (*topics, *corrected.values(), *filter(None, [encoder]))
-    judged = _with_only_joint(task, bag, topics.rotor)
-    validator = Validator(judged, topics, corrected, encoder=encoder)
-    report = _report(validator, bag.batches(names, progress))
-    if judged != task:
-        joint = judged.parameters.rotor_joint
-        taken = Finding(f'{joint}, the only joint on {topics.rotor}, is taken')
-        report = replace(report, findings=(taken, *report.findings))
-    return report
-
-
-def _live(
+def _judged(
     task: Task,
     bag: Bag,
     progress: ReportProgress | None,
-    play: Callable[..., Iterable[Message]],
+    play: Callable[..., Iterable[Message]] | None,
 ) -> BagReport:
-    """Validate what a live node publishes on its own topics for the rotor states of a bag."""
-    rotor = _topics(task, bag, outputs=False).rotor
-    encoder = encoder_beside(bag, rotor) if task.parameters.absolute else ''
-    total = count_due(bag, [rotor]) if progress else None
-    # Nothing is lost by a recorder here.
-    task = replace(_with_only_joint(task, bag, rotor), strict=True)
-    messages = play(
+    """Validate what is recorded, or what a live node publishes for the recorded rotor states."""
+    joint = task.parameters.rotor_joint
+    topics = find_topics(
         bag,
-        task.parameters,
-        rotor_topic=rotor,
-        encoder_topic=encoder,
-        progress=lambda sent, _: progress and progress(sent, total),
+        {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic},
+        outputs=not play,
+        poses=isinstance(task.parameters.gear, Mechanism),
+        joint=joint,
     )
-    corrected = corrected_beside() if task.calibration else {}
-    validator = Validator(task, corrected=corrected, encoder=encoder and f'/{OUTPUT_ENCODER}')
-    return _report(validator, in_batches(messages, _BATCH))
-
-
-def _report(validator: Validator, batches: Iterable[Sequence[Message]]) -> BagReport:
-    """Validate the readable messages of a bag."""
+    encoder = encoder_beside(bag, topics.rotor) if task.parameters.absolute else ''
+    found = only_joint(bag, topics.rotor, joint) if task.only_joint and joint else joint
+    task = replace(task, parameters=replace(task.parameters, rotor_joint=found))
+    if play:
+        total = count_due(bag, [topics.rotor]) if progress else None
+        messages = play(
+            bag,
+            task.parameters,
+            rotor_topic=topics.rotor,
+            encoder_topic=encoder,
+            progress=lambda sent, _: progress and progress(sent, total),
+        )
+        batches = in_batches(messages, _BATCH)
+        corrected = corrected_beside() if task.calibration else {}
+        live = replace(task, strict=True)  # nothing is lost by a recorder here
+        validator = Validator(live, corrected=corrected, encoder=encoder and f'/{OUTPUT_ENCODER}')
+    else:
+        corrected = find_corrected_topics(bag, topics.output)
+        names = (*topics, *corrected.values(), *filter(None, [encoder]))
+        batches = bag.batches(names, progress)
+        validator = Validator(task, topics, corrected, encoder=encoder)
+    damage = None
     try:
         validator.feed(batches)
     except BagError as error:
-        return validator.report(str(error))
-    return validator.report()
+        damage = str(error)
+    report = validator.report(damage)
+    if found == joint:
+        return report
+    taken = Finding(f'{found}, the only joint on {topics.rotor}, is taken')
+    return replace(report, findings=(taken, *report.findings))
 
 
 def _lost(task: Task, cause: str) -> BagReport:

@@ -257,10 +257,13 @@ class Validator:
         output angle has an offset, which is a fault.
         """
         rotor = self._topics.rotor
-        few = {  # as it can change in the batch
-            topic: TopicMessages(messages.data[:_FEW], messages.received[:_FEW])
-            for topic, messages in batch.items()
-        } | {rotor: batch[rotor]}
+        few = (
+            {  # as it can change in the batch
+                topic: TopicMessages(messages.data[:_FEW], messages.received[:_FEW])
+                for topic, messages in batch.items()
+            }
+            | {rotor: batch[rotor]}
+        )
         trial = self._trial(few, self._parameters)
         self._zero_open = not trial.output.fit.count
         offset = trial.output.fit.offset(self._task.tolerances.angle)

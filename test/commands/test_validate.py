@@ -58,7 +58,7 @@ def test_the_verdict_is_the_exit_code(name, code, verdict, error, bags):
 def test_what_a_recorder_loses_at_the_edges_is_said_and_fails_in_strict_mode_only(bags):
     done = gearkin_here('validate', '-v', 'late', cwd=bags)
     assert done.returncode == 0
-    left_out = '40 before every topic was recorded'
+    left_out = '40 before the recorder settled'
     assert f'late: finding: not judged, as caused by the recorder: /body_poses {left_out}\n' in (
         done.stdout
     )

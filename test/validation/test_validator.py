@@ -21,7 +21,7 @@ from gear_kinematics.bag import Message, in_batches
 from gear_kinematics.kinematics import matrix_method
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.validation.figure import moving
+from gear_kinematics.validation.document import moving
 from gear_kinematics.validation.findings import findings
 from gear_kinematics.validation.matching import WINDOW
 from gear_kinematics.validation.task import Task, Tolerances
