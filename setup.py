@@ -73,17 +73,12 @@ setup(
         'watch': WATCH,
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],
-        'dask': ['dask[distributed]'],
         # ROS 1 bags, `gearkin compute`, and what `gearkin watch` records; Ubuntu has no package.
         'rosbags': ROSBAGS,
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],
-        # `gearkin animate` to an .mp4, where the system has no ffmpeg
-        'video': ['imageio-ffmpeg'],
         # `gearkin lost-motion` and `calibrate`
         'measure': ['scipy>=1.11'],
-        # `gearkin completion`
-        'completion': ['shtab'],
         # `gearkin urdf --meshes`
         'mesh': ['mapbox-earcut'],
         # colcon test looks here to see that the package is tested with pytest.

@@ -23,10 +23,8 @@ from gear_kinematics.ros.live import running_node
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / 'test' / 'support'))
 
-import numpy as np  # noqa: E402, see above
-from braced_gears import BracedGear  # noqa: E402, see above
 from drawings import FLOWS, draw_bodies, draw_flow  # noqa: E402, see above
-from gear_recordings import ramps, record_both_encoders, write_csv  # noqa: E402, see above
+from gear_recordings import record_both_encoders  # noqa: E402, see above
 
 DOCS = Path('docs')
 BAG = 'bags/servo_point_to_point'
@@ -39,7 +37,6 @@ DRAWN = {
     'slides.svg': ['plot', 'slides'],
     'pictures/output.svg': ['plot', 'output', '--bag', BAG],
     'pictures/preload.svg': ['preload', '--wanted-threshold', '1', *SHAFT, '--plot'],
-    'pictures/pins.svg': ['preload', '--wanted-threshold', '1', *SHAFT, '--drawing'],
 }
 """By file, each with the arguments of gearkin that come before it."""
 PAGES = {
@@ -48,40 +45,25 @@ PAGES = {
     'pictures/preload.png': ['preload', '--wanted-threshold', '1', *SHAFT],
     'pictures/lost_motion.png': ['lost-motion', 'docs/examples/ramps.csv', *CONFIG],
 }
-SETTINGS = (0, 1, 2, 4, 5, 6)
-TALL = 'pictures/preload_advice.png'
 OF_RECORDINGS = {
     'pictures/validate.png': ['validate', 'other_gear', '--config', 'actuator.yaml'],
     'pictures/calibrate.png': ['calibrate', 'monday', 'tuesday', '-o', 'calibration.yaml'],
     'pictures/calibrate_check.png': ['calibrate', 'friday', '--check', 'calibration.yaml'],
     'pictures/commissioning.png': ['commission', 'monday', '-o', 'commissioned.yaml'],
-    TALL: [
-        'lost-motion',
-        *(f'gear_preload_{k}.csv' for k in SETTINGS),
-        '--preloads',
-        '--load',
-        '2',
-    ],
 }
 """Pages of recordings that `record` makes."""
 OTHER_GEAR = '/**: {ros__parameters: {ring_teeth: 84, satellite_teeth: 80}}'
 VIEW = {'width': 1100, 'height': 1000}  # pixels
-TALL_VIEW = {'width': 1100, 'height': 1330}  # pixels
 LIVE_VIEW = {'width': 1100, 'height': 740}  # pixels
 COLOURS = 64
 
 
 def record() -> None:
-    """Record other_gear, which has other teeth, both encoders of another one, and torque ramps."""
+    """Record other_gear, which has other teeth, and both encoders of another one."""
     shutil.copy(ROOT / CONFIG[1], 'actuator.yaml')
     Path('other.yaml').write_text(OTHER_GEAR, 'utf-8')
     run(['compute', str(ROOT / BAG), 'other_gear', '--config', 'other.yaml'])
     record_both_encoders(Path(), 'monday', 'tuesday', 'friday')
-    gear, torque = BracedGear(rubbing=0.2), ramps(*[(6.0, 60)] * 3, *[(30.0, 90)] * 2)
-    noise = np.random.default_rng(1).normal(0.0, 1e-5, (len(SETTINGS), len(torque)))  # rad
-    for setting, off in zip(SETTINGS, noise, strict=True):
-        angle = gear.angles(torque, setting) + off
-        write_csv(Path(f'gear_preload_{setting}.csv'), angle_rad=angle, torque=torque)
 
 
 def photograph(pages: dict[str, list[str]], *live: str) -> None:
@@ -95,7 +77,6 @@ def photograph(pages: dict[str, list[str]], *live: str) -> None:
         for name, arguments in pages.items():
             page = Path(folder, 'page.html')
             run([*arguments, '--html', str(page)])
-            tab.set_viewport_size(TALL_VIEW if name == TALL else VIEW)
             tab.goto(page.as_uri())
             tab.add_style_tag(content='footer { display: none; }')  # it has a date
             tab.wait_for_load_state('networkidle')

@@ -4,13 +4,13 @@
 import math
 from pathlib import Path
 
-from gear_kinematics.measurement.lost_motion import Request, measure
+from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.parameters import NodeParameters
 
 config = NodeParameters.load()
 ramps = Path(__file__).parents[1] / 'docs/examples/ramps.csv'
-report = measure(read(ramps, config), config.gear, config, Request(rated_torque=5.0))
+report = measure(read(ramps, config), config, rated_torque=5.0)
 figures = report.figures
 
 
@@ -22,4 +22,4 @@ hysteresis = figures.hysteresis
 print(f'hysteresis {arc_minutes(hysteresis.value)} ± {arc_minutes(hysteresis.uncertainty)}')
 print(f'backlash {arc_minutes(figures.backlash.low)} to {arc_minutes(figures.backlash.high)}')
 for part in figures.stiffness:
-    print(f'stiffness from {part.low:g} to {part.high:g} N·m: {part.both.value:.0f} N·m/rad')
+    print(f'stiffness from {part.low:g} to {part.high:g} N·m: {part.slope.value:.0f} N·m/rad')

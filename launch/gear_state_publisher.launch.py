@@ -9,12 +9,11 @@ from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
 
 from gear_kinematics.parameters import NODE
-from gear_kinematics.ros.launch_arguments import node_arguments, refuse_unknown
+from gear_kinematics.ros.launch_arguments import node_arguments
 
 
 def start_node(context: LaunchContext) -> list[Node]:
     """Describe the node; what is not given as an argument is as in the parameter file."""
-    refuse_unknown(__file__, context.argv)
     config, _, given = node_arguments(context.launch_configurations)
     # The type is stated, or a prefix like 1 would arrive as a number.
     texts = {name: ParameterValue(value, value_type=str) for name, value in given.items()}

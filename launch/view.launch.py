@@ -9,12 +9,11 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackagePrefix, FindPackageShare
 
-from gear_kinematics.ros.launch_arguments import node_arguments, refuse_unknown
+from gear_kinematics.ros.launch_arguments import node_arguments
 
 
 def check(context: LaunchContext) -> None:
-    """Check arguments and packages before anything starts: what has started would go on alone."""
-    refuse_unknown(__file__, context.argv, 'rviz', 'rviz_config', 'publish_frequency')
+    """Check the packages before anything starts: what has started would go on alone."""
     FindPackagePrefix('robot_state_publisher').perform(context)
     if IfCondition(LaunchConfiguration('rviz')).evaluate(context):
         FindPackagePrefix('rviz2').perform(context)

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, ReportProgress
+from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicError
 from gear_kinematics.bag.roles import Topics, corrected_beside
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
@@ -40,9 +40,7 @@ class ComputeResult:
     copied: int
     """Messages copied from other topics."""
     left_out: tuple[str, ...]
-    """Topics that were not copied."""
-    undefined: tuple[str, ...]
-    """Topics that were copied without a type definition, which the bag lacks."""
+    """Topics that were not copied: those not chosen, and those that a rosbag2 cannot hold."""
 
 
 def compute(
@@ -108,13 +106,20 @@ def compute(
     inputs = {rotor_topic, encoder_topic} if referenced else {rotor_topic}
     chosen = {*inputs, *(source.topics if topics is None else topics)}
     _check_topics(source, rotor_topic, chosen, outputs)
-    kept = [topic for topic in source.topics if topic in chosen and topic not in outputs]
-
-    computed = copied = 0
+    kept, computed, copied = list[str](), 0, 0
     with BagWriter(target, storage=storage, compression=compression) as writer:
         for name, content in files.items():
             writer.add_file(name, content)
-        written = [writer.copy_topic(source, topic) for topic in kept]
+        for topic in source.topics:
+            if topic not in chosen or topic in outputs:
+                continue
+            try:
+                writer.copy_topic(source, topic)
+            except TopicError:
+                if topic in inputs:
+                    raise
+            else:
+                kept.append(topic)
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
         for name, topic in {ROTOR_STATE: rotor_topic, **topic_of}.items():
@@ -155,7 +160,6 @@ def compute(
         computed,
         copied,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
-        undefined=tuple(topic.name for topic in written if not topic.syntax),
     )
 
 

@@ -28,7 +28,7 @@ _PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
 """Topics by their parts in a validation; the rotor is found last, among the remaining topics."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
 _PEEKED = 20  # topics of which the joints are looked up
-_JUDGED = 100  # messages that show whether there is only one joint
+_JUDGED = 1000  # messages that show whether there is only one joint
 
 
 class Topics(NamedTuple):

@@ -14,13 +14,7 @@ _PROGRESS_PERIOD = 0.1  # s
 
 
 def due_messages(
-    source: Bag,
-    topics: Collection[str],
-    rate: float,
-    start_offset: float = 0.0,
-    duration: float = math.inf,
-    *,
-    loop: bool = False,
+    source: Bag, topics: Collection[str], rate: float, *, loop: bool = False
 ) -> Iterator[tuple[float, Message]]:
     """Yield messages with the time at which each is due, s from the first; see `play`.
 
@@ -35,7 +29,7 @@ def due_messages(
         due = start = 0.0
         while True:
             count = 0
-            for elapsed, message in _one_round(source, topics, start_offset, duration):
+            for elapsed, message in _one_round(source, topics):
                 due = start + elapsed / (rate * SECOND)
                 count += 1
                 yield due, message
@@ -48,34 +42,25 @@ def due_messages(
     return chain([next(messages)], messages)
 
 
-def count_due(
-    source: Bag, topics: Collection[str], start_offset: float = 0.0, duration: float = math.inf
-) -> int | None:
+def count_due(source: Bag, topics: Collection[str]) -> int | None:
     """Count the messages of one round of `due_messages`; None if there are none.
 
     That takes reading them all.
     """
     count = 0
     with suppress(BagError):  # which playing them raises, too
-        for _ in _one_round(source, topics, start_offset, duration):
+        for _ in _one_round(source, topics):
             count += 1
     return count or None
 
 
-def _one_round(
-    source: Bag, topics: Collection[str], start_offset: float, duration: float
-) -> Iterator[tuple[int, Message]]:
+def _one_round(source: Bag, topics: Collection[str]) -> Iterator[tuple[int, Message]]:
     """Yield messages with the time since the first of them, ns."""
-    first = begin = None
+    begin = None
     for message in source.messages(topics):
         _, received, _ = message
-        first = received if first is None else first
-        elapsed = received - first - start_offset * SECOND + 0.5  # ns, rounded
-        if elapsed > duration * SECOND + 1.0:
-            break
-        if elapsed >= 0.0:
-            begin = received if begin is None else begin
-            yield received - begin, message
+        begin = received if begin is None else begin
+        yield received - begin, message
     if begin is None:
         raise BagError(f'{source.path}: nothing to play on {", ".join(topics)}')
 

@@ -10,8 +10,6 @@ from numpy.typing import NDArray
 
 from gear_kinematics.bag import Bag, BagError, ReportProgress
 from gear_kinematics.bag.roles import find_rotor_topic
-from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.kinematics import Mechanism, MotionState, solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
@@ -21,7 +19,7 @@ from gear_kinematics.wire.cdr import SECOND
 Array = NDArray[np.float64]
 
 MOST_TURNS = 1000
-"""Rotor turns at a constant speed; figures cannot show more."""
+"""Rotor turns at a constant speed; animations cannot show more."""
 _PER_TURN = 360  # samples
 _ROUNDING = 1e-9  # by which intervals may miss the end
 
@@ -39,83 +37,25 @@ class Trajectory(NamedTuple):
     """rad/s."""
 
     @classmethod
-    def at_constant_speed(
-        cls, speed: float, *, turns: int = 1, duration: float | None = None
-    ) -> Self:
+    def at_constant_speed(cls, speed: float, turns: int) -> Self:
         """Create a motion from φ2 = 0 on, with samples close enough for smooth curves.
 
         Args:
             speed: rad/s.
             turns: of the rotor.
-            duration: s, instead of a number of turns.
 
         Raises:
-            ValueError: if the rotor stands still, or turns more often than `MOST_TURNS`.
+            ValueError: if there are more turns than `MOST_TURNS`.
         """
-        if not (speed and math.isfinite(speed)):
-            raise ValueError(f'the speed must be finite and not 0, but is {speed:g} rad/s')
-        if duration is None:
-            duration = turns * TURN / abs(speed)
-        length = abs(speed) * duration / TURN
-        if length > MOST_TURNS:
-            raise ValueError(f'{length:g} turns of the rotor are more than {MOST_TURNS}')
-        time = np.linspace(0.0, duration, math.ceil(_PER_TURN * length) + 1)
+        if turns > MOST_TURNS:
+            raise ValueError(f'{turns} turns of the rotor are more than {MOST_TURNS}')
+        time = np.linspace(0.0, turns * TURN / abs(speed), _PER_TURN * turns + 1)
         return cls(time, *split_turns(speed * time), np.full(len(time), speed))
-
-    @classmethod
-    def there_and_back(cls, speed: float, turns: int) -> Self:
-        """Create a smooth motion from φ2 = 0 to so many turns of the rotor and back.
-
-        The greatest speed is in rad/s.
-        """
-        phase = np.linspace(0.0, TURN, _PER_TURN * turns + 1)
-        half = 0.5 * TURN * turns
-        time = half / speed * phase
-        return cls(time, *split_turns(half * (1.0 - np.cos(phase))), speed * np.sin(phase))
 
     def state(self, mechanism: Mechanism) -> MotionState:
         """The motion of all bodies, (n, ...)."""
         with np.errstate(over='ignore'):  # nothing here shows accelerations
             return solve(mechanism, self.angle, self.velocity, rotor_turns=self.turns)
-
-    def correction(self, calibration: Calibration) -> Correction:
-        """The correction of the output, arrays (n,); its efforts are not known."""
-        stamp = np.round(self.time * SECOND).astype(np.int64)
-        unknown = np.full(len(stamp), np.nan)
-        motion = self.turns, self.angle, self.velocity
-        return Corrector(calibration).correct_batch(stamp, *motion, unknown, np.zeros(len(stamp)))
-
-    @property
-    def longest_step(self) -> float:
-        """The greatest turn of the rotor between samples, turns."""
-        position = self.turns + self.angle / TURN
-        return float(np.max(np.abs(np.diff(position)), initial=0.0))
-
-    @property
-    def travel(self) -> Array:
-        """Turns of the rotor since the start, back and forth, (n,)."""
-        with np.errstate(over='ignore', invalid='ignore'):
-            position = self.turns - self.turns[0] + self.angle / TURN
-            return np.append(0.0, np.cumsum(np.abs(np.diff(position))))
-
-    def fastest(self, turns: float) -> tuple[float, float]:
-        """Find the time in which the rotor travels so many turns, around its greatest speed.
-
-        Returns:
-            Start and end, s.
-        """
-        travel = self.travel
-        middle = travel[int(np.argmax(np.abs(self.velocity)))]
-        first = min(max(0.0, middle - 0.5 * turns), max(0.0, travel[-1] - turns))
-        start, end = np.interp([first, first + turns], travel, self.time)
-        return float(start), float(end)
-
-    def part(self, start: float, end: float, count: int) -> Self:
-        """Interpolate between two times, s, at even intervals."""
-        time = np.linspace(start, end, count)
-        position = np.interp(time, self.time, self.turns * TURN + self.angle)
-        turns, angle = split_turns(position)
-        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
 
     def between(self, start: float, end: float) -> Self:
         """Select the samples between two times, s.
@@ -142,8 +82,10 @@ class Trajectory(NamedTuple):
             interval = duration / count
         else:
             count = math.floor(duration / interval * (1.0 + _ROUNDING)) + 1
-        first = float(self.time[0])
-        return self.part(first, first + interval * (count - 1), count)
+        time = self.time[0] + interval * np.arange(count)
+        position = np.interp(time, self.time, self.turns * TURN + self.angle)
+        turns, angle = split_turns(position)
+        return type(self)(time, turns, angle, np.interp(time, self.time, self.velocity))
 
 
 def read_trajectory(

@@ -4,14 +4,18 @@
 import secrets
 import shutil
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Literal, Self
+from typing import Literal, Self, cast
 
+import yaml
 from rosbags.interfaces import (
     Connection,
+    ConnectionExtRosbag2,
+    MessageDefinition,
+    MessageDefinitionFormat,
     Qos,
     QosDurability,
     QosHistory,
@@ -19,19 +23,24 @@ from rosbags.interfaces import (
     QosReliability,
     QosTime,
 )
-from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin
-from rosbags.rosbag2.metadata import parse_qos
+from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
+from rosbags.rosbag2.metadata import dump_qos_v9, parse_qos
+from rosbags.rosbag2.storage_mcap import McapWriter, Schema, write_schema
+from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
 from rosbags.typesys import Stores, get_typestore
 
 from gear_kinematics.bag.contents import parse_yaml
 from gear_kinematics.bag.errors import BagError, TopicError, bag_errors
 from gear_kinematics.bag.reading import Bag
-from gear_kinematics.bag.ros1 import ros2_definition
 from gear_kinematics.bag.storage import Message
-from gear_kinematics.bag.storage_writers import BulkWriter
 from gear_kinematics.bag.topics import Topic
 
 _MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
+_FORMATS = {
+    'ros2msg': MessageDefinitionFormat.MSG,
+    'ros2idl': MessageDefinitionFormat.IDL,
+    '': MessageDefinitionFormat.NONE,
+}
 _FOREVER = QosTime(9223372036, 854775807)
 _RELIABLE = Qos(
     QosHistory.KEEP_LAST,
@@ -166,41 +175,55 @@ class BagWriter:
         """
         self.write_all([(topic, received, data)])
 
-    def write_all(self, messages: Sequence[Message]) -> None:
-        """Write many messages, which is faster than one by one.
+    def write_all(self, messages: Iterable[Message]) -> None:
+        """Write many messages.
 
         Raises:
             BagError: see `write`.
         """
-        if not messages:
-            return
-        topics = {topic for topic, _, _ in messages}
-        times = [received for _, received, _ in messages]
-        span = min(times), max(times)
         with bag_errors(self.path):
-            if unknown := topics - self._topics.keys():
-                raise ValueError(f'topic {min(unknown)} has not been added')
-            for time in span:
-                if not 0 <= time < 2**63:
-                    raise ValueError(f'the time of reception {time} is out of range')
-            self._writer.write_all(messages, self._topics, span)
+            for topic, received, data in messages:
+                self._writer.write(self._topics[topic], received, data)
 
     def _check_new(self) -> None:
         if self.path.exists() or self.path.is_symlink():
             raise ValueError('exists already')
 
     def _open(self, folder: Path) -> None:
-        self._writer = BulkWriter(folder, version=9, storage_plugin=self._storage)
+        self._writer = Writer(folder, version=9, storage_plugin=self._storage)
         self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
         self._writer.open()
+        self._file = cast('McapWriter | Sqlite3Writer', self._writer.storage)
 
-    def _add(self, topic: Topic, qos: list[Qos]) -> None:
+    def _add(self, topic: Topic, qos: Sequence[Qos]) -> None:
         if topic.name in self._topics:
             raise BagError(f'{self.path}: topic {topic.name} has been added already')
         self._entries += 1 + len(qos)
         if self._entries > _MAX_ENTRIES:
             raise ValueError(f'there are more than {_MAX_ENTRIES} topics and QoS profiles')
-        self._topics[topic.name] = self._writer.add_topic(topic, qos)
+        writer = self._writer
+        # By `Writer.add_connection`, every type would need a definition and a hash.
+        connection = Connection(
+            len(writer.connections) + 1,
+            topic.name,
+            topic.type,
+            MessageDefinition(_FORMATS[topic.syntax], topic.definition),
+            topic.type_hash,
+            0,
+            ConnectionExtRosbag2(topic.encoding, list(qos)),
+            writer,
+        )
+        if topic.type not in writer.added_types:
+            writer.added_types.add(topic.type)
+            if topic.syntax:
+                self._file.add_msgtype(connection)
+            elif isinstance(self._file, McapWriter):  # the name alone, as rosbag2 writes it
+                self._file.schemas.append(Schema(len(self._file.schemas) + 1, topic.type, '', ''))
+                write_schema(self._file.chunk.bio, self._file.schemas[-1])
+        self._file.add_connection(connection, yaml.safe_dump(dump_qos_v9(list(qos))).strip())
+        writer.connections.append(connection)
+        writer.counts[connection.id] = 0
+        self._topics[topic.name] = connection
 
 
 class LiveBagWriter(BagWriter):
@@ -224,7 +247,9 @@ class LiveBagWriter(BagWriter):
             # It is in its place already, and nothing removes it.
             self._partial, self._folder = self.path, ExitStack()
             self._open(self.path)
-            self._writer.number_file()
+            # rosbag2 finds only numbered files when it reindexes a bag.
+            path = self._file.path
+            self._file.path = path.rename(path.with_stem(f'{path.stem}_0'))
         return self
 
     def flush(self) -> None:
@@ -233,8 +258,11 @@ class LiveBagWriter(BagWriter):
         Raises:
             BagError: if they cannot be written.
         """
+        file = cast('McapWriter', self._file)
         with bag_errors(self.path):
-            self._writer.flush()
+            if file.chunk.msgs:
+                file.close_chunk()
+            file.bio.flush()
 
 
 def _jazzy_definition(message_type: str) -> tuple[str, str]:
@@ -251,16 +279,12 @@ def _as_ros2(topic: Topic) -> Topic:
     Raises:
         ValueError: if the type is defined in a syntax that ROS 2 does not have.
     """
-    if topic.syntax == 'ros1msg':
-        definition, type_hash = ros2_definition(topic.type, topic.definition)
-    elif not topic.definition and topic.type in get_typestore(Stores.ROS2_JAZZY).fielddefs:
+    if not topic.definition and topic.type in get_typestore(Stores.ROS2_JAZZY).fielddefs:
         definition, type_hash = _jazzy_definition(topic.type)
-    elif topic.syntax in {'ros2msg', 'ros2idl'}:
+        type_hash = topic.type_hash or type_hash
+        return topic._replace(syntax='ros2msg', definition=definition, type_hash=type_hash)
+    if topic.syntax in {'ros2msg', 'ros2idl'}:
         return topic
-    elif topic.definition:
+    if topic.definition:
         raise ValueError(f'its type is defined in unknown {topic.syntax!r}')
-    else:
-        return topic._replace(syntax='')
-    return topic._replace(
-        syntax='ros2msg', definition=definition, type_hash=topic.type_hash or type_hash
-    )
+    return topic._replace(syntax='')

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""`gearkin animate`: an animation of the mechanism as a GIF or an MP4."""
+"""`gearkin animate`: an animation of the mechanism as a GIF."""
 
 import argparse
 import math
@@ -16,28 +16,14 @@ from gear_kinematics.parameters import NodeParameters
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _FPS = 20
 _MOST_FRAMES = 2000
-_AMBIGUOUS = 0.5  # turns of the rotor from frame to frame: its direction cannot be seen
+"""All of them are in memory until the last one is drawn."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    motions = drawing.add_image(parser, '.gif or .mp4')
-    motions.add_argument(
-        '--speed',
-        type=float,
-        default=_SPEED,
-        metavar='RAD/S',
-        help='rotor speed (default: two turns per second)',
-    )
+    drawing.add_image(parser, '.gif')
     arguments.group(parser, 'motion').add_argument(
         '--rate', type=arguments.positive, default=1.0, help='playback speed (default: 1)'
-    )
-    arguments.group(parser, 'output').add_argument(
-        '--width',
-        type=arguments.between(100, 1920, int),
-        default=420,
-        metavar='PX',
-        help='of the frames (default: %(default)s)',
     )
 
 
@@ -55,32 +41,24 @@ def run(options: argparse.Namespace) -> ExitCode:
         content = plotting.animate(
             mechanism,
             module,
-            path,
             frames,
             fps=_FPS,
-            width=options.width,
             progress=lambda done: bars.update(task, completed=done),
         )
     write_file(options.out, content)
-    if options.quiet:
-        return ExitCode.DONE
-    print(f'{options.out}: {count} frames, {_FPS} per second')
-    drawing.warn_if_teeth_cannot_mesh(mechanism, module)
-    step = frames.longest_step
-    if step > _AMBIGUOUS:
-        rate = 0.5 * options.rate * _AMBIGUOUS / step
-        text = f'The rotor turns {step:.2g} times from frame to frame'
-        print(f'{text}; use --rate {rate:.1g} to see its direction')
+    if not options.quiet:
+        print(f'{options.out}: {count} frames, {_FPS} per second')
+        drawing.warn_if_teeth_cannot_mesh(mechanism, module)
     return ExitCode.DONE
 
 
 def _frames(options: argparse.Namespace, config: NodeParameters, cycle_turns: int) -> Trajectory:
-    closed = not (options.bag or options.duration)
-    moved = drawing.recording(options, config) or Trajectory.at_constant_speed(
-        options.speed, turns=cycle_turns, duration=options.duration
-    )
+    """The recorded motion, or a whole cycle."""
+    moved = drawing.recording(options, config) or Trajectory.at_constant_speed(_SPEED, cycle_turns)
     interval = options.rate / _FPS
     count = math.ceil((moved.time[-1] - moved.time[0]) / interval)
     if count > _MOST_FRAMES:
-        raise ValueError(f'{count} frames are more than {_MOST_FRAMES}; reduce --duration')
-    return moved.every(interval, closed=closed)
+        raise ValueError(
+            f'{count} frames are more than {_MOST_FRAMES}; reduce --duration or raise --rate'
+        )
+    return moved.every(interval, closed=not options.bag)

@@ -73,12 +73,11 @@ def load_calibration(
     return Calibration.load(path, gear) if path else None
 
 
-def add_fleet(ways: argparse._ActionsContainer) -> None:
-    """Add the options that distribute many recordings; see `results`."""
+def add_jobs(ways: argparse._ActionsContainer) -> None:
+    """Add the option that distributes many recordings; see `results`."""
     ways.add_argument(
         '--jobs', type=arguments.between(1, kind=int), default=1, metavar='N', help='processes'
     )
-    ways.add_argument('--scheduler', metavar='ADDRESS', help='of a Dask cluster: tcp://host:port')
 
 
 def results(
@@ -88,18 +87,14 @@ def results(
     unit: str,
     run: Callable[[fleet.Task], fleet.Report],
 ) -> Iterator[tuple[fleet.Task, fleet.Report]]:
-    """Yield tasks and reports as they are ready: of `run`, or of `work` if `add_fleet` says so.
+    """Yield tasks and reports as they are ready: of `run`, or of `work` if `add_jobs` says so.
 
-    Processes and clusters do the work with a progress in the unit; `run` shows its own.
+    Processes do the work with a progress in the unit; `run` shows its own.
     """
-    if not options.scheduler and options.jobs == 1:
+    if options.jobs == 1:
         yield from ((task, run(task)) for task in tasks)
         return
-    done = (
-        fleet.on_cluster(work, tasks, options.scheduler)
-        if options.scheduler
-        else fleet.on_this_machine(work, tasks, options.jobs)
-    )
+    done = fleet.on_this_machine(work, tasks, options.jobs)
     with progress(unit, quiet=options.quiet) as bars:
         yield from bars.track(done, total=len(tasks), description=unit)
 

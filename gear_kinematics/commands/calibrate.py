@@ -75,7 +75,7 @@ def _check(options: argparse.Namespace, config: NodeParameters, reporter: Report
             complain(error)
     if judgements:
         configs = [arguments.config_path(options, options.recordings[0])]
-        reporter.write(check_document(options.check, judgements), configs)
+        reporter.write(check_document(options.check, calibration.half_width, judgements), configs)
     if len(judgements) < len(options.recordings):
         return ExitCode.UNUSABLE
     return ExitCode.DONE if all(one.holds for one in judgements) else ExitCode.FAILED

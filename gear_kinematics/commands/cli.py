@@ -5,7 +5,6 @@ Exit codes: 0 done, 1 a check failed, 2 unusable input or arguments.
 """
 
 import argparse
-import os
 import re
 import shlex
 import sys
@@ -33,7 +32,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     'describe': ('ratio, mobility, vernier and teeth of a gear', 'describe --html gear.html'),
     'index': (
         'pin holes for a turn of the ring gear or the phase of branch B',
-        'index --degrees 0.15 --drawing pin.svg',
+        'index --degrees 0.15',
     ),
     'preload': (
         'preload, torque limits and torque split, and the ring turn and pin holes for them',
@@ -55,16 +54,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         'draw figures: kinematic scheme, roses, slides, output over time',
         'plot output output.svg --bag logs/monday',
     ),
-    'animate': ('animate the mechanism as a GIF or an MP4', 'animate servo.gif --bag logs/monday'),
+    'animate': ('animate the mechanism as a GIF', 'animate servo.gif --bag logs/monday'),
     'urdf': ('print the URDF, and write its meshes', 'urdf --meshes meshes > gear.urdf'),
-    'completion': ('print what completes commands in a shell', 'completion bash > gearkin'),
 }
 """The subcommands, each with its purpose and an example in a line."""
-
-_OF_PRELOAD = {'--preload': '--wanted-preload'} | {
-    name: name for name in ('--measured', '--load', '--branch-stiffness', '--backlash')
-}
-"""Options that `gearkin index` had once, and what they are called in `gearkin preload`."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -88,11 +81,7 @@ class _Parser(argparse.ArgumentParser):
         message = f'unrecognized arguments: {" ".join(unknown)}'
         if options := [word for word in unknown if word.startswith('-') and word != '-']:
             known = [text for text in self._option_string_actions if text.startswith('--')]
-            option = options[0].partition('=')[0]
-            if self.prog == 'gearkin index' and option in _OF_PRELOAD:
-                message = f'{option}: see {_OF_PRELOAD[option]} of gearkin preload'
-            else:
-                message += among(option, known, most=len(known))
+            message += among(options[0].partition('=')[0], known, most=len(known))
         self.error(message)
 
     def error(self, message: str) -> NoReturn:
@@ -106,11 +95,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = [*map(str, sys.argv[1:] if arguments is None else arguments)]
     if isinstance(sys.stdout, TextIOWrapper):
         sys.stdout.reconfigure(errors='backslashreplace')  # not every encoding has a ″
-    if not os.environ.get('COLUMNS', 'unset').strip('0'):
-        del os.environ['COLUMNS']  # rich would print nothing
     called = next((word for word in words if not word.startswith('-')), '')
     try:
-        parser = make_parser(*([] if called == 'completion' else [called]))
+        parser = make_parser(called)
         options, unknown = parser.parse_known_args(words)
         if unknown:
             options.parser.refuse(unknown)
@@ -138,7 +125,6 @@ def make_parser(*called: str) -> argparse.ArgumentParser:
         called: the subcommands whose modules are imported, for their arguments; all if none.
     """
     parser = _Parser(prog='gearkin', description=__doc__)
-    parser.set_defaults(program=parser)
     parser.add_argument('--version', action='version', version=f'gearkin {version()}')
     commands = parser.add_subparsers(title='commands', required=True, metavar='COMMAND')
     for name, (purpose, example) in COMMANDS.items():

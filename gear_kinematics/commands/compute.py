@@ -5,7 +5,7 @@ import argparse
 from dataclasses import replace
 from pathlib import Path
 
-from gear_kinematics.bag import Bag, BagError, DamagedBagError, TopicError
+from gear_kinematics.bag import Bag
 from gear_kinematics.bag.compute import ComputeResult, compute
 from gear_kinematics.bag.roles import encoder_beside, find_rotor_topic, only_joint, outputs_of
 from gear_kinematics.commands import ExitCode, arguments, bags
@@ -42,42 +42,30 @@ def run(options: argparse.Namespace) -> ExitCode:
         message_progress(options.bag.name, quiet=options.quiet) as progress,
     ):
         rotor = options.rotor_topic or find_rotor_topic(bag, joint=config.rotor_joint)
+        taken = config.rotor_joint
+        if options.joint is None and taken:
+            taken = only_joint(bag, rotor, taken)
         outputs = outputs_of(bag, rotor)
-
-        def write(config: NodeParameters) -> ComputeResult:
-            return compute(
-                bag,
-                options.out,
-                config,
-                rotor_topic=rotor,
-                output_topic=options.output_topic or outputs.output,
-                poses_topic=options.poses_topic or outputs.poses,
-                encoder_topic=encoder_beside(bag, rotor),
-                calibration=calibration,
-                topics=options.topics,
-                files=_files(options, config),
-                storage=options.storage,
-                compression=options.compression,
-                progress=progress,
-            )
-
-        taken = ''
-        try:
-            result = write(config)
-        except TopicError as error:
-            raise TopicError(f'{error}; --topics says which topics to copy') from error
-        except DamagedBagError:
-            raise
-        except BagError:
-            joint = only_joint(bag, rotor, config.rotor_joint)
-            if options.joint is not None or joint == config.rotor_joint:
-                raise
-            result = write(replace(config, rotor_joint=joint))
-            taken = f'{joint}, the only joint on {rotor}, is taken'
+        used = replace(config, rotor_joint=taken)
+        result = compute(
+            bag,
+            options.out,
+            used,
+            rotor_topic=rotor,
+            output_topic=options.output_topic or outputs.output,
+            poses_topic=options.poses_topic or outputs.poses,
+            encoder_topic=encoder_beside(bag, rotor),
+            calibration=calibration,
+            topics=options.topics,
+            files=_files(options, used),
+            storage=options.storage,
+            compression=options.compression,
+            progress=progress,
+        )
     if not options.quiet:
         _print_summary(options.out, result)
-        if taken:
-            print(printable(taken))
+        if taken != config.rotor_joint:
+            print(printable(f'{taken}, the only joint on {rotor}, is taken'))
     if result.rotor_input.mostly_rejected:
         missing = result.rotor_input.missing_joint
         joints = f': {missing}' if missing else ''
@@ -105,5 +93,3 @@ def _print_summary(out: Path, result: ComputeResult) -> None:
     )
     if result.left_out:
         print(printable(f'left out: {listed(result.left_out)}'))
-    if result.undefined:
-        print(printable(f'copied without a definition of the type: {listed(result.undefined)}'))

@@ -2,7 +2,6 @@
 """`gearkin describe`: properties of the mechanism and of its teeth."""
 
 import argparse
-import math
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -11,12 +10,10 @@ from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism, loop_closure, vernier
 from gear_kinematics.report.document import Cell, Document, Layout, Section, Table, number
+from gear_kinematics.shape.angles import arc
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
-_DIGITS = 3
-_GIVEN_DIGITS = 6
-_ANGLES = ((1.0, '°'), (60.0, '′'), (3600.0, '″'))
-"""Units of angles, with what a degree has of them."""
+_DIGITS = 6
 
 
 class _Fact(NamedTuple):
@@ -25,26 +22,20 @@ class _Fact(NamedTuple):
     key: str
     value: Any
     unit: str = ''
-    label: str = ''
-    """Label in tables, if not the key."""
-    given: bool = False
-    """Whether it is a parameter, which is not rounded as results are."""
 
     @property
     def cell(self) -> Cell:
-        """The value in tables: rounded, and angles in degrees, or in minutes or seconds of arc."""
-        value, unit = self.value, self.unit
-        if value is None:
-            return Cell('')
-        if isinstance(value, list):
-            return Cell(', '.join(value))
-        if unit == 'rad':
-            degrees = math.degrees(value)
-            parts = ((parts, name) for parts, name in _ANGLES if abs(degrees) * parts >= 1.0)
-            scale, unit = next(parts, _ANGLES[-1])
-            value = degrees * scale
-        digits = _GIVEN_DIGITS if self.given else _DIGITS
-        return Cell(number(value, digits) if isinstance(value, float) else str(value), unit=unit)
+        """The value in tables: rounded, and angles in degrees, minutes and seconds of arc."""
+        match self.value:
+            case None:
+                return Cell('')
+            case list():
+                return Cell(', '.join(self.value))
+            case float() if self.unit == 'rad':
+                return Cell(arc(self.value))
+            case float():
+                return Cell(number(self.value, _DIGITS), unit=self.unit)
+        return Cell(str(self.value))
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -59,7 +50,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     config = arguments.load_config(options)
     described, size = config.mechanism, config.module
     facts = [*_facts(described), *_tooth_facts(described, size)]
-    values = ((fact.label or fact.key.replace('_', ' '), fact.cell) for fact in facts)
+    values = ((fact.key.replace('_', ' '), fact.cell) for fact in facts)
     data = {fact.key: fact.value for fact in facts}
     section = Section(
         '',
@@ -86,7 +77,7 @@ def _facts(mechanism: Mechanism) -> list[_Fact]:
     return [
         _Fact('ring_teeth', zk),
         _Fact('satellite_teeth', mechanism.satellite_teeth),
-        _Fact('eccentricity', mechanism.eccentricity, 'm', given=True),
+        _Fact('eccentricity', mechanism.eccentricity, 'm'),
         _Fact('branches', [branch.name for branch in mechanism.branches]),
         _Fact('gear_ratio', str(mechanism.gear_ratio)),
         _Fact('mobility_by_counting', loop_closure.mobility_by_counting(mechanism)),
@@ -109,18 +100,13 @@ def _tooth_facts(mechanism: Mechanism, module: float) -> list[_Fact]:
     except InterferenceError as error:
         pair, interference = None, str(error)
     return [
-        _Fact('module', module, 'm', given=True),
+        _Fact('module', module, 'm'),
         _Fact('working_pressure_angle', pair and pair.working_pressure_angle, 'rad'),
         _Fact('ring_profile_shift', pair and pair.ring_profile_shift, 'modules'),
         _Fact('addendum', pair and pair.addendum, 'modules'),
         _Fact('satellite_tip_radius', pair and pair.satellite_tip_radius, 'm'),
         _Fact('ring_tip_radius', pair and pair.ring_tip_radius, 'm'),
-        _Fact(
-            'tip_clearance',
-            pair and pair.tip_interference_margin,
-            'rad',
-            'tip interference margin',
-        ),
+        _Fact('tip_interference_margin', pair and pair.tip_interference_margin, 'rad'),
         _Fact('contact_ratio', pair and pair.contact_ratio),
         _Fact('interference', interference),
     ]

@@ -15,40 +15,32 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
 
-def add_image(parser: argparse.ArgumentParser, formats: str) -> argparse._MutuallyExclusiveGroup:
-    """Add the arguments for a drawing of a mechanism; returns the group of alternative motions."""
+def add_image(parser: argparse.ArgumentParser, formats: str) -> None:
+    """Add the arguments for a drawing of a mechanism, or of its recorded motion."""
     parser.add_argument('out', metavar='FILE', help=f'image file: {formats}')
     bags.add_rotor(parser)
     recording = arguments.group(parser, 'recording')
+    recording.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
     recording.add_argument(
         '--start-offset', type=float, metavar='S', help='start in the recording'
     )
     recording.add_argument(
         '--duration', type=arguments.positive, metavar='S', help='(default: all of it)'
     )
-    motions = arguments.group(parser, 'motion').add_mutually_exclusive_group()
-    motions.add_argument('--bag', type=Path, metavar='BAG', help='recorded motion of the rotor')
+    arguments.group(parser, 'motion')  # which the command fills, before that of the gear
     arguments.add_mechanism(parser, sizes=True)
     add_force(parser)
     arguments.add_quiet(parser)
-    return motions
 
 
-def recording(
-    options: argparse.Namespace, config: NodeParameters, *bag_only_options: str
-) -> Trajectory | None:
-    """Read the rotor's motion from the bag, from the offset on; None without a bag.
-
-    Args:
-        options: parsed arguments.
-        config: the parameters of the node.
-        bag_only_options: names of further options that need a bag.
+def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:
+    """Read the part of the rotor's motion that the options name; None without a bag.
 
     Raises:
         ValueError: if such options are given without a bag.
     """
     if not options.bag:
-        for name in ('rotor_topic', 'joint', 'start_offset', *bag_only_options):
+        for name in ('rotor_topic', 'joint', 'start_offset', 'duration'):
             if getattr(options, name) is not None:
                 raise ValueError(f'--{name.replace("_", "-")} needs --bag')
         return None

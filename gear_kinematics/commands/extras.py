@@ -6,9 +6,6 @@ EXTRAS = {
     'matplotlib': 'plot',
     'PIL': 'plot',
     'plotly': 'html',
-    'distributed': 'dask',
-    'imageio_ffmpeg': 'video',
-    'shtab': 'completion',
     'mapbox_earcut': 'mesh',
     'tornado': 'watch',
     'scipy': 'measure',
@@ -17,12 +14,6 @@ EXTRAS = {
 """The extra that installs a package; setup.py defines the extras."""
 _MESSAGES = '_msgs', '_srvs', '_interfaces'
 """Ends of the names of further packages of the extra `ros`."""
-_INSTEAD = {
-    'ros': 'source a ROS 2 installation, or ',
-    'video': 'install it with the system, or ',
-}
-"""What does as well."""
-_NAMES = {'imageio_ffmpeg': 'ffmpeg'}
 
 
 def remedy(error: ImportError) -> str:
@@ -31,5 +22,5 @@ def remedy(error: ImportError) -> str:
     extra = EXTRAS.get(package) or ('ros' if package.endswith(_MESSAGES) else None)
     if not (isinstance(error, ModuleNotFoundError) and extra):
         return ' '.join(str(error).split())
-    name, instead = _NAMES.get(package, package), _INSTEAD.get(extra, '')
-    return f"{name} is not installed: {instead}pip install 'gear_kinematics[{extra}]'"
+    instead = 'source a ROS 2 installation, or ' if extra == 'ros' else ''
+    return f"{package} is not installed: {instead}pip install 'gear_kinematics[{extra}]'"

@@ -2,6 +2,7 @@
 """`gearkin index`: the pin setting for a wanted turn of a ring gear."""
 
 import argparse
+import math
 from typing import Any
 
 import numpy as np
@@ -25,48 +26,39 @@ from gear_kinematics.report.document import (
 )
 from gear_kinematics.shape.angles import arc, arc_seconds
 
+_NEIGHBOURS = 3
+"""Positions that are listed on either side of the nearest one."""
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     pinning.add_turn(parser, required=False)
-    arguments.group(parser, pinning.HEADING).add_argument(
-        '--neighbours',
-        type=arguments.between(0, 1000, int),
-        default=3,
-        metavar='N',
-        help='positions to list on either side (default: 3)',
-    )
     arguments.add_mechanism(parser)
     add_report_forms(parser)
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Report the setting and its neighbours, and draw it."""
-    reporter = Reporter(options, others={'--drawing': options.drawing})
-    turn = pinning.ring_turn(options)
-    if turn is None and not options.phase_b:
-        raise ValueError('give --angle, --degrees or --phase-b')
-    pair, ring_teeth = None, options.ring_teeth
-    if options.phase_b or not ring_teeth:  # the vernier alone needs no satellite
-        pair = arguments.load_config(options).mechanism
-        ring_teeth = pair.ring_teeth
-    pins = pinning.find(options, ring_teeth, pair, turn or 0.0, options.neighbours)
-    drawing = pinning.drawing(options, pins, pins.turned())
+    """Report the setting and its neighbours."""
+    reporter = Reporter(options)
+    if options.degrees is None and not options.phase_b:
+        raise ValueError('give --degrees or --phase-b')
+    gear = arguments.load_config(options).mechanism
+    pins = pinning.find(options, gear, math.radians(options.degrees or 0.0), _NEIGHBOURS)
+    zk = gear.ring_teeth
     reporter.write(
-        Document('gearkin index', (_section(pins, drawing),), _data(pins)),
+        Document('gearkin index', (_section(pins, zk),), _data(pins, zk)),
         [arguments.config_path(options)],
     )
     return ExitCode.DONE
 
 
-def _data(pins: Pins) -> dict[str, Any]:
+def _data(pins: Pins, zk: int) -> dict[str, Any]:
     return {
-        'ring_teeth': pins.ring_teeth,
-        'ring_holes': pins.ring_teeth + 1,
-        'chassis_holes': pins.ring_teeth + 2,
-        'positions': vernier.distinct_positions(pins.ring_teeth),
-        'step': vernier.step(pins.ring_teeth),
-        'from': pinning.to_json(pins.start),
+        'ring_teeth': zk,
+        'ring_holes': zk + 1,
+        'chassis_holes': zk + 2,
+        'positions': vernier.distinct_positions(zk),
+        'step': vernier.step(zk),
         'wanted': {'ring_turn': pins.ring_turn, 'phase': pins.phase},
         'positions_around': [
             {
@@ -80,24 +72,20 @@ def _data(pins: Pins) -> dict[str, Any]:
     }
 
 
-def _section(pins: Pins, drawing: str) -> Section:
-    zk = pins.ring_teeth
+def _section(pins: Pins, zk: int) -> Section:
     count = vernier.distinct_positions(zk)
     facts = Table.of_values(
         Layout.LINES,
         ('holes', f'{zk} teeth, {zk + 1} ring holes, {zk + 2} chassis holes'),
         ('positions', f'{count} positions, one every {arc(vernier.step(zk))}'),
-        *pins.holes(),
-        *pins.turned(),
+        *pins.facts(),
     )
-    tables = facts, _position_table(pins)
     return Section(
         '',
-        tables,
+        (facts, _position_table(pins)),
         remarks=(pinning.SENSES,),
         answer=_sentence(pins),
         figure=_figure(pins),
-        drawing=drawing,
     )
 
 

@@ -5,11 +5,9 @@ import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from typing import Any
 
 from rich import console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.text import Text
 
 from gear_kinematics.report.document import printable
 from gear_kinematics.ros.workarounds.shared_memory import check_shared_memory
@@ -53,7 +51,7 @@ class Console(console.Console):
 def message_progress(
     name: str, *, quiet: bool = False
 ) -> Iterator[Callable[[int, int | None], None]]:
-    """Show messages/s and the remaining time; yields the function to report progress."""
+    """Show messages and the remaining time; yields the function to report progress."""
     with progress('messages', quiet=quiet) as bars:
         task = bars.add_task(printable(name), total=None)
 
@@ -69,21 +67,9 @@ def progress(unit: str, *, quiet: bool = False) -> Progress:
         TextColumn('{task.description}', markup=False),
         BarColumn(),
         MofNCompleteColumn(),
-        _Speed(unit),
+        TextColumn(unit),
         TimeRemainingColumn(),
         console=console.Console(stderr=True),
         transient=True,
         disable=quiet or not sys.stderr.isatty(),
     )
-
-
-class _Speed(TextColumn):
-    """Units per second."""
-
-    def __init__(self, unit: str) -> None:
-        super().__init__('')
-        self._unit = unit
-
-    def render(self, task: Any) -> Text:
-        speed = task.finished_speed or task.speed
-        return Text(f'{speed:,.0f} {self._unit}/s' if speed else '')

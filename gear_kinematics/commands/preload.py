@@ -4,7 +4,6 @@
 import argparse
 import math
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from gear_kinematics import plotting
@@ -13,21 +12,15 @@ from gear_kinematics.commands import pins as pinning
 from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.preload import Preload, Stiffness, braced, shaft_stiffness
-from gear_kinematics.measurement.preload.file import MeasuredPreload, read_advice
-from gear_kinematics.measurement.wording import PERCENT, plain, plus_minus
-from gear_kinematics.report.document import Cell, Document, Layout, Section, Table
-from gear_kinematics.shape.angles import arc, arc_seconds
-
-_MAX_DECIMALS = 9
-"""Of the torques in the table."""
+from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
+from gear_kinematics.report.document import Document, Layout, Section, Table
+from gear_kinematics.shape.angles import arc
 
 
 class _Answer(NamedTuple):
     """A preload, and the pins for it."""
 
     mechanism: Mechanism
-    measured: MeasuredPreload | None
     backlash: float
     preload: Preload
     pins: Pins
@@ -40,21 +33,17 @@ class _Answer(NamedTuple):
         branch_a, branch_b = braced(self.mechanism)
         return branch_a.name, branch_b.name
 
-    @property
-    def max_load(self) -> float:
-        """Range of table and plot, N·m."""
-        return plotting.load_range(self.preload)
-
-    @property
-    def loads(self) -> list[float]:
-        """Of the table, N·m."""
-        return plotting.loads_to_list(self.preload, self.max_load)
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     ways = pinning.add_turn(parser, required=True)
-    pinning.add_setting(ways, '--setting', 'setting', 'pin setting of the ring gear')
+    ways.add_argument(
+        '--setting',
+        type=int,
+        nargs=3,
+        metavar=('TOOTH', 'RING_HOLE', 'CHASSIS_HOLE'),
+        help='pin setting of the ring gear',
+    )
     ways.add_argument(
         '--wanted-preload',
         type=float,
@@ -64,34 +53,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ways.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    ways.add_argument(
-        '--measured',
-        type=Path,
-        metavar='JSON',
-        help='the least turn by measured ramps: from gearkin lost-motion --preloads --json',
-    )
-    arguments.group(parser, pinning.HEADING).add_argument(
-        '--load',
-        type=arguments.positive,
-        metavar='N·m',
-        help='that --measured must be for (default: any)',
-    )
     group = parser.add_argument_group(
         'stiffness', 'torsional, at the output; not a parameter of the node'
     )
-    for name, unit, text in (
-        ('shaft-stiffness', 'N·m/rad', 'between the arms'),
-        ('shaft-diameter', 'M', 'of a solid round shaft of steel'),
-        ('shaft-length', 'M', 'between the arms'),
-        ('backlash', 'RAD', 'play of the output before the turn, which has to close it first'),
-    ):
-        group.add_argument(f'--{name}', type=float, metavar=unit, help=text)
     group.add_argument(
         '--branch-stiffness',
         type=float,
         nargs='+',
+        required=True,
         metavar='N·m/rad',
         help='of both branches, or of A and of B, the one at the output; inf: rigid',
+    )
+    group.add_argument(
+        '--shaft-stiffness',
+        type=float,
+        required=True,
+        metavar='N·m/rad',
+        help='between the arms',
+    )
+    group.add_argument(
+        '--backlash',
+        type=float,
+        default=0.0,
+        metavar='RAD',
+        help='play of the output before the turn, which has to close it first',
     )
     arguments.add_mechanism(parser)
     add_report_forms(parser)
@@ -99,24 +84,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Report preload, limits, torque split and pins."""
-    reporter = Reporter(options, others={'--drawing': options.drawing})
+    reporter = Reporter(options)
     answer = _answer(options)
     a, b = answer.names
     senses = (
         f'Stiffness, turn and load are those of the output, at the arm of branch {b}. A load is '
         f'positive in the direction in which ring gear {a} is turned relative to ring gear {b}.'
     )
-    notes = [*answer.pins.turned(), ('outcome', _outcome(answer.pinned))]
+    facts = [*_facts(answer), *answer.pins.facts(), ('outcome', _outcome(answer.pinned))]
     section = Section(
         '',
-        (
-            Table.of_values(Layout.LINES, *_facts(answer), *answer.pins.holes(), *notes),
-            _split_table(answer),
-        ),
+        (Table.of_values(Layout.LINES, *facts),),
         remarks=(senses, pinning.SENSES),
         answer=f'With {answer.pins.nearest.settings[0]} {_outcome(answer.pinned)}.',
-        figure=plotting.torque_split(answer.preload, answer.names, answer.max_load),
-        drawing=pinning.drawing(options, answer.pins, notes),
+        figure=plotting.torque_split(answer.preload, answer.names),
     )
     reporter.write(
         Document('gearkin preload', (section,), _data(answer)), [arguments.config_path(options)]
@@ -127,53 +108,19 @@ def run(options: argparse.Namespace) -> ExitCode:
 def _answer(options: argparse.Namespace) -> _Answer:
     pair = arguments.load_config(options).mechanism
     braced(pair)  # its error, before others
-    stiffness, measured, backlash = _known(options, pair)
+    branches, backlash = options.branch_stiffness, options.backlash
+    if len(branches) > 2:  # noqa: PLR2004, A and B
+        raise ValueError(f'--branch-stiffness takes one value or two, not {len(branches)}')
+    stiffness = Stiffness(branches[0], branches[-1], options.shaft_stiffness)
     if options.setting:
         pins = pinning.at_setting(options, pair)
     else:
-        turn = measured.least.high if measured else _wanted(options, pair, stiffness, backlash)
-        pins = pinning.find(options, pair.ring_teeth, pair, turn)
+        pins = pinning.find(options, pair, _wanted(options, pair, stiffness, backlash))
     preload, pinned = (
         Preload.from_ring_turn(pair, stiffness, angle - (pins.phase or 0.0), backlash)
         for angle in (pins.ring_turn, pins.nearest.ring_turn)
     )
-    return _Answer(pair, measured, backlash, preload, pins, pinned)
-
-
-def _known(
-    options: argparse.Namespace, pair: Mechanism
-) -> tuple[Stiffness, MeasuredPreload | None, float]:
-    """The stiffnesses, what was measured, and the backlash, rad."""
-    if not options.measured:
-        if options.load:
-            raise ValueError('--load needs --measured')
-        return _stiffness(options), None, options.backlash or 0.0
-    given = ('branch_stiffness', 'shaft_stiffness', 'shaft_diameter', 'shaft_length', 'backlash')
-    if any(getattr(options, name) is not None for name in given):
-        raise ValueError('--measured contains the stiffness and backlash, give no others')
-    measured = read_advice(options.measured)
-    if options.load and options.load != measured.load:
-        made = f'for {measured.load:g} N·m' if measured.load else 'without --load'
-        raise ValueError(f'{options.measured}: made {made}, not for {options.load:g} N·m')
-    if not math.isclose(measured.scale, pair.ring_teeth / pair.satellite_teeth):
-        raise ValueError(f'{options.measured}: measured on a gear with other teeth')
-    return measured.preload.stiffness, measured, measured.preload.play
-
-
-def _stiffness(options: argparse.Namespace) -> Stiffness:
-    branches, shaft = options.branch_stiffness, options.shaft_stiffness
-    dimensions = [options.shaft_diameter, options.shaft_length]
-    if branches is None:
-        raise ValueError('--branch-stiffness is missing (inf for rigid branches)')
-    if len(branches) > 2:  # noqa: PLR2004, A and B
-        raise ValueError(f'--branch-stiffness takes one value or two, not {len(branches)}')
-    if shaft is not None and dimensions != [None, None]:
-        raise ValueError('--shaft-stiffness and dimensions of the shaft exclude each other')
-    if shaft is None:
-        if None in dimensions:
-            raise ValueError('--shaft-stiffness or --shaft-diameter and --shaft-length is missing')
-        shaft = shaft_stiffness(*dimensions)
-    return Stiffness(branches[0], branches[-1], shaft)
+    return _Answer(pair, backlash, preload, pins, pinned)
 
 
 def _wanted(
@@ -185,12 +132,11 @@ def _wanted(
         return math.copysign(wanted.ring_turn(pair, backlash), options.wanted_preload)
     if options.wanted_threshold is not None:
         return Preload.from_limit(stiffness, options.wanted_threshold).ring_turn(pair, backlash)
-    return pinning.ring_turn(options) or 0.0
+    return math.radians(options.degrees)
 
 
 def _data(answer: _Answer) -> dict[str, Any]:
     known, pins = answer.preload.stiffness, answer.pins
-    split = answer.preload.split(answer.loads)
     return {
         'ring_teeth': answer.mechanism.ring_teeth,
         'satellite_teeth': answer.mechanism.satellite_teeth,
@@ -204,17 +150,11 @@ def _data(answer: _Answer) -> dict[str, Any]:
             'without_b': known.branch_a_alone,
         },
         'backlash': answer.backlash,
-        'measured': plain(answer.measured and answer.measured._asdict()),
-        'from': pinning.to_json(pins.start),
         'phase': pins.phase,
         **_figures(pins.ring_turn, answer.preload),
         'setting': {
             **pinning.to_json(pins.nearest.settings[0]),
             **_figures(pins.nearest.ring_turn, answer.pinned),
-        },
-        'split': {
-            'load': answer.loads,
-            **{name: values.tolist() for name, values in split._asdict().items()},
         },
     }
 
@@ -251,14 +191,6 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
         ('shaft', known.shaft),
     )
     yield 'stiffness', ', '.join(f'{name} {_in_words(value)}' for name, value in parts)
-    if measured := answer.measured:
-        least, what = measured.least, 'hysteresis falls no further'
-        if measured.load:
-            what = f'both branches stay in mesh under {measured.load:g} N·m'
-        span = f'{PERCENT}: {arc(least.low)} to {arc(least.high)}, which is wanted'
-        yield 'measured', f'{what} from {arc(least.value)} on ({span})'
-        if measured.added_friction:
-            yield 'added friction', f'{plus_minus(measured.added_friction)} N·m'
     yield 'ring turn', f'{arc(answer.pins.ring_turn)} = {answer.pins.ring_turn:.6g} rad'
     if answer.backlash:
         yield 'backlash', f'{arc(answer.backlash)} at the output before the turn'
@@ -282,22 +214,3 @@ def _threshold(threshold: float, other: str, left: float) -> str:
 
 def _in_words(stiffness: float) -> str:
     return 'rigid' if math.isinf(stiffness) else f'{stiffness:.4g} N·m/rad'
-
-
-def _split_table(answer: _Answer) -> Table:
-    preload, (a, b) = answer.preload, answer.names
-    marks = plotting.leaving_mesh(preload, answer.names)
-    decimals = min(max(0, 3 - math.floor(math.log10(answer.max_load))), _MAX_DECIMALS)
-    split = preload.split(answer.loads)
-    rows = []
-    for load, *torques, turn in zip(answer.loads, *split, strict=True):
-        cells = (round(torque, decimals) + 0.0 for torque in (load, *torques))
-        rows.append(
-            (
-                *(Cell(f'{cell:.{decimals}f}') for cell in cells),
-                Cell(f'{arc_seconds(turn):.1f}'),
-                Cell(marks.get(load, '')),
-            )
-        )
-    columns = ('load [N·m]', f'branch {a} [N·m]', f'branch {b} [N·m]', 'output turns [″]', 'mesh')
-    return Table(columns, tuple(rows), words=('mesh',))

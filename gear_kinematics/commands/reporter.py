@@ -16,7 +16,7 @@ from gear_kinematics.commands.files import add_force, check_targets, write_file,
 from gear_kinematics.commands.output import Console, closed_pipe_ignored
 from gear_kinematics.report.document import Document, Origin, printable
 from gear_kinematics.report.html import to_html
-from gear_kinematics.report.image import INCH, ImageFile, to_image
+from gear_kinematics.report.image import check_image, to_image
 from gear_kinematics.report.json import to_json
 from gear_kinematics.report.junit import to_junit
 from gear_kinematics.report.text import render
@@ -27,9 +27,6 @@ _FORMS: Mapping[str, Callable[[Document], str]] = {
     'junit': to_junit,
     'html': to_html,
 }
-_DPI = 150
-_MOST_PIXELS = 20_000
-"""Width of an image."""
 
 
 def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) -> None:
@@ -39,41 +36,8 @@ def add_report_forms(parser: argparse.ArgumentParser, *, junit: bool = False) ->
         if junit or form != 'junit':
             group.add_argument(f'--{form}', metavar='FILE', help=f'report as {form} (-: stdout)')
     group.add_argument('--plot', metavar='FILE', help='figure: .png, .svg or .pdf')
-    add_paper(parser)
     add_force(parser)
     arguments.add_quiet(parser)
-
-
-def add_paper(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the size of a figure; see `image_file`."""
-    group = arguments.group(parser, 'output')
-    group.add_argument(
-        '--width-mm',
-        type=arguments.between(30.0, 1000.0),
-        metavar='MM',
-        help='width of the figure, with text as large as on any other (default: what suits it)',
-    )
-    group.add_argument(
-        '--dpi',
-        type=arguments.between(30, 2400, int),
-        metavar='N',
-        help=f'pixels per inch (default: {_DPI})',
-    )
-
-
-def image_file(options: argparse.Namespace, target: str) -> ImageFile:
-    """Return the file of a figure with its size, as the options say.
-
-    Raises:
-        ValueError: if the image would be too large, or the suffix is unknown.
-        ModuleNotFoundError: without matplotlib.
-    """
-    dpi = options.dpi or _DPI
-    if (options.width_mm or 0.0) / INCH * dpi > _MOST_PIXELS:
-        raise ValueError(f'an image is at most {_MOST_PIXELS} pixels wide: reduce --dpi')
-    file = ImageFile(Path(target), options.width_mm, dpi)
-    file.check()
-    return file
 
 
 class Reporter:
@@ -112,12 +76,10 @@ class Reporter:
             raise ValueError('--html -: a page goes into a file or a pipe, not to a terminal')
         check_targets(options, given)
         self._silent = bool(to_stdout)
-        if not options.plot and (options.width_mm, options.dpi) != (None, None):
-            raise ValueError('--width-mm and --dpi need --plot')
         if options.plot:
             if sections > 1 and not compared:
                 raise ValueError('--plot takes one recording')
-            self._image = image_file(options, options.plot)
+            check_image(Path(options.plot))
         if 'html' in self._forms:
             import_module('plotly')
 
@@ -141,8 +103,7 @@ class Reporter:
             figure = document.sections[-1].figure  # of several, the last compares the others
             if not figure:
                 raise ValueError(f'{plot}: there is nothing to plot')
-            image = to_image(figure, self._image)
-            write_file(plot, image)
+            write_file(plot, to_image(figure, Path(plot)))
         for form, target in self._forms.items():
             write_text(target, _FORMS[form](document))
 

@@ -55,7 +55,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     way.add_argument(
         '--live', action='store_true', help='validate the outputs of a live node instead'
     )
-    bags.add_fleet(way)
+    bags.add_jobs(way)
     add_report_forms(parser, junit=True)
     arguments.add_verbose(parser, 'print all counts and errors, not only what was found')
 

@@ -25,10 +25,6 @@ class ErrorStatistics(NamedTuple):
     """rad."""
     peak_to_peak: float | None = None
     """rad."""
-    mean_forward: float | None = None
-    """rad."""
-    mean_backward: float | None = None
-    """rad."""
     reversals: Reversals | None = None
     """Lost motion and delay; None unless both directions cover the same angles."""
     calibration: CalibrationFit | None = None
@@ -75,9 +71,6 @@ class ErrorWindow:
         forward, backward = (_means(bins[rows], error[rows], speed[rows]) for rows in ways)
         _, there, back = np.intersect1d(forward[0], backward[0], return_indices=True)
         _, difference, speed_difference = backward[:, back] - forward[:, there]
-        mean_forward, mean_backward = (
-            float(error[rows].mean()) if rows.any() else None for rows in ways
-        )
         known = np.isfinite(half_width)
         residual = error[known] - deviation[known]
         fit = CalibrationFit.of(error[known], residual, half_width[known]) if known.any() else None
@@ -85,8 +78,6 @@ class ErrorWindow:
             len(error),
             float(error.mean()),
             float(np.ptp(error)),
-            mean_forward,
-            mean_backward,
             separate([Pair(difference, -speed_difference)]),
             fit,
         )

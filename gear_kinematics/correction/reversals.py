@@ -56,9 +56,7 @@ class Pair:
     """(n,), rad/s: speed of forward minus that of backward motion."""
 
 
-def separate(
-    pairs: Sequence[Pair], *others: Component, delay: float | None = None
-) -> Reversals | None:
+def separate(pairs: Sequence[Pair], *others: Component) -> Reversals | None:
     """Separate lost motion from a delay.
 
     Uncertainties are those of the jackknife, which leaves out a pair at a time, or a block of
@@ -67,7 +65,6 @@ def separate(
     Args:
         pairs: of runs; those without angles are ignored.
         others: components of the uncertainty that are the same in all pairs, rad.
-        delay: s, if it is known; None estimates it.
 
     Returns:
         None without common angles.
@@ -93,9 +90,6 @@ def separate(
         return replace(Estimate.of_mean(values.tolist(), *others), repeats=len(pairs))
 
     means = estimate(difference, *others), float(centre[1])
-    if delay is not None:
-        known = Estimate(delay, 0.0, np.inf, len(pairs))
-        return Reversals(*means, estimate(difference - delay * speed, *others), known)
     noise = float(np.mean([_noise(pair) for pair in pairs]))
     # Whether the speed varies, and not only by noise.
     varies = (variance > (_SPREAD * speed) ** 2) & (noise <= _STEADY * variance)

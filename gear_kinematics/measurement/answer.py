@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
-from gear_kinematics.measurement.encoder_step import Source, Step
 from gear_kinematics.measurement.figures import GearFigures
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import Measured, shown
@@ -49,10 +48,7 @@ def _of_ramps(figures: GearFigures) -> str:
     low, high = (number(end * ARC_MINUTES) for end in (backlash.low, backlash.high))
     said = cause.value
     enough = 2.0 * figures.friction.value if figures.friction else math.inf
-    if (
-        cause in {Cause.BENT, Cause.SOFT}
-        and enough < _SMALLER * figures.by_amplitude[0].ramps.amplitude
-    ):
+    if cause in {Cause.BENT, Cause.SOFT} and enough < _SMALLER * figures.ramps[0].amplitude:
         said = f'to separate them, repeat slow ramps to ±{number(enough, 2)} N·m'
     rest = f'the rest friction; {said}.' if said else 'the rest friction.'
     return f'{width} Of it, at least {low}′ and at most {high}′ is play, {rest}'
@@ -113,7 +109,6 @@ def remarks(report: LostMotion) -> list[str]:
 
 
 def _remarks(report: LostMotion) -> Iterator[str]:
-    recording = report.recording
     yield from report.remarks
     if found := report.figures:
         yield (
@@ -122,48 +117,29 @@ def _remarks(report: LostMotion) -> Iterator[str]:
             else 'Inferred, not measured: the angle is that of the motor encoder, with the output '
             'taken to be locked. The figures include the compliance of motor, bench and clamping.'
         )
-        if recording.locked:
-            yield _step(recording.locked.angle_step, 'the angle at the output')
-        if len(found.by_amplitude) == 1:
+        if len(found.ramps) == 1:
             yield 'All ramps have about one amplitude: small ones would separate play better.'
-        if min(len(figures.ramps.loops) for figures in found.by_amplitude) == 1:
-            yield 'There is no uncertainty where nothing was repeated.'
         if found.hysteresis.value < -(found.hysteresis.uncertainty or 0.0):
             yield (
                 'The hysteresis is negative, which no gear has: the torque comes later than the '
                 'angle, as behind a filter or from another clock.'
             )
-    if both := recording.encoders:
-        rotor_step = both.rotor_step_at_output(report.gear_ratio)
-        yield _step(rotor_step, 'the rotor encoder (at the output)')
-        yield _step(both.output_step, 'the output encoder')
-        motion = report.transmission
-        late = motion.delay if motion else None
-        if motion and motion.reversals and not late:
-            yield (
-                'The speed varies too little to tell lost motion from a delay between the '
-                'encoders: move at several speeds, or tell the delay with --delay, in '
-                f'{"s" if both.timed else "rows"}.'
-            )
-        if late and abs(late.value) > (late.uncertainty or math.inf):
+    if motion := report.transmission:
+        if motion.delay and motion.delay.clear:
             yield (
                 'The stamps of the two encoders differ by a delay. It has been taken out of the '
                 'transmission error.'
             )
+        elif motion.reversals and not motion.delay:
+            yield (
+                'The speed varies too little to tell lost motion from a delay between the '
+                'encoders: move at several speeds.'
+            )
+    if both := report.recording.encoders:
         for cause, count in both.unmatched.items():
             yield f'{count} output angles were not compared: {cause}.'
     yield (
         f'Each ± contains the value with a probability of {PERCENT}, given the scatter of repeats '
-        'and the steps of the encoders. Errors of scale (1 % of the torque is 1 % of friction and '
-        'stiffness) and other positions of the output are not in it.'
+        'and the steps of the encoders where they are known. Errors of scale (1 % of the torque '
+        'is 1 % of friction and stiffness) and other positions of the output are not in it.'
     )
-
-
-def _step(step: Step, of: str) -> str:
-    size = f'{number(step.size * ARC_MINUTES)} arcmin'
-    if step.source in {Source.GIVEN, Source.FOUND}:
-        return f'One step of {of} is {size}.'
-    unknown = f'The step of {of} is not determinable from the readings'
-    if step.source == Source.RECORDING:
-        return f'{unknown}; they are recorded in steps of {size}, which the uncertainty includes.'
-    return f'{unknown}, and the uncertainty does not include it.'

@@ -3,18 +3,17 @@
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from gear_kinematics.correction.uncertainty import COVERAGE, Estimate
 from gear_kinematics.measurement.answer import Judgement, Limits, answer, remarks
 from gear_kinematics.measurement.curves import panels
-from gear_kinematics.measurement.figures import Figures, GearFigures, Stiffness
+from gear_kinematics.measurement.figures import GearFigures
+from gear_kinematics.measurement.loops import Ramps
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import Measured, shown
-from gear_kinematics.measurement.middle_line import Backlash
-from gear_kinematics.measurement.transmission import TransmissionFigures
-from gear_kinematics.measurement.wording import arc_minutes, plain
+from gear_kinematics.measurement.wording import plain
 from gear_kinematics.report.document import (
     Case,
     Cell,
@@ -31,7 +30,7 @@ from gear_kinematics.report.document import (
 )
 
 SCHEMA = 'gear_kinematics/lost_motion'
-VERSION = 2
+VERSION = 3
 _COLUMNS = 2
 """Panels side by side."""
 
@@ -44,13 +43,13 @@ class Comparison:
     sentence: str
     """The answer, in one line."""
     data: Mapping[str, Any]
-    """For the JSON, without its dataclasses converted."""
+    """For the JSON."""
 
 
 def document(
-    reports: Sequence[LostMotion], comparisons: Sequence[Comparison], limits: Limits
+    reports: Sequence[LostMotion], comparison: Comparison | None, limits: Limits
 ) -> Document:
-    """Return the document on recordings, with a section for each, and then their comparisons."""
+    """Return the document on recordings, with a section for each, and then their comparison."""
     sections, recordings = [], []
     for report in reports:
         sentences = answer(report), limits.judge(report), remarks(report)
@@ -59,17 +58,17 @@ def document(
     verdicts = [section.verdict for section in sections if section.verdict]
     return Document(
         'gearkin lost-motion',
-        (*sections, *(replace(found.section, leads=True) for found in comparisons)),
+        (*sections, *([comparison.section] if comparison else [])),
         {
             'schema': SCHEMA,
             'version': VERSION,
             'coverage': COVERAGE,
             'recordings': recordings,
-            **{key: plain(value) for found in comparisons for key, value in found.data.items()},
+            **(comparison.data if comparison else {}),
         },
         max(verdicts, key=list(Verdict).index, default=None),
         _summary(reports),
-        '; '.join(found.sentence for found in comparisons),
+        comparison.sentence if comparison else '',
     )
 
 
@@ -108,20 +107,17 @@ def _main(report: LostMotion) -> dict[str, str]:
 
 def _tables(report: LostMotion) -> Iterator[Table]:
     found, motion, both = report.figures, report.transmission, report.recording.encoders
-    ramps = found.by_amplitude if found else ()
     yield Table.of_values(
         Layout.INLINE,
         ('samples', str(report.recording.rows)),
         ('columns', printable('; '.join(report.recording.columns))),
         ('gear ratio', str(report.gear_ratio)),
-        ('rated torque', f'{number(found.settings.rated_torque)} N·m' if found else ''),
-        ('ramps', '; '.join(map(_ramps, ramps))),
+        ('rated torque', f'{number(found.rated_torque)} N·m' if found else ''),
+        ('ramps', '; '.join(map(_ramps, found.ramps)) if found else ''),
         ('travel', f'{number(math.degrees(motion.travel), 4)}°' if motion else ''),
     )
     if found:
-        several = ramps if len(ramps) > 1 else ()
-        sources = {f'to {number(own.ramps.amplitude)} N·m': own.listed() for own in several}
-        yield _table({'value': found.listed(), **sources})
+        yield _table(found.listed())
     if motion:
         errors = (
             Measured('transmission accuracy', 'rad', motion.forward, ' forward'),
@@ -132,41 +128,18 @@ def _tables(report: LostMotion) -> Iterator[Table]:
                 'delay of the output encoder', 's' if both and both.timed else 'rows', motion.delay
             ),
         )
-        yield _table({'value': errors})
-        yield _order_table(motion)
+        yield _table(errors)
 
 
-def _ramps(figures: Figures) -> str:
-    ramps = figures.ramps
-    rate = f' at {number(ramps.rate)} N·m/s' if ramps.rate else ''
-    return f'{counted(len(ramps.loops), "loop")} to {number(ramps.amplitude)} N·m{rate}'
+def _ramps(ramps: Ramps) -> str:
+    return f'{counted(len(ramps.loops), "loop")} to {number(ramps.amplitude)} N·m'
 
 
-def _table(columns: Mapping[str, Iterable[Measured]]) -> Table:
-    """A row for each figure, and a column for each source; what its ± exceeds stands out."""
-    cells = [
-        {f'{figure.name}{figure.at}': figure.cell for figure in figures if figure.value}
-        for figures in columns.values()
-    ]
-    subjects = {label: Cell(label, unit=cell.unit) for own in cells for label, cell in own.items()}
-    rows = (
-        (subject, *(own.get(label, Cell('')) for own in cells))
-        for label, subject in subjects.items()
-    )
-    return Table(('figure', *columns), tuple(rows))
-
-
-def _order_table(found: TransmissionFigures) -> Table:
-    """Return the amplitudes of the marked orders."""
-    return Table.of_items(
-        {
-            'order': lambda order: order.name,
-            'cycles per output turn': lambda order: str(order.cycles),
-            'forward [′]': lambda order: arc_minutes(order.forward),
-            'backward [′]': lambda order: arc_minutes(order.backward),
-        },
-        [order for order in found.orders if order.forward or order.backward],
-    )
+def _table(figures: Iterable[Measured]) -> Table:
+    """A row for each figure that is known; one that its ± exceeds stands out."""
+    known = [figure for figure in figures if figure.value]
+    rows = ((Cell(f'{own.name}{own.at}', unit=own.cell.unit), own.cell) for own in known)
+    return Table(('figure', 'value'), tuple(rows))
 
 
 # JSON
@@ -187,68 +160,32 @@ def _recording(
         **(_of_gear(report.figures) if report.figures else {}),
         'measured': report.measured,
         'transmission': plain(report.transmission),
-        'encoders': both
-        and {
-            'delay_unit': 's' if both.timed else 'rows',
-            'rotor_step': both.rotor_step_at_output(report.gear_ratio).size,
-            'rotor_step_source': both.rotor_step.source,
-            'output_step': both.output_step.size,
-            'output_step_source': both.output_step.source,
-            'unmatched': both.unmatched,
-        },
+        'delay_unit': ('s' if both.timed else 'rows') if both else None,
         'remarks': remarked,
     }
 
 
 def _of_gear(found: GearFigures) -> dict[str, Any]:
-    figures = _figures(found)
-    figures['lost_motion_without_friction']['load'] = found.settings.small_load
     return {
-        'rated_torque': found.settings.rated_torque,
-        **figures,
-        'overall_stiffness': _stiffness(found.overall) if found.overall else None,
-        'by_amplitude': [
-            {
-                'amplitude': own.ramps.amplitude,
-                'loops': len(own.ramps.loops),
-                'rate': own.ramps.rate,
-                **_figures(own),
-            }
-            for own in found.by_amplitude
-        ],
-    }
-
-
-def _figures(found: GearFigures | Figures) -> dict[str, Any]:
-    return {
+        'rated_torque': found.rated_torque,
+        'ramps': [{'amplitude': own.amplitude, 'loops': len(own.loops)} for own in found.ramps],
         'hysteresis': _with_unit(found.hysteresis, 'rad'),
         'lost_motion': _with_unit(found.lost_motion, 'rad'),
-        'lost_motion_without_friction': _with_unit(found.frictionless, 'rad'),
         'friction': _with_unit(found.friction, 'N·m'),
-        'backlash': _backlash(found.backlash),
-        'stiffness': [_stiffness(stiffness) for stiffness in found.stiffness],
+        'backlash': {
+            **_with_unit(found.backlash.value, 'rad'),
+            'low': found.backlash.low,
+            'high': found.backlash.high,
+            'cause': found.backlash.cause.value or None,
+        },
+        'stiffness': [
+            {'low': own.low, 'high': own.high, **_with_unit(own.slope, 'N·m/rad')}
+            for own in found.stiffness
+        ],
+        'overall_stiffness': _with_unit(found.overall, 'N·m/rad'),
     }
 
 
 def _with_unit(estimate: Estimate | None, unit: str) -> dict[str, Any]:
     unknown = {'value': None, 'expanded_uncertainty': None}
     return {'unit': unit, **(plain(estimate) or unknown)}
-
-
-def _stiffness(stiffness: Stiffness) -> dict[str, Any]:
-    return {
-        'low': stiffness.low,
-        'high': stiffness.high,
-        **_with_unit(stiffness.both, 'N·m/rad'),
-        'positive': plain(stiffness.positive),
-        'negative': plain(stiffness.negative),
-    }
-
-
-def _backlash(backlash: Backlash | None) -> dict[str, Any] | None:
-    return backlash and {
-        **_with_unit(backlash.value, 'rad'),
-        'low': backlash.low,
-        'high': backlash.high,
-        'cause': backlash.cause.value or None,
-    }

@@ -7,7 +7,6 @@ they are recorded, as decimals or in single precision; a step is at least twice 
 
 import math
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,39 +39,28 @@ _EVEN = 0.98
 """From this share of equal changes on, levels are those of an even motion, not of an encoder."""
 
 
-class Source(StrEnum):
-    """Where the step of an encoder comes from."""
-
-    GIVEN = 'given'
-    FOUND = 'found'
-    """In the readings."""
-    RECORDING = 'recording'
-    """It is not determinable; the resolution of the recorded numbers takes its place."""
-    UNKNOWN = 'unknown'
-    """It is not determinable."""
-
-
 @dataclass(frozen=True, slots=True)
 class Step:
     """The step between the readings of an encoder."""
 
     size: float
     """In the unit of the readings; 0 if unknown."""
-    source: Source
+    seen: bool
+    """Whether it shows in the readings; else it was given, or is the resolution in which they are
+    recorded."""
 
     def scaled(self, factor: float) -> 'Step':
         """The step of readings that are multiplied by a factor."""
-        return Step(self.size * abs(factor), self.source)
+        return Step(self.size * abs(factor), self.seen)
 
     def joined(self, other: 'Step') -> 'Step':
         """The step of a difference of readings, whose variance is the sum of both."""
-        worse = max(self, other, key=lambda step: list(Source).index(step.source))
-        return Step(math.hypot(self.size, other.size), worse.source)
+        return Step(math.hypot(self.size, other.size), self.seen and other.seen)
 
 
 def step_of(counts: int | None, readings: Array) -> Step:
     """The step of an encoder, rad, from its counts per turn, or from its readings."""
-    return Step(TURN / counts, Source.GIVEN) if counts else find_step(readings)
+    return Step(TURN / counts, seen=False) if counts else find_step(readings)
 
 
 def find_step(readings: Array) -> Step:
@@ -83,7 +71,7 @@ def find_step(readings: Array) -> Step:
     """
     levels = np.unique(readings)
     if len(levels) < _LEAST:
-        return Step(0.0, Source.UNKNOWN)
+        return Step(0.0, seen=False)
     recorded = _recording_resolution(levels)
     # In an unknown unit, the resolution does not show: try all, from coarse to fine.
     finest = max(recorded, _ROUNDING * float(np.max(np.spacing(np.abs(levels)))))
@@ -94,8 +82,7 @@ def find_step(readings: Array) -> Step:
         # Any finer step fits; it has to fit better.
         if nearest > _EXACT and distance < _BETTER * nearest:
             best, nearest = step, distance
-    source = Source.FOUND if best else Source.RECORDING if recorded else Source.UNKNOWN
-    return Step(best or recorded, source)
+    return Step(best or recorded, best > 0.0)
 
 
 def _recording_resolution(levels: Array) -> float:

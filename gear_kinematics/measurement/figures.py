@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
-from gear_kinematics.measurement.loops import Array, HalfLoop, Loop, RampError, Ramps
+from gear_kinematics.measurement.loops import HalfLoop, Loop, RampError, Ramps
 from gear_kinematics.measurement.measured import HYSTERESIS, Measured
 from gear_kinematics.measurement.middle_line import (
     MOST_FRICTION,
@@ -20,7 +20,6 @@ from gear_kinematics.measurement.middle_line import (
     reconciled,
     stiffness_of,
 )
-from gear_kinematics.measurement.resolution import hidden_resolution, slope_resolution
 from gear_kinematics.report.document import number
 
 LOST_MOTION_SHARE = 0.03
@@ -37,143 +36,91 @@ _TORQUES = 200
 
 @dataclass(frozen=True, slots=True)
 class Stiffness:
-    """Torsional stiffness, N·m/rad, between two magnitudes of torque, N·m."""
+    """Torsional stiffness between two magnitudes of torque, N·m."""
 
     low: float
     high: float
-    both: Estimate
-    """The mean of both signs of torque; the others are of one alone."""
-    positive: Estimate
-    negative: Estimate
-
-
-@dataclass(frozen=True, slots=True)
-class Settings:
-    """Reference values of the figures: torques in N·m."""
-
-    rated_torque: float
-    corners: tuple[float, ...]
-    """Ascending: limits between the ranges of stiffness."""
-    small_load: float
-    """At which lost motion without friction is read: as lost motion, unless friction may keep the
-    smallest ramps from loading the spring so much."""
-    angle_step: float
-    """rad at the output, between readings of the encoder; 0 if unknown."""
+    slope: Estimate
+    """N·m/rad, the mean of both signs of torque."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Figures:
-    """Of the ramps of one amplitude: angles in rad, torques in N·m."""
+class GearFigures:
+    """Of a gear: angles in rad, torques in N·m."""
 
-    settings: Settings
-    ramps: Ramps
+    rated_torque: float
+    angle_step: float
+    """rad at the output, between readings of the encoder; 0 if unknown."""
+    ramps: tuple[Ramps, ...]
+    """From small to large: those with friction are from the smallest, the others from the
+    largest."""
     hysteresis: Estimate
     """The width of the curve at zero torque."""
     friction: Estimate | None
     """Half the width of the curve in torque; None without a complete loop."""
+    backlash: Backlash
+    """What all ramps together leave room for."""
     lost_motion: Estimate | None
     """Between the middles of the curve at ± `LOST_MOTION_SHARE` of the rated torque; None if the
     ramps are too small."""
-    frictionless: Estimate | None
-    """Lost motion without friction: between the ends of the middle line at ± the small load; None
-    if a loop does not reach it."""
-    backlash: Backlash | None
-    """What these ramps leave room for; None if they do not bound it."""
     stiffness: tuple[Stiffness, ...]
     """In the ranges that the ramps cover, while the torque increases in magnitude."""
-    overall: Stiffness | None
-    """Slope of a straight line through each whole side of the loop."""
+    overall: Estimate | None
+    """N·m/rad, the slope of a straight line through each whole side of the loop."""
 
     def listed(self) -> Iterator[Measured]:
         """Yield the figures in the order of reports."""
-        at = number(LOST_MOTION_SHARE * self.settings.rated_torque)
-        load = number(self.settings.small_load)
-        without = 'lost motion without friction'
+        at = number(LOST_MOTION_SHARE * self.rated_torque)
         yield Measured(HYSTERESIS, 'rad', self.hysteresis, ' at zero torque')
         yield Measured('backlash', 'rad', self.backlash)
-        yield Measured(without, 'rad', self.frictionless, f' at ±{load} N·m')
         yield Measured('friction', 'N·m', self.friction)
         yield Measured('lost motion', 'rad', self.lost_motion, f' at ±{at} N·m')
         for stiffness in self.stiffness:
             ends = f'{number(stiffness.low)} to {number(stiffness.high)} N·m'
-            yield Measured(f'stiffness {ends}', 'N·m/rad', stiffness.both)
-        overall = self.overall.both if self.overall else None
-        yield Measured('overall stiffness', 'N·m/rad', overall)
+            yield Measured(f'stiffness {ends}', 'N·m/rad', stiffness.slope)
+        yield Measured('overall stiffness', 'N·m/rad', self.overall)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class GearFigures(Figures):
-    """Of a gear: with friction from its smallest ramps, otherwise from its largest."""
-
-    backlash: Backlash
-    """What all ramps together leave room for."""
-    by_amplitude: tuple[Figures, ...]
-    """From small to large."""
-
-
-def settings_for(
-    ramps: Sequence[Ramps],
-    angle_step: float,
-    rated_torque: float | None = None,
-    corners: Sequence[float] | None = None,
-) -> Settings:
-    """Choose the reference values of ramps, in ascending order of amplitude.
+def gear_figures(
+    ramps: Sequence[Ramps], angle_step: float, rated_torque: float | None = None
+) -> GearFigures:
+    """Compute the figures of ramps, in ascending order of amplitude.
 
     Args:
         ramps: of one recording.
         angle_step: rad at the output; 0 if unknown.
         rated_torque: N·m; None: the amplitude of the largest ramps.
-        corners: N·m, between ranges of stiffness; None: shares of the rated torque.
-    """
-    rated = rated_torque or ramps[-1].amplitude
-    small = min(LOST_MOTION_SHARE * rated, (1.0 - MOST_FRICTION) * ramps[0].amplitude)
-    shares = [share * rated for share in STIFFNESS_SHARES]
-    return Settings(rated, tuple(sorted(corners or shares)), small, angle_step)
-
-
-def gear_figures(ramps: Sequence[Ramps], settings: Settings) -> GearFigures:
-    """Compute the figures of ramps, in ascending order of amplitude.
 
     Raises:
         RampError: if the angle does not grow with the torque.
     """
-    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps[-1].loops]
-    if float(np.mean(ways)) <= _still(ramps[-1], settings.angle_step):
+    small, large = ramps[0], ramps[-1]
+    rated = rated_torque or large.amplitude
+    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in large.loops]
+    if float(np.mean(ways)) <= _still(large, angle_step):
         raise RampError(
             'the angle does not grow with the torque: it stands still, or one of them has the '
             'wrong sign'
         )
-    loaded = stiffness_of(middle_lines(ramps[-1]), ramps[-1])
-    found = tuple(_figures(group, settings, loaded) for group in ramps)
-    small, large = found[0], found[-1]
+    lines = [middle_lines(group) for group in ramps]
+    widths = [_hysteresis(group.loops, angle_step) for group in ramps]
+    loaded = stiffness_of(lines[-1], large)
+    # Where lost motion is read, unless friction may keep small ramps from loading the spring.
+    light = min(LOST_MOTION_SHARE * rated, (1.0 - MOST_FRICTION) * small.amplitude)
+    rooms = [
+        backlash_of(own, group, width, angle_step, loaded, light)
+        for own, group, width in zip(lines, ramps, widths, strict=True)
+    ]
     return GearFigures(
-        settings,
-        large.ramps,
-        small.hysteresis,
-        small.friction,
-        large.lost_motion,
-        next((figures.frictionless for figures in found if figures.frictionless), None),
-        reconciled([figures.backlash for figures in found]),
-        large.stiffness,
-        large.overall,
-        found,
-    )
-
-
-def _figures(ramps: Ramps, settings: Settings, loaded: float) -> Figures:
-    """Figures of ramps of one amplitude, beside largest ones with a stiffness `loaded`."""
-    lines, step = middle_lines(ramps), settings.angle_step
-    hysteresis, frictionless = _hysteresis(ramps.loops, step), _frictionless(lines, settings)
-    return Figures(
-        settings,
-        ramps,
-        hysteresis,
-        _friction(lines, ramps, step),
-        _lost_motion(ramps.loops, settings),
-        frictionless,
-        backlash_of(lines, ramps, hysteresis, frictionless, step, loaded),
-        _stiffness(ramps, settings),
-        _overall(ramps),
+        rated,
+        angle_step,
+        tuple(ramps),
+        widths[0],
+        _friction(lines[0], small, angle_step),
+        reconciled(rooms),
+        _lost_motion(large.loops, rated, angle_step),
+        _stiffness(large, rated, angle_step),
+        _overall(large),
     )
 
 
@@ -184,11 +131,10 @@ def _still(ramps: Ramps, angle_step: float) -> float:
 
 
 def _hysteresis(loops: Sequence[Loop], angle_step: float) -> Estimate:
-    widths = [loop.width(0.0) for loop in loops]
     return Estimate.of_mean(
-        widths,
+        [loop.width(0.0) for loop in loops],
         _drifted(loops),
-        Component(hidden_resolution(angle_step, widths, readings=2)),
+        Component(math.sqrt(2.0) * resolution(angle_step)),  # of two readings
         _rounded([loop.fall.rounding(0.0) - loop.rise.rounding(0.0) for loop in loops]),
     )
 
@@ -202,22 +148,15 @@ def _drifted(loops: Sequence[Loop]) -> Component:
     return Component(0.5 * per_loop, len(loops) - 2)
 
 
-def _common_part(errors: Array) -> float:
-    """Root mean square of what is the same in all repeats, without what scatter adds to it.
-
-    Args:
-        errors: (repeats, ...); a single repeat shows nothing.
-    """
-    count = len(errors)
-    if count < 2:  # noqa: PLR2004, nothing to compare
-        return 0.0
-    scatter = float(np.mean(np.var(errors, axis=0, ddof=1))) / count
-    return math.sqrt(max(0.0, float(np.mean(np.mean(errors, axis=0) ** 2)) - scatter))
-
-
 def _rounded(roundings: Sequence[float]) -> Component:
-    """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7)."""
-    return Component(_common_part(np.array(roundings)) / math.sqrt(3.0))
+    """Take errors up to the rounding of corners, rad, as equally likely (GUM 4.3.7).
+
+    It is the part that is the same in all repeats, without what their scatter adds to the mean.
+    """
+    if len(roundings) < 2:  # noqa: PLR2004, nothing to compare
+        return Component(0.0)
+    square = float(np.mean(roundings)) ** 2 - float(np.var(roundings, ddof=1)) / len(roundings)
+    return Component(math.sqrt(max(0.0, square) / 3.0))
 
 
 def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> Estimate | None:
@@ -235,14 +174,14 @@ def _friction(lines: Sequence[MiddleLine], ramps: Ramps, angle_step: float) -> E
     stiffness = float(np.mean([np.ptp(line.load) / np.ptp(line.angle) for line in lines]))
     # Half the difference of two torques, read at many angles that are off by the step.
     steps = max(1.0, float(np.ptp(lines[0].angle)) / angle_step) if angle_step else 1.0
-    reading = stiffness * resolution(angle_step) / math.sqrt(2.0 * steps)
-    drifted = 0.5 * stiffness * _drifted(ramps.loops).standard
-    others = (uneven, math.hypot(reading, drifted))
+    reading = resolution(angle_step) / math.sqrt(2.0 * steps)
+    drifted = 0.5 * _drifted(ramps.loops).standard
+    others = (uneven, stiffness * math.hypot(reading, drifted))
     return Estimate.of_mean(near, *(Component(other, len(lines) - 1) for other in others))
 
 
-def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
-    torque = LOST_MOTION_SHARE * settings.rated_torque
+def _lost_motion(loops: Sequence[Loop], rated: float, angle_step: float) -> Estimate | None:
+    torque = LOST_MOTION_SHARE * rated
     ways = [
         [half for half in halves if half.reaches(torque) and half.reaches(-torque)]
         for halves in zip(*loops, strict=True)
@@ -250,53 +189,34 @@ def _lost_motion(loops: Sequence[Loop], settings: Settings) -> Estimate | None:
     if not all(ways):
         return None
     angles = [[float(b.angle_at(torque) - b.angle_at(-torque)) for b in way] for way in ways]
-    readings = [Component(0.5 * hidden_resolution(settings.angle_step, a, 2)) for a in angles]
     rounding = [b.rounding(torque) - b.rounding(-torque) for way in ways for b in way]
-    return Estimate.of_sum([(0.5, way) for way in angles], *readings, _rounded(rounding))
-
-
-def _frictionless(lines: Sequence[MiddleLine], settings: Settings) -> Estimate | None:
-    load = settings.small_load
-    if not lines or any(min(line.load[-1], -line.load[0]) < load for line in lines):
-        return None
-    widths = [line.width(load) for line in lines]
-    return Estimate.of_mean(widths, Component(hidden_resolution(settings.angle_step, widths, 4)))
+    reading = Component(resolution(angle_step))  # the mean of two differences of two readings
+    return Estimate.of_sum([(0.5, way) for way in angles], reading, _rounded(rounding))
 
 
 # Stiffness
 
 
-def _stiffness(ramps: Ramps, settings: Settings) -> tuple[Stiffness, ...]:
-    corners = (0.0, *(corner for corner in settings.corners if corner < ramps.amplitude))
-    found, still = [], _still(ramps, settings.angle_step)
-    for low, high in pairwise((*corners, ramps.amplitude)):
+def _stiffness(ramps: Ramps, rated: float, angle_step: float) -> tuple[Stiffness, ...]:
+    reach, still = min(rated, ramps.amplitude), _still(ramps, angle_step)
+    corners = (corner for share in STIFFNESS_SHARES if (corner := share * rated) < reach)
+    found = []
+    for low, high in pairwise((0.0, *corners, reach)):
         if high < _LEAST_RANGE * low:
             break
-        pulls = [
-            tuple(_compliance(half, low, min(high, abs(half.end))) for half in pull)
+        compliances = [
+            0.5 * sum(_compliance(half, low, min(high, abs(half.end))) for half in pull)
             for pull in ramps.pulls
             if all(_loads(half, low, ramps) for half in pull)
         ]
-        if not pulls:
-            continue
-        least = float(np.min(np.mean(pulls, axis=0)))
-        if least * (high - low) > still:  # else friction holds the gear throughout
-            steps = slope_resolution(settings.angle_step, high - low, least)
-            found.append(_of_sides(low, high, pulls, Component(steps, len(pulls) - 1)))
+        # Else friction holds the gear throughout.
+        if compliances and float(np.mean(compliances)) * (high - low) > still:
+            steps = Component(math.sqrt(2.0) * resolution(angle_step) / (high - low))
+            found.append(Stiffness(low, high, Estimate.of_mean(compliances, steps).inverse()))
     return tuple(found)
 
 
-def _of_sides(
-    low: float, high: float, pairs: Sequence[tuple[float, ...]], *others: Component
-) -> Stiffness:
-    """From compliances under positive and negative torque; `both` is that of their mean."""
-    positive, negative = zip(*pairs, strict=True)
-    both = [0.5 * sum(pair) for pair in pairs]
-    values = (Estimate.of_mean(c, *others).inverse() for c in (both, positive, negative))
-    return Stiffness(low, high, *values)
-
-
-def _overall(ramps: Ramps) -> Stiffness | None:
+def _overall(ramps: Ramps) -> Estimate | None:
     """Slope of the line through both halves of a side, from zero to the peak and back."""
     positive: list[float] = []
     negative: list[float] = []
@@ -304,10 +224,10 @@ def _overall(ramps: Ramps) -> Stiffness | None:
         high = min(abs(loading.end), abs(unloading.start))
         there, back = _compliance(loading, 0.0, high), _compliance(unloading, 0.0, high, -1.0)
         (positive if loading.rising else negative).append(0.5 * (there + back))
-    pairs = list(zip(positive, negative, strict=False))
-    if not pairs or min(positive + negative) <= 0.0:
+    compliances = [0.5 * sum(pair) for pair in zip(positive, negative, strict=False)]
+    if not compliances or min(positive + negative) <= 0.0:
         return None
-    return _of_sides(0.0, ramps.amplitude, pairs)
+    return Estimate.of_mean(compliances).inverse()
 
 
 def _loads(half: HalfLoop, low: float, ramps: Ramps) -> bool:

@@ -9,10 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 from scipy.spatial import ConvexHull
-
-from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
 
 Array = NDArray[np.float64]
 
@@ -32,13 +29,6 @@ _ROUNDING = 1e-9
 """Relative differences of torques that are rounding errors, as where a torque stands still."""
 _COMPLETE = 0.9
 """Share of the amplitude that both halves of a complete loop reach on both sides."""
-_FEWEST = 4
-"""Loops, or reversals, in which an effect of time can be told from scatter."""
-_MAX_CHANCE = 0.01
-"""Probability below which a drift is no coincidence."""
-_STILL = np.linspace(0.3, 0.9, 30)
-"""Shares of twice the friction by which the torque has gone back: the gear certainly stands still,
-and what a late encoder still had to show has come."""
 
 
 class RampError(ValueError):
@@ -57,8 +47,6 @@ class HalfLoop:
     """N·m, standard deviation of a reading of the torque."""
     blur: float
     """N·m, the same after smoothing."""
-    time: Array | None = None
-    """(n,), s, at these torques; None if it is not known."""
 
     @property
     def start(self) -> float:
@@ -81,14 +69,10 @@ class HalfLoop:
         near = _EQUAL_TORQUES * self.noise
         return low - near <= torque <= high + near
 
-    def at(self, torque: Array | float, values: Array) -> Array:
-        """Values at torques, of the same shape, from values at the torques of the half loop."""
-        sign = 1.0 if self.rising else -1.0
-        return np.interp(sign * np.asarray(torque), sign * self.torque, values)
-
     def angle_at(self, torque: Array | float) -> Array:
         """The angle at torques, rad, of the same shape."""
-        return self.at(torque, self.angle)
+        sign = 1.0 if self.rising else -1.0
+        return np.interp(sign * np.asarray(torque), sign * self.torque, self.angle)
 
     def rounding(self, torque: float) -> float:
         """Greatest rise of the angle at a torque by noise, which rounds corners, rad."""
@@ -138,60 +122,18 @@ class Ramps:
         """The halves of the loops."""
         return [half for loop in self.loops for half in loop]
 
-    @property
-    def rate(self) -> float | None:
-        """Rate of the torque over a half loop, the median, N·m/s; None if times are not known."""
-        times = [float(np.ptp(half.time)) for half in self.halves if half.time is not None]
-        seconds = float(np.median(times)) if times else 0.0
-        return 2.0 * self.amplitude / seconds if seconds else None
 
-    def drift(self) -> tuple[Estimate, float] | None:
-        """How far the zero moves from the first loop to the last, rad, and in which time, s.
-
-        None unless the middles of the loops at no torque move evenly.
-        """
-        if not self.rate or len(self.loops) < _FEWEST:
-            return None
-        times = [
-            float(np.mean([half.at(0.0, half.time) for half in loop if half.time is not None]))
-            for loop in self.loops
-        ]
-        line = stats.linregress(times, [loop.middle(0.0) for loop in self.loops])
-        span, count = times[-1] - times[0], len(times)
-        moved = Estimate(line.slope * span, line.stderr * span, count - 2, count)
-        return (moved, span) if line.pvalue < _MAX_CHANCE else None
-
-    def creep(self, friction: float, angle_step: float) -> Estimate | None:
-        """How far the angle goes on after the torque has turned back, rad; None unless it does.
-
-        Args:
-            friction: N·m, which holds the gear meanwhile.
-            angle_step: rad, between readings of the encoder; 0 if unknown.
-        """
-        least = min(abs(half.start - half.end) for half in self.halves)
-        if not self.rate or len(self.halves) < _FEWEST or least < 4.0 * friction:
-            return None
-        further = []
-        for half in self.halves:
-            way = 1.0 if half.rising else -1.0
-            held = half.angle_at(half.start + way * 2.0 * friction * _STILL)
-            further.append(-way * float(np.mean(held) - half.angle_at(half.start)))
-        found = Estimate.of_mean(further, Component(resolution(angle_step)))
-        return found if found.value > (found.uncertainty or 0.0) else None
-
-
-def find_ramps(torque: Array, angle: Array, time: Array | None = None) -> tuple[Ramps, ...]:
+def find_ramps(torque: Array, angle: Array) -> tuple[Ramps, ...]:
     """Find the ramps of a recording, in ascending order of amplitude.
 
     Args:
         torque: (n,), N·m.
         angle: (n,), rad.
-        time: (n,), s, increasing.
 
     Raises:
         RampError: if the torque never goes to both sides and back.
     """
-    halves = _half_loops(torque, angle, time)
+    halves = _half_loops(torque, angle)
     # What preceded the first half loop is not known, so it belongs to no loop.
     pairs = zip(halves[1::2], halves[2::2], strict=False)
     loops = [Loop(b, a) if a.rising else Loop(a, b) for a, b in pairs]
@@ -235,7 +177,7 @@ def _isotonic(values: Array) -> NDArray[np.intp]:
     return lower.astype(np.intp)
 
 
-def _half_loops(torque: Array, angle: Array, time: Array | None) -> list[HalfLoop]:
+def _half_loops(torque: Array, angle: Array) -> list[HalfLoop]:
     if len(torque) < _MIN_ROWS:
         return []
     noise = _noise(torque)
@@ -246,9 +188,8 @@ def _half_loops(torque: Array, angle: Array, time: Array | None) -> list[HalfLoo
         rows.start + int(np.argmax(np.abs(_smooth(torque[rows], noise))))
         for rows in _half_cycles(mean, least)
     ]
-    columns = (torque, angle) if time is None else (torque, angle, time)
     return [
-        _half_loop(noise, *(values[first : last + 1] for values in columns))
+        _half_loop(noise, torque[first : last + 1], angle[first : last + 1])
         for first, last in pairwise([0, *turns, len(torque) - 1])
         if last - first >= _MIN_ROWS
     ]
@@ -267,16 +208,15 @@ def _half_cycles(torque: Array, least: float) -> list[slice]:
     ]
 
 
-def _half_loop(noise: float, torque: Array, *others: Array) -> HalfLoop:
-    """From the torque, the angle and, if it is known, the time."""
+def _half_loop(noise: float, torque: Array, angle: Array) -> HalfLoop:
     smooth = _smooth(torque, noise)
     sign = 1.0 if smooth[-1] > smooth[0] else -1.0
     bounds = _isotonic(sign * smooth)
     blur = noise / math.sqrt(_mean_rows(torque, noise))
-    levels, angle, *time = (
-        np.add.reduceat(values, bounds[:-1]) / np.diff(bounds) for values in (smooth, *others)
+    levels, angles = (
+        np.add.reduceat(values, bounds[:-1]) / np.diff(bounds) for values in (smooth, angle)
     )
-    return HalfLoop(levels, angle, noise, blur, *time)
+    return HalfLoop(levels, angles, noise, blur)
 
 
 def _noise(torque: Array) -> float:

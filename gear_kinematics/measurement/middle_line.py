@@ -161,9 +161,9 @@ def backlash_of(
     lines: Sequence[MiddleLine],
     ramps: Ramps,
     hysteresis: Estimate,
-    frictionless: Estimate | None,
     step: float,
     loaded: float,
+    light: float,
 ) -> Backlash | None:
     """Bound the backlash by ramps of one amplitude; None where they do not bound it.
 
@@ -178,9 +178,9 @@ def backlash_of(
         lines: of the complete loops.
         ramps: with these loops.
         hysteresis: of the same ramps, rad.
-        frictionless: width of the middle lines between small loads, rad, if they reach these.
         step: rad, between readings of the encoder; 0 if unknown.
         loaded: stiffness of the largest ramps, N·m/rad; 0 if unknown.
+        light: torque, N·m, that ramps with a soft middle certainly reach.
     """
     most = hysteresis.value + (hysteresis.uncertainty or 0.0)
     if not lines:
@@ -214,8 +214,8 @@ def backlash_of(
     high = max(value + spread for value, spread in guesses) + moved
     soft = stiffness * _MOST_COMPLIANT < loaded
     if soft:
-        wide = frictionless.value + _expanded(frictionless) if frictionless else most
-        low, high = 0.0, max(high, wide)
+        wide = _mean([line.width(light) for line in lines])
+        low, high = 0.0, max(high, wide.value + _expanded(wide))
     high = min(max(high, step), most)
     if low <= 0.0:
         return Backlash(0.0, high, Cause.SOFT if soft else Cause.BENT if bent else Cause.NONE)

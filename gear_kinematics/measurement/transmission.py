@@ -1,11 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The transmission error of a recording over the output angle: accuracy, lost motion, orders.
-
-An order is a number of cycles per turn of the output.
-"""
+"""The transmission error of a recording over the output angle: accuracy and lost motion."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import pairwise
@@ -16,7 +13,6 @@ from numpy.typing import NDArray
 from gear_kinematics.correction.reversals import Pair, Reversals, separate
 from gear_kinematics.correction.transmission_error import Direction
 from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
-from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders
 
@@ -26,22 +22,6 @@ _ANGLES = 200
 """At which two runs over the same range are compared."""
 _MIN_SHARE = 0.5
 """Runs of at least this share of the longest one are repeats of it."""
-_MIN_CYCLES = 2.0
-"""Of an order in a run."""
-_MIN_SAMPLES = 4.0
-"""In a cycle."""
-
-
-@dataclass(frozen=True, slots=True)
-class Order:
-    """An order of the gear, as found in the transmission error."""
-
-    name: str
-    cycles: Fraction
-    """Cycles per turn of the output."""
-    forward: Estimate | None
-    """Amplitude, rad; None where the motion is too short or the samples too far apart."""
-    backward: Estimate | None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -63,7 +43,6 @@ class TransmissionFigures:
     delay: Estimate | None
     """s, or rows of a file without times, by which the stamps of the output are late; None if it
     cannot be told. The other figures are without it."""
-    orders: tuple[Order, ...]
     error: Array
     """(n,), measured minus ideal."""
     angle: Array
@@ -81,11 +60,6 @@ class _Run:
         self.low, self.high = float(self.angle[0]), float(self.angle[-1])
         self.turns = (self.high - self.low) / TURN
 
-    @property
-    def spacing(self) -> float:
-        """Distance between samples, 99th percentile, turns of the output."""
-        return float(np.quantile(np.diff(self.angle), 0.99)) / TURN
-
     def mean_speed(self, edges: Array) -> Array:
         """Mean speeds between angles (n,): (n - 1,)."""
         sums = np.concatenate([[0.0], np.cumsum(self._speed)])
@@ -98,8 +72,7 @@ class _Run:
 class _Motion:
     """The transmission error along the runs between reversals."""
 
-    def __init__(self, encoders: Encoders, gear: Gear, travel: float) -> None:
-        ratio = gear.gear_ratio
+    def __init__(self, encoders: Encoders, ratio: Fraction, travel: float) -> None:
         ideal = encoders.ideal(ratio)
         self.angle = encoders.at_measured(ideal)
         self.error = encoders.error(ratio)
@@ -114,7 +87,7 @@ class _Motion:
         self.direction = np.where(way[encoders.before] == after, after, 0).astype(np.int8)
         self._speed = encoders.speed(ratio)
 
-    def runs(self) -> Iterable[tuple[int, _Run]]:
+    def runs(self) -> Iterator[tuple[int, _Run]]:
         """Yield the runs between reversals, each with its direction."""
         known = np.flatnonzero(self.direction)
         signs = self.direction[known]
@@ -130,59 +103,27 @@ class _Motion:
         return [run for run in runs if run.turns >= _MIN_SHARE * longest]
 
 
-def bodies(output: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
-    """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
-
-    In a turn of the rotor, the output turns 1/abs(i) times, which is `output`. In a mechanism, the
-    cam turns 1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and
-    teeth mesh zk times.
-    """
-    cycles = {'rotor': Fraction(1), 'output': output}
-    if mechanism:
-        cycles = {'teeth': Fraction(mechanism.ring_teeth), **cycles, 'satellite': 1 + output}
-    return cycles
-
-
-def marked_orders(gear: Gear) -> dict[str, Fraction]:
-    """The orders to look for, by name, in cycles per turn of the output."""
-    rotor = abs(gear.gear_ratio)
-    cycles = bodies(1 / rotor, gear if isinstance(gear, Mechanism) else None)
-    return {
-        f'{body} × {multiple}': multiple * rotor * cycles[body]
-        for body in sorted(cycles)
-        for multiple in (1, 2)
-    }
-
-
 def transmission_figures(
-    encoders: Encoders, gear: Gear, travel: float, delay: float | None = None
+    encoders: Encoders, ratio: Fraction, travel: float
 ) -> TransmissionFigures:
-    """Compute the figures of a recording.
+    """Compute the figures of a recording, less a delay that is clear.
 
     Args:
         encoders: of rotor and output.
-        gear: whose orders to look for.
+        ratio: of the gear.
         travel: rad of the output after a reversal until the new direction counts.
-        delay: s or rows by which the output's stamps are late; None estimates it, and takes out
-            what is more than its uncertainty.
     """
-    reading = Component(resolution(encoders.error_step(gear.gear_ratio).size))
-    both = Component(math.sqrt(2.0) * reading.standard)
-    motion = _Motion(encoders, gear, travel)
-    found = _reversals(motion, both, delay)
-    shift, late = delay, found.delay if found else None
-    if delay is None and late and abs(late.value) > (late.uncertainty or 0.0):
-        shift = late.value
-    if shift:
+    both = Component(math.sqrt(2.0) * resolution(encoders.error_step(ratio).size))
+    motion = _Motion(encoders, ratio, travel)
+    found = _reversals(motion, both)
+    if found and found.delay and found.delay.clear:
         # The error is in proportion to the delay only as long as the speed hardly changes in it.
-        motion = _Motion(encoders.earlier(shift), gear, travel)
-        rest = _reversals(motion, both, None) if delay is None else None
-        if found and rest and rest.delay:
+        shift = found.delay.value
+        motion = _Motion(encoders.earlier(shift), ratio, travel)
+        if (rest := _reversals(motion, both)) and rest.delay:
             late = replace(rest.delay, value=shift + rest.delay.value)
             found = replace(found, lost_motion=rest.lost_motion, delay=late)
     forward, backward = motion.long_runs(1), motion.long_runs(-1)
-    orders = marked_orders(gear)
-    there, back = (_amplitudes(runs, orders.values(), reading) for runs in (forward, backward))
     return TransmissionFigures(
         len(motion.error),
         float(np.ptp(motion.angle)),
@@ -192,7 +133,6 @@ def transmission_figures(
         found.difference if found else None,
         found.lost_motion if found else None,
         found.delay if found else None,
-        tuple(Order(name, at, there.get(at), back.get(at)) for name, at in orders.items()),
         motion.error,
         motion.angle,
         motion.direction,
@@ -204,10 +144,10 @@ def _accuracy(runs: Sequence[_Run], reading: Component) -> Estimate | None:
     return Estimate.of_mean(values, reading) if values else None
 
 
-def _reversals(motion: _Motion, reading: Component, delay: float | None) -> Reversals | None:
+def _reversals(motion: _Motion, reading: Component) -> Reversals | None:
     """Compare successive runs, in pairs of opposite direction, over their common angles."""
     pairs = [_pair(*two) for two in list(pairwise(motion.runs()))[::2]]
-    return separate(pairs, reading, delay=delay)
+    return separate(pairs, reading)
 
 
 def _pair(first: tuple[int, _Run], second: tuple[int, _Run]) -> Pair:
@@ -220,34 +160,3 @@ def _pair(first: tuple[int, _Run], second: tuple[int, _Run]) -> Pair:
     there_error, back_error = (np.interp(at, run.angle, run.error) for run in (there, back))
     speed = there.mean_speed(edges) - back.mean_speed(edges)
     return Pair(sign * (back_error - there_error), sign * speed)
-
-
-# Orders
-
-
-def _amplitudes(
-    runs: Sequence[_Run], orders: Iterable[Fraction], reading: Component
-) -> dict[Fraction, Estimate]:
-    """Amplitudes of the orders that every run resolves, by order."""
-    if not runs:
-        return {}
-    shortest, coarsest = min(run.turns for run in runs), max(run.spacing for run in runs)
-    found = [Fraction(0)]
-    for order in sorted(orders):
-        apart = (order - found[-1]) * shortest >= 1.0
-        if apart and order * shortest >= _MIN_CYCLES and order * coarsest * _MIN_SAMPLES <= 1.0:
-            found.append(order)
-    fits = np.array([_fit(run, found[1:]) for run in runs])
-    return {
-        order: Estimate.of_mean(values, reading)
-        for order, values in zip(found[1:], fits.T.tolist(), strict=True)
-    }
-
-
-def _fit(run: _Run, orders: Sequence[Fraction]) -> Array:
-    """Amplitudes of a sum of sines, by least squares; the samples need not be evenly spaced."""
-    phase = np.multiply.outer(run.angle, np.array(orders, float))
-    design = np.concatenate([np.ones((len(phase), 1)), np.cos(phase), np.sin(phase)], axis=1)
-    cosines, sines = np.linalg.lstsq(design, run.error, rcond=None)[0][1:].reshape(2, -1)
-    amplitudes: Array = np.hypot(cosines, sines)
-    return amplitudes

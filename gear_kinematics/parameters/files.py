@@ -67,22 +67,13 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
 
 
 def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:
-    """The fully qualified name of the node of this name in a file."""
-    patterns = [name for name, _ in blocks if name.rpartition('/')[2] in {node, '*', '**'}]
-    # A node that is named takes precedence over wildcards.
-    patterns = [pattern for pattern in patterns if '*' not in pattern] or patterns
-    for pattern in patterns:
-        # A namespace that matches the pattern, with an arbitrary token for `*`.
-        namespace = pattern.rpartition('/')[0].replace('/**', '').replace('/*', '/_')
-        name = f'{namespace}/{node}'
-        if all(_applies(other, name) for other in patterns):
-            return name
-    if len(patterns) > 1:
+    """The fully qualified name of the only node of this name in a file; without one, `/node`."""
+    names = [name for name, _ in blocks if name.rpartition('/')[2] == node and '*' not in name]
+    if len(names) > 1:
         raise ConfigError(
-            f'{path}: parameters of more than one node: {", ".join(patterns)}; '
-            'choose one with --node'
+            f'{path}: parameters of more than one node: {", ".join(names)}; choose one with --node'
         )
-    return f'/{node}'
+    return names[0] if names else f'/{node}'
 
 
 def _applies(pattern: str, name: str) -> bool:

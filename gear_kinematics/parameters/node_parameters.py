@@ -1,12 +1,12 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The parameters of the node and of `gearkin --config`: type, meaning and bounds.
+"""The parameters of the node and of `gearkin --config`: types, meanings and bounds.
 
 The default values are in config/actuator.yaml alone.
 """
 
 import math
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from pathlib import Path
@@ -17,6 +17,7 @@ import yaml
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
+from gear_kinematics.parameters.parameter import Parameter
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.share import share_directory
 from gear_kinematics.wire.nearest import nearest
@@ -26,46 +27,6 @@ NODE = 'gear_state_publisher'
 
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """Type, meaning and bounds of a parameter."""
-
-    description: str
-    minimum: float | None = None
-    maximum: float | None = None
-    step: int = 0
-    choices: tuple[str, ...] = ()
-    read_only: bool = False
-    check: Callable[[Any], object] = bool
-    """Raises ValueError for other faults."""
-    kind: type = float
-
-    def fault(self, name: str, value: Any) -> str | None:
-        """Return the fault of a value, or None."""
-        kind = type(value)
-        if kind is not self.kind:
-            return f'{name} must be of type {self.kind.__name__}, not {value!r}'
-        if isinstance(value, list) and not all(isinstance(item, str) for item in value):
-            return f'{name} must be a list of strings, not {value!r}'
-        if self.minimum is not None and self.maximum is not None:
-            inside = self.minimum <= value <= self.maximum  # NaN is not
-            if not inside or (self.step and (value - self.minimum) % self.step):
-                steps = f' in steps of {self.step}' if self.step else ''
-                bounds = f'between {self.minimum} and {self.maximum}{steps}'
-                return f'{name} must be {bounds}, not {value!r}'
-        return self.other_fault(name, value)
-
-    def other_fault(self, name: str, value: Any) -> str | None:
-        """Return a fault of a value within the type and the bounds, which ROS checks, or None."""
-        if self.choices and value not in self.choices:
-            return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
-        try:
-            self.check(value)
-        except ValueError as error:
-            return f'{name}: {error}'
-        return None
 
 
 def _parameter(*arguments: Any, **named: Any) -> Any:
@@ -175,7 +136,7 @@ class NodeParameters:
             path: a parameter file of ROS: blocks of parameters below names of nodes. None: the
                 default one.
             node: the node's fully qualified name. Without a namespace, it is the only node of that
-                name in the file; if the file names none, the one that all its wildcards apply to.
+                name in the file, or one without a namespace.
 
         Raises:
             ConfigError: if it cannot be read, has nothing for the node, leaves open which node is

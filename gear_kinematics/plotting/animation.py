@@ -1,13 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Animations of the mechanism as GIF or MP4."""
+"""Animations of the mechanism as GIF."""
 
 import math
-import shutil
-import subprocess
 from collections.abc import Callable, Iterator
 from io import BytesIO
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -21,69 +18,47 @@ from gear_kinematics.report.image import FAINT, INK, canvas
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.shape.outlines import NAMES
 
-_WIDTH = 4.0  # inches for any number of pixels, so that lines and text scale with them
+_WIDTH, _DPI = 4.0, 105  # inches: 420 pixels
 _HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size
 _GROUND = '#ffffff'
-_MOST_PIXELS = 1_000_000_000
-"""Pixels of all frames of a GIF, which are in memory until the last one is drawn."""
 
 
 def check_animation(path: Path) -> None:
     """Check that an animation can be written, before any work.
 
-    Args:
-        path: of the image file, .gif or .mp4.
-
     Raises:
-        ValueError: if `path` has another suffix.
-        ModuleNotFoundError: without matplotlib or, for an MP4, ffmpeg.
+        ValueError: if `path` has another suffix than .gif.
+        ModuleNotFoundError: without matplotlib.
     """
-    suffix = path.suffix.lower()
-    if suffix not in _WRITERS:
-        known = ', '.join(sorted(known[1:] for known in _WRITERS))
-        raise ValueError(f'{path}: the suffix of an animation is one of {known}')
+    if path.suffix.lower() != '.gif':
+        raise ValueError(f'{path}: the suffix of an animation must be gif')
     with canvas((1.0, 1.0)):
         pass
-    if suffix == '.mp4':
-        _ffmpeg()
 
 
 def animate(
     mechanism: Mechanism,
     module: float,
-    path: Path,
     frames: Trajectory,
     *,
     fps: int,
-    width: int,
     progress: Callable[[int], None] = lambda _: None,
 ) -> bytes:
-    """Animate the first branch, and its magnified centres with the rose of O4.
+    """Animate the first branch, and its magnified centres with the rose of O4, as a GIF.
 
     Args:
         mechanism: the mechanism.
         module: of the teeth, m.
-        path: of the image file, .gif or .mp4.
         frames: rotor positions to draw.
         fps: frames per second; a GIF rounds their duration to hundredths of a second.
-        width: px; the height is two thirds of it.
         progress: called with the number of each frame.
 
     Raises:
-        ValueError: if `path` has another suffix, or a GIF would need too much memory.
-        ModuleNotFoundError: without matplotlib or, for an MP4, ffmpeg.
-        RuntimeError: for an MP4, if ffmpeg fails.
+        ModuleNotFoundError: without matplotlib.
     """
-    check_animation(path)
-    write = _WRITERS[path.suffix.lower()]
-    if write is _gif and len(frames.time) * _HEIGHT * width**2 > _MOST_PIXELS:
-        raise ValueError(
-            f'{path}: too large for a GIF: {len(frames.time)} frames, {width} px wide'
-        )
-
     with canvas((_WIDTH, _HEIGHT * _WIDTH)) as figure:
-        figure.set_dpi(width / _WIDTH)
-        return write(figure, _moving(figure, mechanism, module, frames, progress), fps)
+        figure.set_dpi(_DPI)
+        return _gif(figure, _moving(figure, mechanism, module, frames, progress), fps)
 
 
 def _moving(
@@ -173,33 +148,3 @@ def _palette() -> Any:
     palette = Image.new('P', (1, 1))
     palette.putpalette(colours.astype(np.uint8).tobytes())
     return palette
-
-
-def _mp4(figure: Any, frames: Iterator[None], fps: int) -> bytes:
-    from matplotlib import rcParams  # noqa: PLC0415, an extra
-    from matplotlib.animation import FFMpegWriter  # noqa: PLC0415, an extra
-
-    rcParams['animation.ffmpeg_path'] = _ffmpeg()  # `canvas` restores it
-    writer = FFMpegWriter(fps, metadata={'comment': MARK})
-    with TemporaryDirectory() as folder:
-        path = Path(folder, 'animation.mp4')
-        try:
-            with writer.saving(figure, path, figure.dpi):
-                for _ in frames:
-                    writer.grab_frame()
-        except (subprocess.SubprocessError, OSError) as error:
-            raise RuntimeError(f'ffmpeg failed: {error}') from error
-        return path.read_bytes()
-
-
-def _ffmpeg() -> str:
-    """Return the path of the program: the system's, or that of the package imageio-ffmpeg."""
-    if found := shutil.which('ffmpeg'):
-        return found
-    from imageio_ffmpeg import get_ffmpeg_exe  # noqa: PLC0415, an extra
-
-    return str(get_ffmpeg_exe())
-
-
-_WRITERS = {'.gif': _gif, '.mp4': _mp4}
-"""By the suffix of the file."""

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
-from gear_kinematics.report.image import COLOURS, FAINT, INK, ImageFile, add_legend
+from gear_kinematics.report.image import COLOURS, FAINT, INK, add_legend, canvas, encode
 from gear_kinematics.shape.outlines import NAMES, Array, Pose, bodies, poses
 
 
@@ -33,7 +34,6 @@ _MARGIN = 1.02
 _OUTLINE = 0.45  # points
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
 _LABEL = 15.0  # points from the labelled point
-_SHORT = 0.2  # eccentricities; too short for a label
 _MM = 1e3  # in a metre
 _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 
@@ -128,19 +128,21 @@ def outlines(mechanism: Mechanism, module: float) -> Figure:
     return Figure((Panel('', 'x [mm]', 'y [mm]', tuple(lines), equal=True),))
 
 
-def scheme(
-    mechanism: Mechanism, module: float, file: ImageFile, rotor: RotorPosition, branch: int = 0
-) -> bytes:
+def scheme(mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
-    The module of the teeth is in m; `rotor` is the position φ2, `branch` an index.
+    Args:
+        mechanism: of which the first branch is drawn.
+        module: of the teeth, m.
+        path: of the image file, whose suffix is its format.
+        rotor: the position φ2.
     """
-    with file.canvas(7.4, 4.7) as figure:
+    with canvas((7.4, 4.7)) as figure:
         left, right = figure.subplots(1, 2)
-        drawn = Bodies(left, mechanism, module, branch)
+        drawn = Bodies(left, mechanism, module, 0)
         drawn.show(rotor)
-        Centres(right, mechanism, branch).show(rotor)
-        placed = poses(mechanism, rotor.angle, branch, rotor_turns=rotor.turns)
+        Centres(right, mechanism, 0).show(rotor)
+        placed = poses(mechanism, rotor.angle, rotor_turns=rotor.turns)
         _label_centres(right, mechanism, placed)
         add_legend(figure, list(drawn.patches.values()), [NAMES[body] for body in drawn.patches])
         rotor_angle, output_angle = (
@@ -148,40 +150,35 @@ def scheme(
             for body in ('rotor', 'output_shaft')
         )
         left.set_title(
-            f'branch {mechanism.branches[branch].name}, '
+            f'branch {mechanism.branches[0].name}, '
             f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}\n'
             f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
             fontsize='medium',
         )
         eccentricity = f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm'
         right.set_title(eccentricity, fontsize='medium')
-        return file.encode(figure)
+        return encode(figure, path)
 
 
 def _label_centres(axes: Any, mechanism: Mechanism, placed: dict[str, Pose]) -> None:
+    """Name the centres and the sides of their triangle, away from its middle."""
     e = mechanism.eccentricity
     o1 = np.zeros(2)
     o3, o4 = (placed[body].centre / e for body in ('satellite', 'oldham'))
-    # O1, O4 and O3 form a triangle with its right angle at O4; each label is outside of it, even
-    # where two of the points coincide.
-    along, upright = placed['output_shaft'].place(np.eye(2))
-    x, y = (o4 - o3) @ along, o4 @ upright
-    side, up = math.copysign(1.0, x) * along, math.copysign(1.0, y) * upright
-    inwards = abs(x) * up + abs(y) * side  # from the side O1-O3
-    for text, colour, at, direction, length in (
-        ('$O_1$', INK, o1, 0.8 * side - up, 1.0),
-        ('$O_3$', _EDGES['satellite'], o3, up - 1.2 * side, 1.0),
-        ('$O_4$', _EDGES['oldham'], o4, up + 1.2 * side, 1.0),
-        ('$e$', _EDGES['rotor'], 0.5 * o3, -inwards, 1.0),
-        ('$x$', _EDGES['satellite'], 0.5 * (o3 + o4), up, abs(x)),
-        ('$y$', _EDGES['output_shaft'], 0.5 * o4, side, abs(y)),
+    middle = (o1 + o3 + o4) / 3.0
+    for text, colour, at in (
+        ('$O_1$', INK, o1),
+        ('$O_3$', _EDGES['satellite'], o3),
+        ('$O_4$', _EDGES['oldham'], o4),
+        ('$e$', _EDGES['rotor'], 0.5 * o3),
+        ('$x$', _EDGES['satellite'], 0.5 * (o3 + o4)),
+        ('$y$', _EDGES['output_shaft'], 0.5 * o4),
     ):
-        if length < _SHORT:
-            continue
+        outwards = at - middle
         axes.annotate(
             text,
             at,
-            xytext=_LABEL * direction / np.hypot(*direction),
+            xytext=_LABEL * outwards / np.hypot(*outwards),
             textcoords='offset points',
             ha='center',
             va='center',

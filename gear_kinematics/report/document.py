@@ -143,10 +143,6 @@ class Finding:
     """The moment that it is about, on the x axis of the figure."""
 
 
-_LANE = 0.18
-"""Height of a lane / height of other panels."""
-_TICK_ROOM = 50
-"""Most characters of all ticks of a panel that have room in one line."""
 MAX_LARGE_DOTS = 100
 """Most points that are drawn large."""
 
@@ -177,8 +173,6 @@ class Line:
     """NaN leaves a gap."""
     points: bool = False
     """Whether to draw only points."""
-    error: Array | None = None
-    """± of y, (n,); NaN where it is unknown."""
 
     @property
     def opacity(self) -> float:
@@ -199,41 +193,20 @@ class Panel:
     """Positions on the x axis, each with a text."""
     levels: tuple[tuple[float, str], ...] = ()
     """Positions on the y axis, each with a text."""
-    scale: Literal['linear', 'log', 'symlog'] = 'linear'
-    """Scale of the y axis; `log` applies to the x axis too."""
-    low: float | None = None
-    """Lower end of a logarithmic y axis."""
-    ticks: tuple[tuple[float, str], ...] = ()
-    """Positions on the x axis with their texts, instead of numbers."""
+    scale: Literal['linear', 'log'] = 'linear'
+    """Scale of the y axis."""
     equal: bool = False
     """Whether both axes have the same scale, as in a drawing."""
-    lanes: bool = False
-    """Whether the lines are lanes of events, named by the levels; NaN ends an event."""
 
     @property
-    def height(self) -> float:
-        """The height, in relation to that of other stacked panels."""
-        return _LANE * (1 + len(self.lines)) if self.lanes else 1.0
+    def unit(self) -> str:
+        """The unit of y."""
+        return self.y_label.partition('[')[2].rstrip(']')
 
     @property
     def has_legend(self) -> bool:
         """Whether a legend names the lines: of a single one, the axis does."""
-        return not self.lanes and len({line.name for line in self.lines}) > 1
-
-    @property
-    def tick_range(self) -> tuple[float, float]:
-        """Ends of an x axis with ticks, with room for their texts."""
-        return self.ticks[0][0] - 0.5, self.ticks[-1][0] + 0.5
-
-    @property
-    def tick_angle(self) -> float:
-        """Degrees by which the texts of ticks are turned, to have room side by side."""
-        return 90.0 if sum(len(text) for _, text in self.ticks) > _TICK_ROOM else 0.0
-
-    @property
-    def lane_range(self) -> tuple[float, float]:
-        """Ends of the y axis of lanes, with room for the name of each below it."""
-        return -len(self.lines) - 0.1, 0.6
+        return len({line.name for line in self.lines}) > 1
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -276,8 +249,6 @@ class Section:
     """Notes on the interpretation of the values."""
     figure: Figure | None = None
     mechanism: MovingMechanism | None = None
-    drawing: str = ''
-    """SVG."""
     key: Table | None = None
     """What a page shows above the figure."""
     leads: bool = False

@@ -87,7 +87,6 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
     yield _list(findings, kind, f'{len(findings)} more findings')
     yield _table(section.key) if section.key else ''
     yield from _figure(section.figure, section.mechanism, name, drawings)
-    yield f'<div class="drawing">{section.drawing}</div>\n' if section.drawing else ''
     yield _list(list(map(escape, section.remarks)), '', f'{len(section.remarks)} remarks')
     head, *tables = section.tables
     below = ''.join(map(_table, tables))
@@ -107,7 +106,7 @@ def _figure(
             yield f'{_legend([panel])}{_plot([panel], None, f"{name}-{k}")}</figure>\n'
         yield '</div>\n'
         return
-    height = max(_HEIGHT, _PANEL_HEIGHT * sum(panel.height for panel in figure.panels))
+    height = max(_HEIGHT, _PANEL_HEIGHT * len(figure.panels))
     plot = _plot(figure.panels, mechanism, name, f' style="--height: {height:g}rem"')
     if mechanism:
         yield '<div class="moving">\n'
@@ -133,11 +132,10 @@ def _plot(
 
 
 def _legend(panels: Sequence[Panel]) -> str:
-    """Write the names of lines, each of which hides its line in the plot below or shows it."""
+    """Write the names of the lines of a plot."""
     lines = {line.name: line for panel in panels if panel.has_legend for line in panel.lines}
     items = ''.join(
-        f'<li><button type="button" aria-pressed="true" style="--line: var(--{line.pen})">'
-        f'{escape(name)}</button></li>'
+        f'<li style="--line: var(--{line.pen})">{escape(name)}</li>'
         for name, line in lines.items()
     )
     return f'<ul class="legend">{items}</ul>\n' if items else ''
@@ -213,9 +211,8 @@ def _rows(table: Table, links: Sequence[str] = ()) -> str:
         linked = f'<a href="{links[k]}">{name}</a>' if links else name
         first = f'<th scope="row" class="{classes[0]} {subject.tone}">{linked}</th>'
         others = ''.join(
-            f'<td class="{kind} {cell.tone}" data-column="{escape(column)}">'
-            f'{escape(cell.text)}</td>'
-            for kind, column, cell in zip(classes[1:], table.columns[1:], cells, strict=True)
+            f'<td class="{kind} {cell.tone}">{escape(cell.text)}</td>'
+            for kind, cell in zip(classes[1:], cells, strict=True)
         )
         rows.append(f'<tr>{first}{others}</tr>\n')
     return f'<div class="scroll"><table>\n<tr>{head}</tr>\n{"".join(rows)}</table></div>\n'

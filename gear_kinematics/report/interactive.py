@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike
 
 from gear_kinematics.report.document import MAX_LARGE_DOTS, Line, Panel, Pen
 from gear_kinematics.report.mechanism import MovingMechanism
-from gear_kinematics.report.symmetric_log import SymmetricLog
 
 _GAP = 0.2
 """Gap between panels / height of a panel with its gap."""
@@ -37,14 +36,13 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
     layout['xaxis'] = _x_axis(panels[-1]) | {'anchor': f'y{len(panels)}'}
     time = mechanism.time if mechanism else panels[0].lines[0].x
     plot: dict[str, Any] = {'data': [], 'layout': layout, 'time': _rounded(time)}
-    for k, (panel, domain) in enumerate(zip(panels, _domains(panels), strict=True), 1):
+    for k, (panel, domain) in enumerate(zip(panels, _domains(len(panels)), strict=True), 1):
         y = f'y{k}'
-        scale = SymmetricLog(panel) if panel.scale == 'symlog' else None
-        layout[f'yaxis{k}'] = _y_axis(panel, scale) | {'domain': domain}
+        layout[f'yaxis{k}'] = _y_axis(panel) | {'domain': domain}
         for line in panel.lines:
-            trace = _trace(line, panel, scale) | {'xaxis': 'x', 'yaxis': y}
+            trace = _trace(line) | {'xaxis': 'x', 'yaxis': y}
             if several:
-                trace.setdefault('hovertemplate', f'%{{y:.8~g}} {_unit(panel)}')
+                trace['hovertemplate'] = f'%{{y:.8~g}} {panel.unit}'
             if not np.array_equal(line.x, time, equal_nan=True):
                 trace['x'] = _rounded(line.x)
             plot['data'].append(trace)
@@ -53,9 +51,7 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
                 _line(('x', place, place), (f'{y} domain', 0, 1), 'faint', text)
             )
         for level, text in panel.levels:
-            height = float(scale.height(level)) if scale else level
-            colour = 'faint' if panel.lanes else 'fail'
-            layout['shapes'].append(_line(('x domain', 0, 1), (y, height, height), colour, text))
+            layout['shapes'].append(_line(('x domain', 0, 1), (y, level, level), 'fail', text))
         if several and panel.title:
             title = {'text': _wrapped(panel.title), 'align': 'left', 'showarrow': False}
             title |= {'xref': 'x domain', 'x': 0.0, 'xanchor': 'left'}
@@ -69,72 +65,41 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
     return plot
 
 
-def _domains(panels: Sequence[Panel]) -> Iterator[list[float]]:
-    """Yield the ends of the y axes / height of the plot."""
-    heights = [panel.height for panel in panels]
-    whole = sum(heights) - _GAP  # no gap below the last
-    top = whole
-    for height in heights:
-        yield [max(0.0, (top - height + _GAP) / whole), top / whole]
-        top -= height
+def _domains(count: int) -> Iterator[list[float]]:
+    """Yield the ends of the y axes from top to bottom / height of the plot."""
+    whole = count - _GAP  # no gap below the last
+    for k in range(count):
+        yield [max(0.0, (whole - k - 1 + _GAP) / whole), (whole - k) / whole]
 
 
 def _x_axis(panel: Panel) -> dict[str, Any]:
-    axis: dict[str, Any] = {'title': {'text': _wrapped(panel.x_label)}, **_type(panel)}
-    if panel.ticks:
-        values, texts = zip(*panel.ticks, strict=True)
-        axis |= {'tickvals': values, 'ticktext': [escape(text) for text in texts]}
-        axis |= {'tickangle': -panel.tick_angle, 'range': list(panel.tick_range)}
-        axis['zeroline'] = False
+    axis: dict[str, Any] = {'title': {'text': _wrapped(panel.x_label)}}
     if panel.equal:
         axis['constrain'] = 'domain'
     return axis
 
 
-def _y_axis(panel: Panel, scale: SymmetricLog | None) -> dict[str, Any]:
+def _y_axis(panel: Panel) -> dict[str, Any]:
     # The margin is narrow: the unit is below the name.
     axis: dict[str, Any] = {'title': {'text': escape(panel.y_label).replace(' [', '<br>[')}}
-    axis |= scale.axis if scale else _type(panel)
-    if panel.low is not None:
-        top = max(float(np.nanmax(line.y)) for line in panel.lines)
-        axis['range'] = [math.log10(panel.low), math.log10(2.0 * top)]
+    axis['type'] = panel.scale
     if panel.equal:
         axis['scaleanchor'] = 'x'
-    if panel.lanes:
-        axis |= {'showticklabels': False, 'showgrid': False, 'zeroline': False}
-        axis['range'] = list(panel.lane_range)
     return axis
 
 
-def _type(panel: Panel) -> dict[str, Any]:
-    return {'type': 'log', 'dtick': 1} if panel.scale == 'log' else {'type': 'linear'}
-
-
-def _trace(line: Line, panel: Panel, scale: SymmetricLog | None) -> dict[str, Any]:
+def _trace(line: Line) -> dict[str, Any]:
     trace: dict[str, Any] = {
         'name': line.name,
         'meta': line.pen,
         'opacity': line.opacity,
         'y': _rounded(line.y),
     }
-    if scale:
-        trace['y'] = _rounded(scale.height(line.y), '.5g')
-        trace['customdata'] = _rounded(line.y, '.4g')
-        trace['hovertemplate'] = f'%{{customdata:.3g}} {_unit(panel)}'
-    if line.error is not None:
-        trace['error_y'] = {'type': 'data', 'array': _rounded(line.error, '.4g'), 'thickness': 1}
     if line.points:
         trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > MAX_LARGE_DOTS else 8}}
     if line.pen == Pen.MODEL:
         trace['line'] = {'dash': 'dash'}
-    if panel.lanes:  # an instant is a line without length
-        trace |= {'mode': 'lines+markers', 'line': {'width': 4}, 'marker': {'size': 5}}
-        trace['hovertemplate'] = f'{escape(line.name)}<extra></extra>'
     return trace
-
-
-def _unit(panel: Panel) -> str:
-    return panel.y_label.partition('[')[2].rstrip(']')
 
 
 def _line(

@@ -6,10 +6,8 @@ from pathlib import Path
 MARK = 'made by gearkin'
 """In comments of text and in the metadata of images."""
 _JSON = b'{\n  "made_by": "gearkin '
-_STARTS = (b'<!DOCTYPE html>', b'<?xml ', b'<svg ', b'\x89PNG\r\n', b'GIF8', b'%PDF-')
+_STARTS = (b'<!DOCTYPE html>', b'<?xml ', b'\x89PNG\r\n', b'GIF8', b'%PDF-')
 """Begins of the other formats."""
-_MP4 = b'ftyp'
-"""At the fifth byte."""
 _SEARCHED = 2**16
 """Bytes at either end of a file in which its mark is."""
 
@@ -26,5 +24,4 @@ def is_report(path: Path) -> bool:
         ends = start + file.read(_SEARCHED)
     if start.startswith(_JSON):
         return True
-    known = start.startswith(_STARTS) or start[4:].startswith(_MP4)
-    return known and MARK.encode() in ends
+    return start.startswith(_STARTS) and MARK.encode() in ends

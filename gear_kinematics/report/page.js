@@ -37,7 +37,6 @@
       x: figure.time, type: 'scatter', mode: 'lines', ...trace,
       line: {color: colour(meta), width: 1.5, ...trace.line},
       marker: {color: colour(meta), ...trace.marker},
-      error_y: trace.error_y && {color: colour(meta), ...trace.error_y},
     }));
     // Only these buttons: some others would send the data to a server.
     const buttons = [['toImage'], ['zoom2d', 'pan2d', 'resetScale2d']];
@@ -70,8 +69,6 @@
   document.addEventListener('click', ({target}) => {
     const link = target.closest('a[data-time]');
     if (link) show(document.getElementById(link.hash.slice(1)), Number(link.dataset.time));
-    const name = target.closest('.legend button');
-    if (name) toggle(name, name.closest('.legend').nextElementSibling);
   });
 
   // Findings lead to their moment: the time axis shows it with a twentieth of the whole around it.
@@ -81,14 +78,5 @@
     const around = (Math.max(...known) - Math.min(...known)) / 40 || 1;
     Plotly.relayout(element, {'xaxis.range': [moment - around, moment + around]});
     element.dispatchEvent(new CustomEvent('moment', {detail: moment}));
-  }
-
-  // Names in the legend hide and show their lines.
-  function toggle(button, element) {
-    button.ariaPressed = button.ariaPressed !== 'true';
-    for (const trace of figures.get(element).data) {
-      if (trace.name === button.textContent) trace.visible = button.ariaPressed === 'true';
-    }
-    draw(element);
   }
 })();

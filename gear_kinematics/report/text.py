@@ -3,7 +3,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import compress
 
 from rich import box
 from rich.columns import Columns
@@ -22,8 +21,6 @@ from gear_kinematics.report.document import (
     Verdict,
 )
 
-_NARROWEST = 30
-"""Least width of a terminal for tables, columns."""
 _PADDING = 2
 """Columns between two columns of a table."""
 _VERDICT_STYLES = {
@@ -50,28 +47,21 @@ def render(document: Document, console: Console, *, brief: bool = False) -> None
         brief: whether a section is its verdict, its findings and its answer: elsewhere a single
             line, if it passed. On a terminal, this holds for those with an answer, or unusable.
     """
-    if not (console.is_terminal and console.width >= _NARROWEST):
+    if not console.is_terminal:
         for line in lines(document, brief=brief):
-            # The pipe's encoding may lack characters of a name.
-            written = line.encode(console.encoding, 'backslashreplace').decode(console.encoding)
-            console.print(Text(written), soft_wrap=True)
+            console.print(Text(line), soft_wrap=True)
         return
     document = document.in_order()
     several = len(document.sections) > 1
     if several and document.totals:
         console.print(Text(document.totals, 'bold'))
         console.print()
-    unsaid = []  # whether a row of the summary tells more
     for section in document.sections:
         shortened = brief and bool(section.answer or section.verdict == Verdict.UNUSABLE)
-        left = several and shortened and section.verdict == Verdict.PASS
-        if not left:
+        if not (several and shortened and section.verdict == Verdict.PASS):
             _render_section(section, console, brief=shortened)
-        if not section.leads:
-            unsaid.append(left or not shortened)
-    if several and document.summary and any(unsaid):
-        rows = tuple(compress(document.summary.rows, unsaid))
-        console.print(_rows(replace(document.summary, rows=rows), console))
+    if several and document.summary:
+        console.print(_rows(document.summary, console))
         console.print()
     if several and document.totals:
         console.print(Text(document.totals, 'bold'))

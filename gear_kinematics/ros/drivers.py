@@ -3,15 +3,15 @@
 
 import time
 from collections.abc import Callable
+from typing import Any
 
 from rclpy.event_handler import QoSRequestedIncompatibleQoSInfo, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from rclpy.qos_overriding_options import QoSOverridingOptions
+from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
-from gear_kinematics.ros.workarounds.message_numbers import number_messages
-from gear_kinematics.ros.workarounds.new_publishers import NewPublishers
 from gear_kinematics.state.diagnostics import DriverMonitor
 from gear_kinematics.state.losses import Losses
 
@@ -45,14 +45,14 @@ class DriverInput:
         self.subscription = self._node.create_subscription(
             JointState,
             self._topic,
-            self._on_message,
+            self._take,
             QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_AVAILABLE),
             raw=True,
             qos_overriding_options=QoSOverridingOptions.with_default_policies(),
             event_callbacks=SubscriptionEventCallbacks(incompatible_qos=self._on_incompatible),
         )
-        number_messages(self.subscription, self._take)
-        self.new_publishers = NewPublishers(self.subscription)
+        # By the signature of `_take`, rclpy would pass the message alone.
+        self.subscription._callback_type = Subscription.CallbackType.WithMessageInfo  # noqa: SLF001
 
     def _on_incompatible(self, event: QoSRequestedIncompatibleQoSInfo) -> None:
         name = self.subscription.topic_name
@@ -61,13 +61,15 @@ class DriverInput:
         best_available = ReliabilityPolicy.BEST_AVAILABLE.name.lower()
         if event.last_policy_kind == QoSPolicyKind.RELIABILITY and asked_for == best_available:
             self._node.get_logger().info(f'{name}: subscribing with best effort, as a driver does')
-            self.new_publishers.destroy()
             self._node.destroy_subscription(self.subscription)
             self._subscribe()
 
-    def _take(self, data: bytes, number: int | None) -> None:
-        self._losses.note(number)
-        self._on_message(data)
+    def _take(self, message: Any, about: Any = None) -> None:
+        """Take a message, with its number where the middleware and this rclpy count."""
+        if type(message) is tuple:  # the EventsExecutor of rclpy 7.1 passes both as one
+            message, about = message
+        self._losses.note(about and about['publication_sequence_number'])
+        self._on_message(message)
 
     def count_losses(self) -> None:
         """Count the drivers, and the messages lost since the last call.
@@ -78,8 +80,8 @@ class DriverInput:
         losses, monitor, before = self._losses, self._monitor, self._monitor.drivers
         monitor.drivers = self.subscription.get_publisher_count()
         several = max(before, monitor.drivers) > 1
-        # The first number of another driver in place of one before it says nothing.
-        replaced = self.new_publishers.take() and self._heard
+        # The first number of a driver in place of one that has ended says nothing.
+        replaced = not before and self._heard
         if several:
             losses.next.clear()
         elif not replaced:

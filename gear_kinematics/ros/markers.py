@@ -19,15 +19,12 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.shape import teeth
-from gear_kinematics.shape.outlines import Array, roses, turned
+from gear_kinematics.shape.outlines import Array, turned
 from gear_kinematics.shape.solids import FACE_WIDTH
 from gear_kinematics.shape.visuals import COLOURS
 
 _REPEAT_BANDWIDTH = 5e3  # bytes/s on average
 _OUTLINE_WIDTH = 0.2  # modules
-_ROSE_WIDTH = 0.03  # eccentricities
-_PETAL_POINTS = 24
-_MAX_PETALS = 100  # of a rose; more cannot be distinguished
 
 
 class Markers:
@@ -70,23 +67,19 @@ class Markers:
         """
         mechanism, face = self._mechanism, FACE_WIDTH
         ring, satellite = teeth.outlines(mechanism, self._module)
-        line, thin = _OUTLINE_WIDTH * self._module, _ROSE_WIDTH * mechanism.eccentricity
+        line = _OUTLINE_WIDTH * self._module
         radius = float(np.hypot(*satellite.T).min())
         bar = 0.1 * radius
         axial = [branch.axial_position for branch in mechanism.branches]
         middle, length = 0.5 * (min(axial) + max(axial)), max(axial) - min(axial) + face
         yield _cylinder('rotor', 'rotor', 'rotor', 0.4 * radius, length, middle)
         yield _cylinder('output', 'output', 'output_shaft', 0.2 * radius, length + face, middle)
-        petals = min(mechanism.oldham_petals, _MAX_PETALS)
-        paths = roses(mechanism, petals, _PETAL_POINTS).swapaxes(0, 1)
         # With the rotor at 0, the frames of rotor and stator coincide.
         cams = solve(mechanism, 0.0).satellite_centre.tolist()
-        for branch, rose, (x, y) in zip(mechanism.branches, paths, cams, strict=True):
+        for branch, (x, y) in zip(mechanism.branches, cams, strict=True):
             z, on_satellite = branch.axial_position, f'satellite_{branch.name}'
             turned_ring = turned(ring, teeth.ring_phase(mechanism, branch))
             yield _line('ring', 'stator', 'stator', _closed(turned_ring), line, z + 0.5 * face)
-            # The path of the centre of the Oldham coupling.
-            yield _line('rose', 'oldham', 'stator', rose, thin, z + 1.2 * face)
             cam = _cylinder('cam', 'rotor', 'rotor', radius, 1.1 * face, z)
             cam.pose.position.x, cam.pose.position.y = x, y
             yield cam

@@ -136,12 +136,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._subscribed_corrections = subscribed(topics.CORRECTED_TOPICS)
         self._subscribed_errors = subscribed([topics.TRANSMISSION_ERROR])
 
-    def destroy_node(self) -> None:
-        """Destroy the event handles too, which rclpy does not know."""
-        for driver in self._drivers:
-            driver.new_publishers.destroy()
-        super().destroy_node()
-
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
         try:

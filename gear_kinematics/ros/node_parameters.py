@@ -9,7 +9,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from gear_kinematics.parameters import PARAMETERS, default_value
-from gear_kinematics.parameters.node_parameters import Parameter as Declaration
+from gear_kinematics.parameters.parameter import Parameter as Declaration
 
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits

@@ -12,8 +12,6 @@ from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
 
-from gear_kinematics.ros.workarounds.raw_publishing import raw_sender
-
 
 class Outputs:
     """Creates the publishers of a node, and publishes on them."""
@@ -54,7 +52,9 @@ class Outputs:
             ),
         )
         self.publishers[topic] = publisher
-        self._senders[topic] = raw_sender(publisher)
+        # `Publisher.publish` of rclpy 7.1 checks the type and holds the handle, which takes longer
+        # than encoding the message; other releases may lack this.
+        self._senders[topic] = getattr(publisher.handle, 'publish_raw', publisher.publish)
 
     def subscribed(self, topics: Iterable[str]) -> list[str]:
         """Return those of the topics that have subscribers."""

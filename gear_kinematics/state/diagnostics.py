@@ -221,8 +221,6 @@ class EncoderMonitor(DriverMonitor):
             'samples': str(error.samples),
             'mean (rad)': _number(error.mean),
             'peak to peak (rad)': _number(error.peak_to_peak),
-            'mean forward (rad)': _number(error.mean_forward),
-            'mean backward (rad)': _number(error.mean_backward),
             **_reversals(error.reversals),
         }
         if fit := error.calibration:
@@ -272,7 +270,6 @@ def _by_cause(what: str, counts: Counter[str]) -> dict[str, str]:
 def _reversals(found: Reversals | None) -> dict[str, str]:
     """Lost motion and delay with their uncertainties, or what cannot be told apart."""
     return {
-        'backward minus forward (rad)': _estimate(found.difference if found else None),
         'lost motion (rad)': _estimate(found.lost_motion if found else None),
         'delay of output_encoder (s)': _estimate(found.delay if found else None),
     }

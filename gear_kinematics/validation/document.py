@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gear_kinematics.kinematics import solve, split_turns
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -48,6 +49,8 @@ from gear_kinematics.validation.report import (
 _SCHEMA = 'gear_kinematics/report'
 _VERSION = 1
 _TIME = 'time [s]'
+_LEAST_ERROR = 1e-18
+"""In any unit: smaller errors, and none, are drawn as this."""
 
 Row = tuple[Cell, ...]
 
@@ -223,16 +226,16 @@ def figure(report: BagReport) -> Figure | None:
 
 
 def _error_panel(title: str, field: FieldReport, series: Series) -> Panel:
-    """Draw an error within its tolerance."""
-    line, levels = _line(series.time, 'error', Pen.SECOND, series.errors[field.name]), []
-    if tolerance := field.tolerance:
-        levels = [(tolerance, 'tolerance'), (-tolerance, '')]
-    shown = tuple(levels if (line.y < 0.0).any() else levels[:1])
+    """Draw the size of an error, and its tolerance."""
+    error = np.abs(np.asarray(series.errors[field.name], float))
+    # A logarithmic axis has no zero.
+    line = _line(series.time, 'error', Pen.SECOND, np.maximum(error, _LEAST_ERROR))
+    levels = ((field.tolerance, 'tolerance'),) if field.tolerance else ()
     label = printable(f'error [{field.unit}]')
-    return Panel(title, _TIME, label, (line,), levels=shown, scale='symlog')
+    return Panel(title, _TIME, label, (line,), levels=levels, scale='log')
 
 
-def _line(time: Sequence[float], name: str, pen: Pen, values: Sequence[float]) -> Line:
+def _line(time: Sequence[float], name: str, pen: Pen, values: ArrayLike) -> Line:
     return Line(name, pen, np.asarray(time, float), np.asarray(values, float))
 
 

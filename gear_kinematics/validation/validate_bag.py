@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Validates a bag, in this process, another one or on a Dask cluster."""
+"""Validates a bag, in this process or another one."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -134,5 +134,5 @@ def unusable(bag: Path, error: str, config: str = '') -> BagReport:
     return BagReport(str(bag), Verdict.UNUSABLE, config=config, error=error)
 
 
-WORK = fleet.Work(validate_bag, _lost, lambda task: replace(task, bag=task.bag.absolute()))
-"""For `fleet.on_this_machine` and `fleet.on_cluster`."""
+WORK = fleet.Work(validate_bag, _lost)
+"""For `fleet.on_this_machine`."""

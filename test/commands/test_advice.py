@@ -19,7 +19,6 @@ EXTRAS = {
     'rclpy': 'ros',
     'plotly': 'html',
     'matplotlib': 'plot',
-    'distributed': 'dask',
     'tornado': 'watch',
 }
 
@@ -37,9 +36,8 @@ MISSING = {
     'matplotlib': [
         *('validate SERVO --plot a.png', 'lost-motion SERVO --plot a.png'),
         *('plot output a.png --bag SERVO', 'plot scheme a.png', 'animate a.gif --bag SERVO'),
-        'preload --angle 0.001 --branch-stiffness 3000 --shaft-stiffness 1000 --plot a.png',
+        'preload --degrees 1 --branch-stiffness 3000 --shaft-stiffness 1000 --plot a.png',
     ],
-    'distributed': [f'{command} SERVO --scheduler tcp://x:1' for command in READERS[:2]],
     'tornado': ['watch'],
 }
 """Commands that need a package."""
@@ -144,9 +142,6 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('urdf --config two.yaml --node /lift/x', 'only of /left/x, /right/x; did '),
         ('compute moto out', 'moto: no such file or folder; did you mean `motor`? there '),
         ('validate moto', 'moto: no bag there; did you mean `motor`? there are: motor'),
-        ('replay motor --topics /motor/state', 'did you mean `/motor/states`? there '),
-        ('replay motor --topics /a /b --as c', '--as names one topic, not 2'),
-        ('replay motor --topics /a --joint c', '--topics excludes --rotor-topic'),
         ('plot scheme a.png --joint m', '--joint needs --bag'),
     ],
 )

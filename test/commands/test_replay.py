@@ -12,10 +12,9 @@ SAMPLES = 300
 @pytest.mark.live
 @pytest.mark.slow
 def test_a_replay_tells_what_it_did(bags):
-    done = gearkin('replay', bags / 'good', '--no-wait', '--rate', 10, '--start-offset', 0.1)
+    done = gearkin('replay', bags / 'good', '--no-wait', '--rate', 10)
     assert (done.returncode, done.stderr) == (0, '')
-    sent = int(re.fullmatch(r'(\d+) messages, at most [\d.]+ ms late\n', done.stdout)[1])
-    assert 200 < sent < SAMPLES
+    assert re.fullmatch(rf'{SAMPLES} messages, at most [\d.]+ ms late\n', done.stdout)
 
 
 @pytest.mark.parametrize(
@@ -24,10 +23,7 @@ def test_a_replay_tells_what_it_did(bags):
         (['missing.mcap'], 'missing.mcap: no such file or folder'),
         (['garbage.mcap'], 'garbage.mcap: not a bag of a known kind'),
         (['good', '--rate', '0'], 'rate must be positive'),
-        (['good', '--rate', '-1'], 'rate must be positive'),
-        (['good', '--start-offset', '-1'], 'start offset must not be negative'),
-        (['good', '--start-offset', '1000'], 'good: nothing to play'),
-        (['good', '--topics', '/nope'], 'good: no topic /nope in it; there are: '),
+        (['good', '--as', '/x y'], 'Invalid topic name'),
     ],
 )
 def test_a_replay_that_cannot_be_done_gets_one_line_and_code_2(

@@ -147,7 +147,6 @@ def test_options_decide(name, options, code, bags, capsys):
         (['*.nothing'], '*.nothing: no bag there'),
         (['--jobs', '0'], '--jobs: must be at least 1, not 0'),
         (['--jobs', '2', '--live'], '--live: not allowed with argument --jobs'),
-        (['--jobs', '2', '--scheduler', 'x'], '--scheduler: not allowed with argument --jobs'),
     ],
 )
 def test_unusable_arguments_get_one_line_and_code_2(options, cause, bags, tmp_path, monkeypatch):
@@ -366,8 +365,8 @@ def test_a_shipped_bag_validates_live():
 
 @pytest.mark.slow
 @pytest.mark.parametrize('words', [['validate', 'good'], ['compute', 'rotor_only', 'OUT']])
-def test_recordings_need_neither_ros_nor_dask_nor_plotly(words, bags, tmp_path):
-    missing = 'for name in ("rclpy", "distributed", "dask", "plotly"): sys.modules[name] = None'
+def test_recordings_need_neither_ros_nor_plotly(words, bags, tmp_path):
+    missing = 'for name in ("rclpy", "plotly"): sys.modules[name] = None'
     given = [tmp_path / 'out' if word == 'OUT' else word for word in words]
     done = gearkin(*given, cwd=bags, code=f'import sys\n{missing}\n{GEARKIN}')
     assert done.returncode == 0, done.stderr

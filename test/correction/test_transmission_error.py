@@ -238,7 +238,7 @@ def test_window_is_that_of_its_last_samples_by_direction():
     for stamp, way, error in zip(stamps, ways, errors, strict=True):
         window.add(ErrorSample(START + stamp, error, 0, 0.0, way, 0.5))
     found = window.statistics()
-    assert found[:5] == pytest.approx((5, 3e-9, 4e-9, 2e-9, 4.5e-9), rel=1e-14)
+    assert found[:3] == pytest.approx((5, 3e-9, 4e-9), rel=1e-14)
     window.add(ErrorSample(START, 1.0, 0, 0.0, 0, 0.0))  # the clock was set back
     assert window.statistics() == ErrorStatistics(1, 1.0, 0.0)
 

@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, ramps
 from judging_ramps import judge, measured
-from simulated_ramps import SCENARIOS, STEP, Scenario, simulate
+from simulated_ramps import SCENARIOS, Scenario
 
-from gear_kinematics.measurement.loops import find_ramps
-from gear_kinematics.measurement.lost_motion import time_remarks
 from gear_kinematics.measurement.middle_line import Backlash, Cause, reconciled
 
 ARC_MINUTE = math.radians(1.0 / 60.0)
@@ -52,13 +50,9 @@ def test_interval_is_narrow_where_the_spring_is_straight():
     assert found.above_zero == 1.0
 
 
-def recorded(torque, angle):
-    return measured(torque, angle, np.arange(len(torque)) / 100.0)
-
-
 def test_a_clear_dead_band_has_a_value():
     torque = ramps(*[(4.0, 200)] * 5)
-    backlash = recorded(torque, creep(Gear(TEN, 300.0, 1.0), torque)).backlash
+    backlash = measured(torque, creep(Gear(TEN, 300.0, 1.0), torque)).backlash
     assert backlash.cause == Cause.NONE
     assert backlash.value.value == pytest.approx(TEN, abs=0.2 * ARC_MINUTE)
     assert backlash.low < TEN < backlash.high
@@ -70,14 +64,14 @@ def test_it_is_never_wider_than_the_hysteresis():
     torque = ramps(*[(4.0, 200)] * 5)
     angle = 200.0 * ARC_MINUTE * np.clip(torque, -0.5, 0.5) + torque / 600.0
     angle[1::2] += 3.0 * ARC_MINUTE  # rests anywhere
-    figures = recorded(torque, angle)
+    figures = measured(torque, angle)
     width = figures.hysteresis
     assert figures.backlash.high <= width.value + width.uncertainty + 1e-12
 
 
 def test_friction_that_takes_up_the_torque_leaves_everything_open():
     torque = ramps(*[(1.1, 200)] * 5)
-    backlash = recorded(torque, creep(Gear(0.0, 300.0, 1.0), torque)).backlash
+    backlash = measured(torque, creep(Gear(0.0, 300.0, 1.0), torque)).backlash
     assert backlash == Backlash(0.0, None, Cause.FRICTION)
     assert backlash.value is None
 
@@ -98,25 +92,3 @@ def test_ramps_of_all_amplitudes_have_one_backlash(found, expected):
     contradict = expected == (1.0, 9.0)
     assert (one.cause == Cause.CONTRADICTION) == contradict
     assert not (contradict and one.value)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ('name', 'goes_on'),
-    [('play, linear spring', False), ('creep of 10 %', True), ('encoder 20 ms late', True)],
-)
-def test_what_time_does_is_one_remark(name, goes_on):
-    ramps_of = simulate(NAMED[name], np.random.default_rng(3))
-    friction = measured(*ramps_of[1:], ramps_of.time).friction
-    found = find_ramps(*ramps_of[1:], ramps_of.time)
-    said = ' '.join(time_remarks(found, friction, STEP))
-    assert ('the angle goes on by' in said) == goes_on
-
-
-def test_an_even_drift_is_told_with_its_size():
-    torque = ramps(*[(4.0, 200)] * 6)
-    time = np.arange(len(torque)) / 100.0
-    angle = creep(Gear(play=0.01, stiffness=300.0, friction=1.0), torque) + 1e-4 * time
-    (remark,) = time_remarks(find_ramps(torque, angle, time), None, 0.0)
-    moved, seconds = (float(remark.split()[k]) for k in (4, 9))
-    assert math.radians(moved / 60.0) / seconds == pytest.approx(1e-4, rel=0.02)

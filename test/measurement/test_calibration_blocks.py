@@ -6,7 +6,7 @@ import pytest
 
 from gear_kinematics.measurement.calibration.selection import (
     NormalEquations,
-    blocks_of,
+    block_bounds,
     is_as_good,
     standard_error,
     widening,
@@ -49,48 +49,26 @@ def test_intervals_hold_on_other_errors_of_a_random_scale():
 
 @pytest.fixture
 def line():
-    """Give columns (x, zero, drift, error) of two recordings: slope 2, and each its own zero."""
-    random = np.random.default_rng(4)
-    x = random.standard_normal((2, 480))
-    drift = np.linspace(-1.0, 1.0, 480)
-    error = 2.0 * x + np.array([[5.0], [-3.0]]) + 0.5 * drift
-    blocks = blocks_of([480, 480])
-
-    def columns(block):
-        rows = block.rows
-        count = rows.stop - rows.start
-        return np.column_stack([
-            x[block.recording, rows], np.ones(count), drift[rows], error[block.recording, rows],
-        ])  # fmt: skip
-
-    return np.array([c.T @ c for c in map(columns, blocks)]), blocks
+    """Give columns (x, zero, error) of a slope of 2 whose zero jumps in the middle, in blocks."""
+    x = np.random.default_rng(4).standard_normal((24, 40))
+    error = 2.0 * x + np.repeat([5.0, 6.0], 12)[:, None]
+    columns = np.stack([x, np.ones_like(x), error], axis=2)
+    return np.swapaxes(columns, 1, 2) @ columns
 
 
 def test_blocks_cover_all_samples_once():
-    blocks = blocks_of([1000, 100, 5])
-    for recording, count in enumerate([1000, 100, 5]):
-        rows = [b.rows for b in blocks if b.recording == recording]
-        assert len(rows) >= 2
-        assert [k for part in rows for k in range(part.start, part.stop)] == list(range(count))
+    for bounds, count in zip(block_bounds([1000, 100, 5]), [1000, 100, 5], strict=True):
+        assert len(bounds) >= 3
+        assert bounds == sorted({0, *bounds, count})
 
 
-def test_prediction_has_the_zero_of_what_was_left_out_only_if_it_is_to_be_a_check(line):
-    products, blocks = line
-    halves = np.array([k % 12 >= 6 for k in range(len(blocks))], int)
-    own = halves + 2 * np.array([block.recording for block in blocks])
-    errors = {
-        checked: NormalEquations(products, blocks, halves, 1, (0, 1), (0,), groups).errors([0])
-        for checked, groups in ((False, None), (True, own))
-    }
-    # The drift of ±0.5 over a recording remains: its variance is 1/12, in a half of it 1/48.
-    assert errors[False].mean() == pytest.approx(1.0 / 12.0, rel=0.01)
-    assert errors[True].mean() == pytest.approx(1.0 / 48.0, rel=0.01)
+def test_halves_are_predicted_with_the_zero_of_the_other_one(line):
+    halves = NormalEquations(line, np.repeat([0, 1], 12))
+    assert halves.solve([0, 1])[1:] == pytest.approx(np.array([[2.0, 6.0], [2.0, 5.0]]), abs=1e-6)
+    assert halves.errors([0, 1]) == pytest.approx(np.full(24, 40.0), rel=1e-5)  # 1 of each sample
 
 
-def test_a_column_that_the_zero_explains_gets_no_coefficient(line):
-    products, blocks = line
-    place = [1, 0, 1, 2, 3]  # the zero's column as a common one, too
-    equations = NormalEquations(
-        products[:, place][:, :, place], blocks, np.arange(len(blocks)), 2, (0, 1), (0,)
-    )
-    assert equations.solve([0, 1])[0] == pytest.approx([0.0, 2.0], abs=1e-5)
+def test_a_column_that_another_explains_gets_half_of_it(line):
+    place = [1, 0, 1, 2]
+    equations = NormalEquations(line[:, place][:, :, place])
+    assert equations.solve([0, 1, 2])[0] == pytest.approx([2.75, 2.0, 2.75], abs=0.02)

@@ -35,7 +35,7 @@ def test_interval_holds_on_the_other_half_whatever_the_delay(delay):
             judged = judge(*other, fit([used], Fraction(100)).calibration)
             assert judged.holds
             assert judged.rms_after < judged.rms_before / 4.0
-            coverage.append(1.0 - judged.fit.outside)
+            coverage.append(judged.within_interval)
     assert 0.93 <= np.mean(coverage) <= 0.975
     assert min(coverage) >= 0.92
 
@@ -54,7 +54,7 @@ def test_delay_of_each_recording_is_estimated_like_its_zero():
     assert found.holds
     # The delay alone makes 2 ms times the speed.
     speed = np.sqrt(np.mean(second[1].speed(Fraction(-19)) ** 2))
-    before, after = found.with_delay
+    before, after = found.rms_before_with_delay, found.rms_after_with_delay
     assert after == pytest.approx(np.hypot(found.rms_after, 2e-3 * speed), rel=0.1)
     assert before > found.rms_before
     assert found.rms_after < 0.15 * after
@@ -66,7 +66,7 @@ def test_without_times_there_is_no_delay():
     assert result.recordings[0].delay is None
     judged = judge(*second, result.calibration)
     assert judged.delay is None
-    assert judged.with_delay == (judged.rms_before, judged.rms_after)
+    assert judged.rms_after_with_delay == judged.rms_after
     assert judged.rms_after < 0.3 * judged.rms_before
 
 

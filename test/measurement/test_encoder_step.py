@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from simulated_encoders import TURN, sine_strokes, stepped
 
-from gear_kinematics.measurement.encoder_step import Source, Step, find_step, step_of
+from gear_kinematics.measurement.encoder_step import Step, find_step, step_of
 
 STEP = TURN / 2**14  # 1.318 arcmin
 TIMES = np.arange(8000) / 500.0
-NONE = Step(0.0, Source.UNKNOWN)
+NONE = Step(0.0, seen=False)
 
 
 def single(values):
@@ -51,7 +51,7 @@ def readings(stroke, noise):
 @pytest.mark.parametrize('recorded', RECORDED)
 def test_step_is_found_however_it_was_recorded(recorded, noise):
     found = find_step(RECORDED[recorded](stepped(readings(1.0, noise), STEP)))
-    assert found.source == Source.FOUND
+    assert found.seen
     assert found.size == pytest.approx(STEP, rel=1e-4)
 
 
@@ -67,14 +67,14 @@ def test_step_is_found_however_it_was_recorded(recorded, noise):
 )
 def test_resolution_of_the_recording_is_not_a_step_of_the_encoder(recorded, resolution):
     found = find_step(RECORDED[recorded](readings(1.0, 1e-3)))
-    assert found.source == Source.RECORDING
+    assert not found.seen
     assert found.size == pytest.approx(resolution, rel=1e-9)
 
 
 @pytest.mark.parametrize('decimals', [3, 2])
 def test_step_that_the_print_hides_is_not_determinable(decimals):
     found = find_step(np.round(stepped(readings(1.0, 0.0), STEP), decimals))
-    assert found == Step(10.0**-decimals, Source.RECORDING)
+    assert found == Step(10.0**-decimals, seen=False)
 
 
 @pytest.mark.parametrize('seed', range(5))
@@ -105,13 +105,12 @@ def test_even_motion_without_steps_has_none():
 def test_levels_may_be_missing(step, jump):
     # The readings move by many steps at a time, and so none are next to each other.
     counts = np.cumsum(np.random.default_rng(4).integers(jump, jump + 3, 3000))
-    assert find_step(counts * step) == Step(pytest.approx(step, rel=1e-9), Source.FOUND)
-    assert find_step(-(counts * step)) == Step(pytest.approx(step, rel=1e-9), Source.FOUND)
+    assert find_step(counts * step) == Step(pytest.approx(step, rel=1e-9), seen=True)
+    assert find_step(-(counts * step)) == Step(pytest.approx(step, rel=1e-9), seen=True)
 
 
 def test_steps_of_a_difference():
-    given, found = step_of(4096, np.zeros(0)), Step(3e-3, Source.FOUND)
-    assert given == Step(TURN / 4096, Source.GIVEN)
-    joined = Step(4e-3, Source.RECORDING).joined(found)
-    assert joined == Step(pytest.approx(5e-3), Source.RECORDING)
-    assert found.scaled(-1 / 3) == Step(pytest.approx(1e-3), Source.FOUND)
+    given, found = step_of(4096, np.zeros(0)), Step(3e-3, seen=True)
+    assert given == Step(TURN / 4096, seen=False)
+    assert Step(4e-3, seen=False).joined(found) == Step(pytest.approx(5e-3), seen=False)
+    assert found.scaled(-1 / 3) == Step(pytest.approx(1e-3), seen=True)

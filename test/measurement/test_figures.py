@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from gear_recordings import Gear, creep, quantised, ramps
 
-from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
+from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import RampError, find_ramps
 
 RATED = 40.0
@@ -44,14 +44,13 @@ def truth(gear: Gear) -> dict[str, float]:
 
 
 def measured(torque, angle, step=STEP, rated=RATED) -> GearFigures:
-    ramps_found = find_ramps(torque, angle)
-    return gear_figures(ramps_found, settings_for(ramps_found, step, rated))
+    return gear_figures(find_ramps(torque, angle), step, rated)
 
 
 def estimates(found: GearFigures) -> dict:
     names = 'hysteresis', 'friction', 'lost_motion'
     figures = {name: getattr(found, name) for name in names}
-    return figures | {'stiffness': found.stiffness[-1].both}
+    return figures | {'stiffness': found.stiffness[-1].slope}
 
 
 @pytest.fixture(scope='module')
@@ -115,7 +114,7 @@ def test_many_repeats_do_not_hide_that_noise_rounds_the_curve():
         assert abs(found.lost_motion.value - expected) <= found.lost_motion.uncertainty
 
 
-def test_ranges_of_stiffness_and_both_signs():
+def test_ranges_of_stiffness_have_the_mean_of_both_signs():
     # Softer for negative torque, and harder from 20 N·m on.
     torque = ramps((40.0, 800), (40.0, 800), (40.0, 800))
     load = np.abs(torque)
@@ -125,10 +124,8 @@ def test_ranges_of_stiffness_and_both_signs():
     ranges = [(round(s.low, 3), round(s.high, 3)) for s in found.stiffness]
     assert ranges == [(0.0, 6.0), (6.0, 20.0), (20.0, 40.0)]
     for stiffness, expected in zip(found.stiffness, (200.0, 200.0, 500.0), strict=True):
-        assert stiffness.positive.value == pytest.approx(expected, rel=1e-3)
-        assert stiffness.negative.value == pytest.approx(0.5 * expected, rel=1e-3)
         # The mean of both compliances.
-        assert stiffness.both.value == pytest.approx(expected / 1.5, rel=1e-3)
+        assert stiffness.slope.value == pytest.approx(expected / 1.5, rel=1e-3)
 
 
 def test_ranges_that_the_ramps_do_not_reach_are_left_out():
@@ -187,4 +184,4 @@ def test_a_published_stiffness_is_found(shared_path):
     data = columns(shared_path('data/dual_encoders/transmission_stiffness_sspg.csv'))
     angle = data['encoder_pos_rad'] / 7.2
     found = measured(data['output_torque_Nm'], angle, step=0.0, rated=20.0)
-    assert found.overall.both.value == pytest.approx(242.7, rel=0.01)
+    assert found.overall.value == pytest.approx(242.7, rel=0.01)

@@ -38,15 +38,6 @@ def test_the_loop_at_the_end_of_a_recording_is_not_complete():
     assert [loop.complete for loop in large.loops] == [True, False]
 
 
-def test_rate_is_that_of_the_torque():
-    torque = ramps(*[(5.0, 100)] * 3, *[(40.0, 200)] * 2)
-    travel = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(torque)))])
-    angle = creep(GEAR, torque)
-    for group in find_ramps(torque, angle, travel / 2.5):
-        assert group.rate == pytest.approx(2.5, rel=0.01)
-    assert find_ramps(torque, angle)[0].rate is None
-
-
 @pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_first_side_does_not_matter(sign):
     torque = sign * ramps((5.0, 200), (5.0, 200))

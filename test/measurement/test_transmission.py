@@ -1,18 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The transmission error of recordings whose errors are known."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
-from gear_recordings import Samples, encoders, quantised, write_csv, write_recording
+from gear_recordings import Samples, quantised, write_csv, write_recording
 from simulated_encoders import START, TURN, Drive, even_strokes
 
-from gear_kinematics.kinematics import Branch, Mechanism
-from gear_kinematics.measurement.lost_motion import Request, measure
+from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.measurement.recording import RecordingError
-from gear_kinematics.measurement.transmission import marked_orders, transmission_figures
 
 MS = 10**6
 PLAY = 3e-3
@@ -48,16 +44,17 @@ def recording(tmp_path_factory, config):
 
 
 @pytest.fixture(scope='module')
-def found(recording, actuator, config):
-    # At one speed, play cannot be told from a delay.
-    return measure(recording, actuator, config, Request(delay=0.0)).transmission
+def found(recording, config):
+    return measure(recording, config).transmission
 
 
 @pytest.mark.slow
 def test_lost_motion_on_reversals_is_the_play(found):
     assert (found.offset, found.travel) == pytest.approx((1.0, 2.2 * TURN), rel=1e-3)
-    assert found.lost_motion.repeats == 2
-    assert abs(found.lost_motion.value - PLAY) <= found.lost_motion.uncertainty < 2e-5
+    # At one speed, play cannot be told from a delay, of which there is none.
+    assert found.lost_motion is None
+    assert found.reversals.repeats == 2
+    assert abs(found.reversals.value - PLAY) <= found.reversals.uncertainty < 2e-5
 
 
 @pytest.mark.slow
@@ -69,33 +66,12 @@ def test_accuracy_is_peak_to_peak_in_one_direction(found):
         assert way.value == pytest.approx(np.ptp(errors), abs=2e-5)
 
 
-@pytest.mark.slow
-def test_amplitudes_of_the_marked_orders(found):
-    assert {19, 20, 1520} <= {order.cycles for order in found.orders}
-    for order in found.orders:
-        expected = AMPLITUDES.get(order.cycles, 0.0)
-        for way in (order.forward, order.backward):
-            assert way.value == pytest.approx(expected, abs=3e-6), order.name
-
-
-def test_short_motion_has_no_orders_that_it_cannot_resolve(actuator):
-    angle = np.linspace(0.0, 0.3 * TURN, 3000)
-    both = encoders(-19.0 * angle, angle + 1e-3 * np.sin(19.0 * angle))
-    found = transmission_figures(both, actuator, 0.01)
-    # 0.3 turns hold 5.7 cycles of the rotor, which cannot be told from 6 of the satellite.
-    told = [order.name for order in found.orders if order.forward]
-    assert told == ['rotor × 1', 'rotor × 2', 'teeth × 1']
-    assert found.orders[2].forward.uncertainty is None
-    assert found.backward is None
-    assert found.lost_motion is None
-
-
 @pytest.mark.parametrize('ways', [-1.0, 2.0])
-def test_output_that_does_not_follow_is_refused(tmp_path, config, actuator, ways):
+def test_output_that_does_not_follow_is_refused(tmp_path, config, ways):
     ideal = there_and_back(0.8, 1)
     path = write_csv(tmp_path / 'wrong.csv', rotor=-19.0 * ideal, output=ways * ideal)
     with pytest.raises(RecordingError, match='does not follow the rotor'):
-        measure(read(path, config), actuator, config, Request())
+        measure(read(path, config), config)
 
 
 def test_recording_without_matching_stamps_is_refused(tmp_path, config):
@@ -106,15 +82,8 @@ def test_recording_without_matching_stamps_is_refused(tmp_path, config):
         read(path, config)
 
 
-def test_orders_of_any_tooth_pair():
-    orders = marked_orders(Mechanism(61, 58, 1e-3, (Branch('a'),)))
-    assert orders['satellite × 1'] == Fraction(61, 3)
-    # Seen from the satellite as many teeth mesh as seen from the ring gear.
-    assert orders['teeth × 1'] == 61 * orders['rotor × 1'] == 58 * Fraction(61, 3)
-
-
 @pytest.mark.slow
-def test_twist_is_measured_with_both_encoders(tmp_path, config, actuator):
+def test_twist_is_measured_with_both_encoders(tmp_path, config):
     """The output turns under load; only the twist of the gear counts."""
     gear_stiffness, bench_stiffness, friction = 400.0, 50.0, 0.5
     torque = 8.0 * np.sin(np.arange(8000) * TURN / 2000)
@@ -123,9 +92,9 @@ def test_twist_is_measured_with_both_encoders(tmp_path, config, actuator):
     stamps = START + np.arange(len(torque)) * MS
     rotor = Samples(stamps, -19.0 * (bench + gear), torque / -19.0)
     path = write_recording(tmp_path / 'loaded', rotor, Samples(stamps, bench))
-    report = measure(read(path, config), actuator, config, Request())
-    (ramps,) = report.figures.by_amplitude
+    report = measure(read(path, config), config)
+    figures = report.figures
     assert report.measured
-    assert ramps.stiffness[-1].both.value == pytest.approx(gear_stiffness, rel=0.01)
-    assert ramps.hysteresis.value == pytest.approx(2.0 * friction / gear_stiffness, rel=0.02)
+    assert figures.stiffness[-1].slope.value == pytest.approx(gear_stiffness, rel=0.01)
+    assert figures.hysteresis.value == pytest.approx(2.0 * friction / gear_stiffness, rel=0.02)
     assert report.transmission is not None

@@ -231,10 +231,6 @@ def blocks(folder: Path, *names: str) -> Path:
         ([LEFT, '/left/gear'], 'gear_state_publisher', 81),
         (['/**', '/left/gear'], 'gear', 82),
         (['/**', '/left/gear'], 'gear_state_publisher', 81),
-        (['/**', LEFT, '/other/**'], 'gear_state_publisher', 82),
-        (['/left/*'], 'gear_state_publisher', 81),
-        (['/*/gear'], 'gear', 81),
-        (['/**', '/left/**'], 'gear_state_publisher', 82),
     ],
 )
 def test_name_without_namespace_is_that_of_the_only_node_in_the_file(
@@ -248,8 +244,6 @@ def test_name_without_namespace_is_that_of_the_only_node_in_the_file(
     [
         [LEFT, RIGHT],
         ['gear_state_publisher', LEFT],
-        ['/left/**', '/right/**'],
-        ['/left/*', '/*/*/gear_state_publisher'],
     ],
 )
 def test_file_that_leaves_open_which_node_is_meant_is_refused(tmp_path, names):

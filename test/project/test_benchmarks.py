@@ -22,7 +22,6 @@ ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
         ['kinematics.py', '--samples', '1000', '--rounds', '1'],
         ['compute.py', '--messages', '300', '--rounds', '1'],
         ['validation.py', '--messages', '300', '--rounds', '1', '--memory', '300'],
-        ['preload_advice.py', '--seeds', '5', '--settings', 'five, turns'],
         ['calibration.py', '--gears', '1', '--duration', '20', '--scenario', 'usual'],
     ],
     ids=lambda arguments: arguments[0],

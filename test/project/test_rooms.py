@@ -127,18 +127,7 @@ ROOMS = {
 }
 """Each room of the package and the rooms it imports, all of which stand before it."""
 MEASUREMENT = {
-    'preload': ('document', 'loops', 'lost_motion', 'measured', 'names', 'wording'),
-    'compare': (
-        'document',
-        'figures',
-        'loops',
-        'lost_motion',
-        'measured',
-        'names',
-        'recording',
-        'wording',
-    ),
-    'calibration': ('curves', 'envelope', 'ratio', 'recording', 'transmission', 'wording'),
+    'calibration': ('envelope', 'ratio', 'recording', 'transmission', 'wording'),
     'commissioning': (
         'csv_files',
         'encoder_step',

@@ -24,8 +24,6 @@ from gear_kinematics.bag import Bag, BagError
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import cli, output
 from gear_kinematics.parameters import ConfigError, NodeParameters
-from gear_kinematics.ros.live import ReplayError
-from gear_kinematics.ros.replay import play
 
 ROOT = Path(__file__).resolve().parents[2]
 BAG = ROOT / 'bags/servo_point_to_point'
@@ -227,17 +225,6 @@ def test_links_among_bags_lead_in_no_circles(tmp_path):
         (tmp_path / name).symlink_to('.')
     (tmp_path / 'latest').symlink_to(bag.name)
     assert find_bags([str(tmp_path)]).bags == [bag, tmp_path / 'latest']
-
-
-@pytest.mark.live
-@pytest.mark.parametrize('kind', ['trap/msg/Type', '.trap/msg/Type', 'trap', ''])
-def test_a_type_has_nothing_imported_but_messages(kind, tmp_path, monkeypatch):
-    (tmp_path / 'trap.py').write_text('')
-    monkeypatch.syspath_prepend(tmp_path)
-    path = crafted_database(tmp_path / 'b.db3', name='/x', kind=kind)
-    with Bag(path) as bag, pytest.raises(ReplayError, match='no message of that name'):
-        play(bag, {'/x': '/x'}, wait=0.0)
-    assert 'trap' not in sys.modules
 
 
 # Names on the terminal.

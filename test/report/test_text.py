@@ -101,8 +101,7 @@ def test_a_brief_report_is_verdict_findings_and_one_line_of_numbers():
     )
     shown = file.getvalue()
     assert 'not finite' not in shown.split('messages missing')[-1]
-    # A bag is either told of or a row of the table, after which the eye is.
-    assert [shown.count(one.bag) for one in (passing, failing)] == [1, 1]
+    assert shown.count(passing.bag) == 1  # a bag that passed is a row of the table alone
     totals = '3 bags: 1 passed, 1 failed, 1 unusable'
     assert [shown.splitlines()[k] for k in (0, -1)] == [totals, totals]
 
@@ -138,12 +137,6 @@ def test_names_are_no_markup(render_one):
     text = render_one(report)
     assert '[red]a[/red] :smile:' in text
     assert '[/] 100 %' in text
-
-
-def test_pipe_that_cannot_express_a_name_gets_it_spelled_out():
-    text = piped(samples.FAILING, encoding='ascii')
-    assert r'logs/2026-11-20 Pr\xfcfstand 7/l\xe4uft.mcap: verdict: failed' in text
-    assert 'Prüfstand 7/läuft' in piped(samples.FAILING)
 
 
 @pytest.mark.parametrize('width', [40, 80, 100, 160])

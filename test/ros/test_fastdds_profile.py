@@ -2,7 +2,6 @@
 """The profile for Fast DDS: who chooses it, and that it spares a wakeup for every message."""
 
 import os
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -33,7 +32,6 @@ def _nothing_chosen(monkeypatch, tmp_path):
         ({'FASTDDS_DEFAULT_PROFILES_FILE': '/my.xml'}, False, False),
         ({}, True, False),
         ({'SKIP_DEFAULT_XML_FILE': '1'}, True, True),
-        ({'GEAR_KINEMATICS_FASTDDS_PROFILE': 'off'}, False, False),
     ],
 )
 def test_profile_is_used_if_nobody_has_chosen_another(
@@ -81,23 +79,11 @@ def wakeups_per_message(live) -> float:
     return (wakeups(live.process.pid) - before) / count
 
 
-@contextmanager
-def node_with_one_listener(folder):
-    with live_node(folder) as live:
+def test_node_does_not_wake_up_a_thread_for_every_message(tmp_path):
+    with live_node(tmp_path) as live:
         live.peer.connect()
         for subscription in live.peer._subscriptions[1:]:
             live.peer.node.destroy_subscription(subscription)
-        yield live
-
-
-def test_node_does_not_wake_up_a_thread_for_every_message(tmp_path):
-    with node_with_one_listener(tmp_path) as live:
         # A thread wakes up at most 50 times a second: again if the machine is busier than that.
         live.peer.wait_until(lambda: wakeups_per_message(live) < 0.7, 'few wakeups')
     assert 'XMLPARSER' not in live.text()
-
-
-def test_node_without_the_profile_wakes_up_a_thread_for_every_message(tmp_path, monkeypatch):
-    monkeypatch.setenv('GEAR_KINEMATICS_FASTDDS_PROFILE', 'off')
-    with node_with_one_listener(tmp_path) as live:
-        assert wakeups_per_message(live) > 0.9

@@ -1,12 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The arguments with which the launch files start the node, and those they refuse."""
 
-import sys
-
 import pytest
 
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.ros.launch_arguments import NODE_ARGUMENTS, node_arguments, refuse_unknown
+from gear_kinematics.ros.launch_arguments import NODE_ARGUMENTS, node_arguments
 
 NODES = {
     '/gear_state_publisher': 81,
@@ -79,12 +77,3 @@ def test_file_that_is_not_there_or_without_parameters_of_the_node_is_refused(con
         arguments('nowhere.yaml')
     with pytest.raises(ConfigError, match='no parameters of /right/gear_state_publisher in it'):
         arguments(config, 'right')
-
-
-def test_unknown_argument_of_the_launched_file_is_refused_with_the_nearest_name(monkeypatch):
-    monkeypatch.setattr(sys, 'argv', ['ros2', 'launch', 'gear_kinematics', 'view.launch.py'])
-    for name in ('rotor_state', 'rviz', 'launch-prefix'):
-        refuse_unknown('/share/view.launch.py', [f'{name}:=x'], 'rviz')
-    with pytest.raises(ValueError, match=r'`rotor_joit`; did you mean `rotor_joint`\? there are'):
-        refuse_unknown('/share/view.launch.py', ['rviz:=x', 'rotor_joit:=m1'], 'rviz')
-    refuse_unknown('/share/included.launch.py', ['rviz:=x'])

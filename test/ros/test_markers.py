@@ -123,7 +123,7 @@ def test_teeth_mesh_as_drawn(actuator, rotor_angle):
 def test_every_marker_is_unique_and_locked_to_a_link(mechanism):
     markers = sent(mechanism, 'left_')
     names = [(marker.ns, marker.id) for marker in markers]
-    assert len(names) == len(set(names)) == 2 + 8 * len(mechanism.branches)
+    assert len(names) == len(set(names)) == 2 + 7 * len(mechanism.branches)
     links, _ = read(
         urdf(mechanism, module=MODULE, output_joint='output_shaft', frame_prefix='left_')
     )

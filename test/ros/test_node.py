@@ -347,23 +347,23 @@ def test_inputs_that_overflow_the_queue_of_a_blocked_node_are_lost(make, context
 
 
 def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
-    node, drivers, new = make('lossy'), 1, 1
+    node, drivers = make('lossy'), 1
     monkeypatch.setattr(Subscription, 'get_publisher_count', lambda _: drivers)
-    monkeypatch.setattr(node._rotor_driver.new_publishers, 'take', lambda: new)
 
     def lost(*numbers):
         for number in numbers:
-            node._rotor_driver._take(rotor_bytes(1, position=[1.0]), number)
+            about = number and {'publication_sequence_number': number}
+            node._rotor_driver._take(rotor_bytes(1, position=[1.0]), about)
         node._rotor_driver.count_losses()
         return node._monitor.lost, node._monitor.losses_known
 
     assert lost() == (0, True)
     assert lost(7, 8, 10) == (1, True)  # 1 to 6 were sent before the two were connected
-    new = 0
     assert lost(11, 15) == (4, True)
-    new = 1
+    drivers = 0
+    assert lost() == (4, True)
+    drivers = 1
     assert lost(300, 301) == (4, False)  # of another driver
-    new = 0
     assert lost(1, 3) == (5, True)
     drivers = 2
     assert lost(302, 4, 303, 5) == (5, False)

@@ -195,27 +195,6 @@ def test_rejected_input_has_no_output_and_is_a_warning_in_the_next_report(shared
     )
 
 
-def test_other_topics_are_suggested_while_there_is_no_publisher(start):
-    live = start(connect=False, rotor_state='motor/joint_states')
-    peer = live.peer
-
-    def warned():
-        peer.send(rotor_state(peer.stamp(), ['wheel', 'motor_1'], [0.0, 1.0]))
-        return live.lines('WARN')
-
-    [warning] = peer.wait_until(warned, 'a warning')
-    [*_, begun] = live.lines('INFO')
-    assert 1.9 < warning.time - begun.time < 20.0
-    topic = f'{peer.namespace}/motor/joint_states'
-    # There are those of other tests, too.
-    assert warning.text.startswith(f'{peer.namespace}/rotor_state has no publisher; there are: ')
-    assert f'{topic} (joints motor_1, wheel)' in warning.text
-    assert f'{peer.namespace}/output_state' not in warning.text
-    arguments = f'-r rotor_state:={topic} -p rotor_joint:=motor_1'
-    assert f'did you mean `--ros-args {arguments}`, or with ros2 launch `' in warning.text
-    peer.wait_until(lambda: not peer.matches()[0], 'the end of the subscription')
-
-
 # Diagnostics.
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from simulated_ramps import STEP, Scenario, drawn, hysteresis, simulate
 
 from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.measurement.figures import GearFigures, gear_figures, settings_for
+from gear_kinematics.measurement.figures import GearFigures, gear_figures
 from gear_kinematics.measurement.loops import find_ramps
 
 
@@ -33,9 +33,7 @@ def judge(scenario: Scenario, count: int, seed: int = 1, *, alike: bool = False)
     random = np.random.default_rng(seed)
     gears = drawn(scenario, count, random, spread=0.0 if alike else 1.0)
     recorded = simulate(gears, random)
-    found = [
-        measured(recorded.torque[:, k], recorded.angle[:, k], recorded.time) for k in range(count)
-    ]
+    found = [measured(recorded.torque[:, k], recorded.angle[:, k]) for k in range(count)]
     backlash = [figures.backlash for figures in found]
     widths = [(math.inf if one.high is None else one.high) - one.low for one in backlash]
     held = [
@@ -54,9 +52,8 @@ def judge(scenario: Scenario, count: int, seed: int = 1, *, alike: bool = False)
     )
 
 
-def measured(torque: np.ndarray, angle: np.ndarray, time: np.ndarray) -> GearFigures:
-    ramps = find_ramps(torque, angle, time)
-    return gear_figures(ramps, settings_for(ramps, STEP))
+def measured(torque: np.ndarray, angle: np.ndarray) -> GearFigures:
+    return gear_figures(find_ramps(torque, angle), STEP)
 
 
 def _share(found: Iterable[Estimate], true: Sequence[float]) -> float:

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Bags one by one, in processes and on a cluster, whose workers are killed."""
+"""Bags one by one, and in processes that are killed."""
 
 import json
 import os
@@ -20,11 +20,9 @@ from blocked_bags import (
     running_gearkin,
     wait_until,
 )
-from dask_cluster import cluster
 from shipped_bags import ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.fleet import on_this_machine
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
@@ -206,105 +204,19 @@ def test_a_bag_whose_process_died_is_begun_again(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(('way', 'place'), [('jobs', 0), ('jobs', 8), ('scheduler', 3)])
-def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(way, place, tmp_path):
+@pytest.mark.parametrize('place', [0, 8])
+def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(place, tmp_path):
     bags = copies(tmp_path / 'bags', 2)
     lost = tmp_path / 'bags' / 'killer'
     bags.insert(place, lost)
     report = tmp_path / 'report.json'
     with ExitStack() as stack:
         blocked = stack.enter_context(BlockedBag(BAGS / 'driver_faults', lost))
-        number = 2
-        if way == 'scheduler':
-            dask = stack.enter_context(cluster(tmp_path / 'cluster', allowed_failures=1))
-            for _ in range(2):  # begun again by their nannies
-                dask.add_worker('--nanny')
-            number = dask.address
-        arguments = ['validate', f'--{way}', number, '--json', report, *bags]
+        arguments = ['validate', '--jobs', 2, '--json', report, *bags]
         process = stack.enter_context(running_gearkin(*arguments, stdout=subprocess.DEVNULL))
         killed = kill_readers(blocked, process)
         _, errors = process.communicate(timeout=DEADLINE)
     assert process.returncode == 2
     assert errors == f'gearkin: {lost}: its worker died repeatedly\n'
-    assert killed == {'jobs': 3, 'scheduler': 4}[way]
+    assert killed == 3
     check_reports(report, bags, lost)
-
-
-# A cluster.
-
-
-@pytest.mark.slow
-def test_the_bags_of_a_killed_worker_are_done_by_another(tmp_path, monkeypatch):
-    copies(tmp_path / 'bags', 6)
-    monkeypatch.chdir(tmp_path)  # the workers are elsewhere
-    bags = find_bags(['bags']).bags
-    bags.insert(8, Path('blocked') / 'driver_faults')
-    with (
-        BlockedBag(BAGS / 'driver_faults', tmp_path / bags[8]) as blocked,
-        cluster(tmp_path / 'cluster') as dask,
-    ):
-        workers = {worker.pid: worker for worker in (dask.add_worker('--no-nanny') for _ in '12')}
-        options = ['--scheduler', dask.address, '--json', 'report.json']
-        with running_gearkin('validate', *options, *bags) as process:
-            victim = workers[blocked.reader()]
-            blocked.heal()
-            victim.kill()
-            output, errors = process.communicate(timeout=DEADLINE)
-        assert victim.wait() == -signal.SIGKILL
-        (other,) = (worker for worker in workers.values() if worker is not victim)
-        assert other.poll() is None
-    assert (process.returncode, errors) == (0, '')
-    assert output.startswith('summary: 25 bags: 25 passed, 0 failed, 0 unusable\n')
-    check_reports(tmp_path / 'report.json', bags)
-
-
-IMPATIENT = (
-    f'import gear_kinematics.bag.fleet as f; f._PATIENCE = f._CONNECT_TIMEOUT = 1.0; {GEARKIN}'
-)
-
-
-@pytest.mark.slow
-def test_a_cluster_that_has_no_workers_or_ends_is_an_error(tmp_path):
-    with cluster(tmp_path / 'cluster') as dask:
-        arguments = ['validate', '--scheduler', dask.address, BAGS / 'driver_faults']
-        done = gearkin(*arguments, code=IMPATIENT)
-        assert done.returncode == 2
-        cause = 'the cluster has no workers for it'
-        assert done.stderr == f'gearkin: {BAGS / "driver_faults"}: {cause}\n'
-        with (
-            BlockedBag(BAGS / 'driver_faults', tmp_path / 'blocked') as blocked,
-            running_gearkin(*arguments[:-1], blocked.path) as process,
-        ):
-            dask.add_worker('--no-nanny')
-            blocked.reader()
-            dask.scheduler.kill()
-            output, errors = process.communicate(timeout=DEADLINE)
-    assert process.returncode == 2
-    assert errors.startswith(f'gearkin: {tmp_path / "blocked"}: not done by the cluster: ')
-    assert 'lost the connection to the scheduler' in errors
-    assert errors.count('\n') == 1
-    assert 'verdict: unusable' in output
-
-
-NO_DASK = f'import sys; sys.modules["distributed"] = None; {GEARKIN}'
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ('address', 'cause', 'code'),
-    [
-        ('tcp://127.0.0.1:9', 'no Dask scheduler there: Timed out', IMPATIENT),
-        ('tcp://nowhere.invalid:8786', 'no Dask scheduler there: Timed out', IMPATIENT),
-        ('quark://127.0.0.1:9', "unknown address scheme 'quark'", IMPATIENT),
-        ('nonsense', 'missing port number', IMPATIENT),
-        ('tcp://127.0.0.1:9', "is not installed: pip install 'gear_kinematics[dask]'", NO_DASK),
-    ],
-)
-def test_an_unreachable_scheduler_is_an_error_in_one_line(address, cause, code):
-    pytest.importorskip('distributed')
-    bag = BAGS / 'driver_faults'
-    done = gearkin('validate', bag, '--scheduler', address, code=code, timeout=30.0)
-    assert (done.returncode, done.stdout) == (2, '')
-    assert done.stderr.startswith(f'gearkin: {"distributed" if code == NO_DASK else address}')
-    assert cause in done.stderr
-    assert done.stderr.count('\n') == 1

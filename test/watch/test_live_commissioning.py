@@ -126,7 +126,7 @@ WITHOUT_EXTRAS = """
 import sys
 class Missing:
     def find_spec(self, name, path=None, target=None):
-        if name.split('.')[0] in ('scipy', 'matplotlib', 'plotly', 'rosbags', 'tornado', 'dask'):
+        if name.split('.')[0] in ('scipy', 'matplotlib', 'plotly', 'rosbags', 'tornado'):
             raise ModuleNotFoundError(f'No module named {name!r}', name=name)
 sys.meta_path.insert(0, Missing())
 from gear_kinematics.commands.cli import main

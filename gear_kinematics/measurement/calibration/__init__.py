@@ -5,7 +5,6 @@ The method and its sources are in docs/calibration.md.
 """
 
 from gear_kinematics.measurement.calibration.check import Judgement, judge
-from gear_kinematics.measurement.calibration.fit import fit
-from gear_kinematics.measurement.calibration.result import Fit
+from gear_kinematics.measurement.calibration.fit import Fit, fit
 
 __all__ = ['Fit', 'Judgement', 'fit', 'judge']

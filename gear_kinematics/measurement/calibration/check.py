@@ -1,8 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Checks a calibration by recordings that it was not made from."""
 
-from dataclasses import replace
-from typing import NamedTuple
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,52 +11,57 @@ from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.calibration.selection import jackknife
+from gear_kinematics.measurement.calibration.selection import (
+    NormalEquations,
+    block_bounds,
+    jackknife,
+)
 from gear_kinematics.measurement.calibration.terms import Samples
 from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.wire.cdr import SECOND
 
-_BLOCKS = 24  # blocks of successive samples from which the uncertainty of a delay is estimated
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left
 _PER_TURN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
 _MOST = 0.5  # share of the variance that makes an order what is left of the error
-_VARIES = 0.05  # scatter of the speed over the greatest one that tells a delay from a zero
 
 
-class Judgement(NamedTuple):
+@dataclass(frozen=True, eq=False, slots=True)
+class Judgement:
     """A calibration compared with a recording; arrays are (n,), of the measured angles, in rad."""
 
-    samples: Samples
-    """Less the delay, if that is clear."""
+    name: str
+    """Of the recording."""
+    holds: bool
+    """Whether the error is less with the correction, and within its interval."""
+    fits: bool
+    """Whether it is within its interval."""
+    rms_before: float
+    """rad, of the error without the correction."""
+    rms_after: float
+    """rad, of the error with it."""
+    rms_before_with_delay: float
+    """rad, with the delay left in."""
+    rms_after_with_delay: float
+    """rad, the same."""
+    delay: Estimate | None
+    """s: by how much the output's angles are late; taken out if clear; None if not known."""
+    within_interval: float
+    """Share of the samples."""
+    within_interval_uncertainty: float
+    """Expanded uncertainty (95 %) of that share."""
+    uncalibrated: float
+    """Share of samples in conditions that were not calibrated, or with an unknown history."""
+    samples: int
+    left_order: tuple[float, str] | None
+    """What is left of the error if it is mostly one order: amplitude, rad, and how often."""
+    remarks: Sequence[str]
+    output: Array
+    """Ideal output angle."""
     before: Array
     """Measured minus ideal output angle less its mean, without the delay."""
     after: Array
     """Measured minus corrected output angle less its mean, without the delay."""
-    with_delay: tuple[float, float]
-    """rms before and after with the delay left in."""
-    half_width: Array
-    """Of the interval."""
-    uncalibrated: float
-    """Share of samples in conditions that were not calibrated, or with an unknown history."""
-    delay: Estimate | None
-    """s: by how much the output's angles are late; taken out if clear; None if not known."""
-    fit: CalibrationFit
-
-    @property
-    def rms_before(self) -> float:
-        """Of the error without the correction."""
-        return float(np.std(self.before))
-
-    @property
-    def rms_after(self) -> float:
-        """Of the error with the correction."""
-        return float(np.std(self.after))
-
-    @property
-    def holds(self) -> bool:
-        """Whether the error is less with the correction, and within its interval."""
-        return self.rms_after < self.rms_before and self.fit.fits
 
 
 def judge(recording: Recording, encoders: Encoders, calibration: Calibration) -> Judgement:
@@ -88,19 +93,36 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     samples, before, after = errors(encoders)
     with_delay = float(np.std(before)), float(np.std(after))
     delay = None
-    for _ in range(_ROUNDS if encoders.timed else 0):
-        delay = _delay(samples.speed, after, delay.value if delay else 0.0)
-        shift = delay.value if delay and delay.clear else 0.0
-        samples, before, after = errors(encoders.earlier(shift) if shift else encoders)
-        if not shift:
+    for _ in range(_ROUNDS if samples.tells_delay else 0):
+        delay = _delay(samples, after, delay.value if delay else 0.0)
+        if not delay.clear:
+            samples, before, after = errors(encoders)
             break
+        samples, before, after = errors(encoders.earlier(delay.value))
     half_width = samples.encoders.at_measured(correction.half_width)
-    uncalibrated = float(np.mean(half_width > calibration.half_width))
-    fit = CalibrationFit.of(before, after, half_width, once=True)
-    return Judgement(samples, before, after, with_delay, half_width, uncalibrated, delay, fit)
+    found = CalibrationFit.of(before, after, half_width, once=True)
+    rms_before, rms_after = float(np.std(before)), float(np.std(after))
+    return Judgement(
+        recording.name,
+        rms_after < rms_before and found.fits,
+        found.fits,
+        rms_before,
+        rms_after,
+        *with_delay,
+        delay,
+        1.0 - found.outside,
+        found.outside_uncertainty,
+        float(np.mean(half_width > calibration.half_width)),
+        found.samples,
+        None if found.fits else _left_order(samples, after),
+        recording.sentences,
+        samples.output,
+        before,
+        after,
+    )
 
 
-def left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
+def _left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
     """What is left of the error if it is mostly one order: its amplitude, rad, and how often."""
     found = [(_MOST * np.var(left), 0.0, '')]
     for body, angle in (('output', samples.output), ('rotor', TURN * samples.rotor_turns)):
@@ -115,18 +137,13 @@ def left_order(samples: Samples, left: Array) -> tuple[float, str] | None:
     return (amplitude, words) if words else None
 
 
-def _delay(speed: Array, residual: Array, shift: float) -> Estimate | None:
-    """Estimate a delay, s, by least squares with the zero; None at a constant speed.
+def _delay(samples: Samples, residual: Array, shift: float) -> Estimate:
+    """Estimate a delay, s, with the zero, of which `shift` has been taken out already.
 
-    Args:
-        speed: of the output, rad/s.
-        residual: measured minus corrected output angle, rad.
-        shift: part of the delay that has been taken out already, s.
+    The residual is the measured minus the corrected output angle, rad.
     """
-    if not np.std(speed) > _VARIES * np.max(np.abs(speed)):
-        return None
-    columns = np.stack([-speed, np.ones(len(speed)), residual], axis=1)
-    sums = np.array([block.T @ block for block in np.array_split(columns, _BLOCKS)])
-    whole = sums.sum(axis=0)
-    fits = (np.linalg.lstsq(s[:2, :2], s[:2, 2], rcond=None)[0] for s in (whole, *(whole - sums)))
-    return jackknife(shift + np.array([delay for delay, _ in fits]))
+    (bounds,) = block_bounds([len(residual)])
+    columns = np.column_stack([samples.own_values(np.arange(len(residual))), residual])
+    parts = np.split(columns, bounds[1:-1])
+    equations = NormalEquations(np.array([part.T @ part for part in parts]))
+    return jackknife(shift + equations.solve([0, 1])[:, 1])

@@ -5,11 +5,9 @@ A column of a term is in the unit of the calibration file, so that a coefficient
 contains.
 """
 
-import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,15 +17,12 @@ from gear_kinematics.correction.stops import play_bounds
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
-from gear_kinematics.measurement.transmission import bodies
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import number
 
 Recorded = tuple[Recording, Encoders]
 
 _MOST = 400_000  # measured angles that are used, of all recordings; more would only take time
-_SEED = 13
-MOST_DRIFT = 16  # half waves of the drift of a recording's zero over its time
 _MOVING = 0.05  # share of the greatest speed above which the output moves
 _STROKES = 3  # strokes that tell a delay from hysteresis
 _SAME = 1e-9  # share of the radius by which states differ in rounding alone
@@ -49,7 +44,7 @@ _BODIES: Mapping[str, tuple[int, tuple[str, str]]] = {
 """Multiples that are tried, and likely causes of the first and of the higher ones."""
 _HYSTERESIS = 'play, or friction that winds up the gear'
 _TREND = 'not told by so short a travel; known over the calibrated output angles only'
-CYCLES = 2.0  # cycles of an order that a recording must contain
+_CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
 """Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""
 _KNOWN = 0.8  # share of the samples at which the state of a stop operator must be known
@@ -57,18 +52,12 @@ _LARGEST_DENOMINATOR = 2**16  # of an order; a ratio that was fitted may have a 
 
 
 def thinned(recordings: Sequence[Recorded]) -> list[Recorded]:
-    """Leave out measured angles if there are very many; the rotor's motion stays as it is.
-
-    One of each group of successive ones is chosen, at random: even steps could hide an order.
-    """
-    group = max(1, -(-sum(len(encoders.measured) for _, encoders in recordings) // _MOST))
-    random = np.random.default_rng(_SEED)
-    kept = []
-    for recording, encoders in recordings:
-        starts = np.arange(0, len(encoders.measured) - group + 1, group)
-        rows = starts + random.integers(0, group, len(starts))
-        kept.append((recording, encoders.chosen(rows)))
-    return kept
+    """Leave out measured angles if there are very many; the rotor's motion stays as it is."""
+    step = max(1, -(-sum(len(encoders.measured) for _, encoders in recordings) // _MOST))
+    return [
+        (recording, encoders.chosen(np.arange(0, len(encoders.measured), step)))
+        for recording, encoders in recordings
+    ]
 
 
 class Samples:
@@ -123,11 +112,9 @@ class Samples:
         return self._stops[radius]
 
     def own_values(self, at: Array) -> Array:
-        """Columns of the recording's own unknowns at some samples: zero, delay, drift."""
+        """Columns of the recording's own unknowns at some samples: zero and delay."""
         speed = self.speed[at] if self.tells_delay else np.zeros(len(at))
-        time = math.pi * self.seconds[at] / self.seconds[-1]
-        waves = np.cos(np.multiply.outer(time, np.arange(1, MOST_DRIFT + 1)))
-        return np.column_stack([np.ones(len(at)), -speed, waves])
+        return np.column_stack([np.ones(len(at)), -speed])
 
 
 class Term(NamedTuple):
@@ -144,22 +131,14 @@ class Term(NamedTuple):
     """Whether it is known over the recorded output angles only."""
 
     @property
-    def cycles(self) -> Fraction:
-        """Of an order: per turn of the rotor; 0 of another term."""
-        return self.entry.cycles if isinstance(self.entry, Order) else Fraction(0)
+    def cycles(self) -> Fraction | None:
+        """Of an order: per turn of the rotor."""
+        return self.entry.cycles if isinstance(self.entry, Order) else None
 
     @property
     def coefficients(self) -> tuple[str, ...]:
         """Names of its coefficients, one for each column."""
         return ('cos', 'sin') if isinstance(self.entry, Order) else ('coefficient',)
-
-    def fitted(self, coefficients: Sequence[float]) -> Order | Stop | Compliance:
-        """Its entry with coefficients."""
-        entry: Any = self.entry
-        fitted: Order | Stop | Compliance = replace(
-            entry, **dict(zip(self.coefficients, coefficients, strict=True))
-        )
-        return fitted
 
     def values(self, samples: Samples, at: Array) -> Array:
         """Its columns at some samples, (at, columns); of orders exact after many turns."""
@@ -180,22 +159,17 @@ def output_cycles(ratio: Fraction) -> Fraction:
     return (1 / abs(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
 
 
-def _order(body: str, multiple: int, unit: Fraction) -> Term:
-    most, causes = _BODIES[body]
-    cause = causes[multiple > 1] if multiple <= most else ''
-    return _named(f'{body} × {multiple}', multiple * unit, cause)
+def bodies(output: Fraction, mechanism: Mechanism | None) -> dict[str, Fraction]:
+    """The bodies of a gear, and the cycles per turn of the rotor with which they repeat.
 
-
-def _named(name: str, cycles: Fraction, cause: str, *, is_trend: bool = False) -> Term:
-    return Term(name, cause, Order(name, cycles, 0.0, 0.0), is_trend=is_trend)
-
-
-def order_of(cycles: Fraction, ratio: Fraction, mechanism: Mechanism | None) -> Term:
-    """Name an order."""
-    for body, unit in bodies(output_cycles(ratio), mechanism).items():
-        if (multiple := cycles / unit).denominator == 1:
-            return _order(body, int(multiple), unit)
-    return _named(f'rotor × {cycles}', cycles, 'another shaft, or a bearing')
+    In a turn of the rotor, the output turns 1/abs(i) times, which is `output`. In a mechanism, the
+    cam turns 1 + 1/abs(i) times against the satellite, as do its mesh and the Oldham coupling, and
+    teeth mesh zk times.
+    """
+    cycles = {'rotor': Fraction(1), 'output': output}
+    if mechanism:
+        cycles = {'teeth': Fraction(mechanism.ring_teeth), **cycles, 'satellite': 1 + output}
+    return cycles
 
 
 def known_orders(
@@ -212,18 +186,22 @@ def known_orders(
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
     found: dict[Fraction, Term] = {}
     for body, unit in bodies(output_cycles(ratio), mechanism).items():
-        for multiple in range(1, _BODIES[body][0] + 1):
-            order, cycles = _order(body, multiple, unit), multiple * unit
+        most, causes = _BODIES[body]
+        for multiple in range(1, most + 1):
+            name, cycles = f'{body} × {multiple}', multiple * unit
             held = travel * float(cycles)
-            if held >= CYCLES:
-                found.setdefault(cycles, order)
+            if held >= _CYCLES:
+                order = Order(name, cycles, 0.0, 0.0)
+                found.setdefault(cycles, Term(name, causes[multiple > 1], order))
                 continue
-            refused[order.name] = f'the longest travel holds {held:.2g} cycles, less than 2'
+            refused[name] = f'the longest travel holds {held:.2g} cycles, less than 2'
             # Higher multiples do not differ from the first over a part of its cycle, and a whole
             # number of cycles in a turn of the rotor is not tied to the output's angle.
             few = body == 'output' and multiple <= 1.0 + travel * float(unit)
             if few and cycles.denominator > 1:
-                found[cycles] = _named(f'trend × {multiple}', cycles, _TREND, is_trend=True)
+                name = f'trend × {multiple}'
+                trend = Order(name, cycles, 0.0, 0.0)
+                found[cycles] = Term(name, _TREND, trend, is_trend=True)
     return sorted(found.values(), key=lambda term: not term.is_trend)
 
 

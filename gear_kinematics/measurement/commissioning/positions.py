@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.encoder_step import Array, Source, Step
+from gear_kinematics.measurement.encoder_step import Array, Step
 from gear_kinematics.report.document import counted
 
 _TURNS = {'rad': TURN, 'degrees': 360.0, 'turns': 1.0}
@@ -92,7 +92,7 @@ def positions_of(values: Array, step: Step) -> Positions:
     if whole:
         return Positions('counts', None, 'whole numbers', 0, values)
     for unit, turn in _TURNS.items():
-        bits = math.log2(turn / step.size) if step.source is Source.FOUND else 0.0
+        bits = math.log2(turn / step.size) if step.seen else 0.0
         if round(bits) >= _MIN_BITS and abs(bits - round(bits)) < _POWER:
             seen = f'steps of 1/2^{round(bits)} turn'
             return Positions(unit, turn, seen, 0, values * (TURN / turn))

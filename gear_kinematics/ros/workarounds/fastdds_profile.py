@@ -11,7 +11,6 @@ from rclpy.utilities import get_rmw_implementation_identifier
 
 from gear_kinematics.share import share_directory
 
-_SWITCH = 'GEAR_KINEMATICS_FASTDDS_PROFILE'
 _FILE = 'FASTRTPS_DEFAULT_PROFILES_FILE'
 _OTHER_FILE = 'FASTDDS_DEFAULT_PROFILES_FILE'  # of Fast DDS 3
 _IN_CURRENT_FOLDER = 'DEFAULT_FASTRTPS_PROFILES.xml'
@@ -19,7 +18,7 @@ _SKIP = 'SKIP_DEFAULT_XML_FILE'
 
 
 def use_profile() -> None:
-    """Let Fast DDS use config/fastdds.xml, unless somebody has chosen another profile, or none.
+    """Let Fast DDS use config/fastdds.xml, unless somebody has chosen another profile.
 
     Fast DDS reads the environment when the first participant of a process is created. Without a
     file that is named there, it reads one in the current folder.
@@ -27,6 +26,5 @@ def use_profile() -> None:
     chosen = {_FILE, _OTHER_FILE} & os.environ.keys() or (
         os.environ.get(_SKIP) != '1' and Path(_IN_CURRENT_FOLDER).exists()
     )
-    off = os.environ.get(_SWITCH) == 'off'
-    if not (chosen or off) and get_rmw_implementation_identifier().startswith('rmw_fastrtps'):
+    if not chosen and get_rmw_implementation_identifier().startswith('rmw_fastrtps'):
         os.environ[_FILE] = str(share_directory() / 'config' / 'fastdds.xml')

@@ -1,0 +1,219 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""What differs between states of a gear, by recordings at one torque, and how surely.
+
+Figures are positive and scatter in proportion to their values, so that logarithms are compared:
+Student's test, with one scatter for all groups.
+"""
+
+import fnmatch
+import math
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from os.path import commonprefix
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import stdtr
+
+from gear_kinematics.correction.uncertainty import COVERAGE, Component, Estimate, combined
+from gear_kinematics.measurement.figures import STIFFNESS_SHARES, gear_figures
+from gear_kinematics.measurement.loops import ALIKE
+from gear_kinematics.measurement.lost_motion import LostMotion
+from gear_kinematics.measurement.measured import HYSTERESIS, Measured
+from gear_kinematics.report.document import number
+
+SIGNIFICANCE = 1.0 - COVERAGE
+"""Probability of a false alarm in each of the two families of `judged`."""
+
+
+class Group(NamedTuple):
+    """Recordings of one state of the gear."""
+
+    name: str
+    members: tuple[int, ...]
+    """Numbers of the recordings."""
+
+
+def single(names: Sequence[str]) -> list[Group]:
+    """Return a group for each recording, named without the ending that all names share."""
+    end = commonprefix([name[::-1] for name in names])[::-1]  # noqa: RUF071, of characters
+    return [Group(name.removesuffix(end) or name, (k,)) for k, name in enumerate(names)]
+
+
+def grouped(names: Sequence[str], patterns: Sequence[str]) -> list[Group]:
+    """Group recordings by globs, of which the first that matches a name counts.
+
+    Raises:
+        ValueError: if there are not at least two groups.
+    """
+    firsts = [next((p for p in patterns if fnmatch.fnmatchcase(n, p)), None) for n in names]
+    groups = [
+        Group(pattern, tuple(k for k, first in enumerate(firsts) if first == pattern))
+        for pattern in dict.fromkeys(first for first in firsts if first)
+    ]
+    if len(groups) < 2:  # noqa: PLR2004, nothing to compare
+        only = f'only the group {groups[0].name}' if groups else 'no recording that matches'
+        raise ValueError(f'group {", ".join(patterns)}: there is {only}')
+    return groups
+
+
+# Figures
+
+
+class Quantity(NamedTuple):
+    """One figure of several recordings."""
+
+    name: str
+    unit: str
+    """SI."""
+    values: tuple[Estimate | None, ...]
+    """One per recording."""
+
+
+def at_common_torque(reports: Sequence[LostMotion]) -> list[LostMotion]:
+    """Compute the figures of ramps at the least of their rated torques and amplitudes, N·m."""
+    known = [own for report in reports if (own := report.figures)]
+    if len(known) < 2:  # noqa: PLR2004, nothing to compare
+        return [*reports]
+    torque = min(min(own.rated_torque, own.ramps[-1].amplitude) for own in known)
+    return [
+        replace(report, figures=gear_figures(own.ramps, own.angle_step, torque))
+        if (own := report.figures)
+        else report
+        for report in reports
+    ]
+
+
+def quantities(reports: Sequence[LostMotion]) -> tuple[list[Quantity], list[str]]:
+    """Choose the figures of recordings, which `at_common_torque` returns, for a comparison.
+
+    Returns:
+        Those of at least two recordings; and the names of recordings whose hysteresis and friction
+        are left out, as their smallest ramps are not of the amplitude of the others.
+    """
+    smallest = [own.ramps[0].amplitude for report in reports if (own := report.figures)]
+    most = max(smallest, default=0.0) / ALIKE
+    units: dict[str, str] = {}
+    values: dict[str, dict[int, Estimate]] = {}
+    unlike = []
+    for k, report in enumerate(reports):
+        alike = not report.figures or report.figures.ramps[0].amplitude >= most
+        if not alike:
+            unlike.append(report.name)
+        for figure in _figures(report, alike=alike):
+            if isinstance(figure.value, Estimate):
+                units[figure.name] = figure.unit
+                values.setdefault(figure.name, {})[k] = figure.value
+    found = [
+        Quantity(name, unit, tuple(values[name].get(k) for k in range(len(reports))))
+        for name, unit in units.items()
+        if len(values[name]) > 1
+    ]
+    return found, unlike
+
+
+def _figures(report: LostMotion, *, alike: bool) -> Iterator[Measured]:
+    if found := report.figures:
+        if alike:
+            yield Measured(HYSTERESIS, 'rad', found.hysteresis)
+            yield Measured('friction', 'N·m', found.friction)
+        yield Measured('lost motion', 'rad', found.lost_motion)
+        corner = STIFFNESS_SHARES[-1] * found.rated_torque
+        for own in found.stiffness:
+            if own.low >= corner:
+                ends = f'{number(own.low)} to {number(found.rated_torque)} N·m'
+                yield Measured(f'stiffness {ends}', 'N·m/rad', own.slope)
+    if motion := report.transmission:
+        yield Measured('lost motion on reversals', 'rad', motion.lost_motion)
+        yield Measured('transmission accuracy', 'rad', motion.forward)
+
+
+# Changes
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """How a figure of one group differs from that of the first."""
+
+    quantity: Quantity
+    first: str
+    second: str
+    before: float
+    """Geometric mean, SI."""
+    after: float
+    interval: tuple[float, ...]
+    """Limits of after / before, with a probability of `COVERAGE`; none if they are unknown."""
+    probability: float | None
+    """Of as much by chance; None if unknown."""
+    repeated: bool
+    """Whether these are by the scatter between recordings, else by that within them."""
+    significant: bool = False
+    """Among all changes of its family."""
+
+    @property
+    def judgement(self) -> str:
+        """What is said of it."""
+        if self.significant:
+            return 'significant'
+        return 'not judged' if self.probability is None else 'not significant'
+
+
+def changes_of(quantity: Quantity, groups: Sequence[Group]) -> list[Change]:
+    """Compare a figure of groups with that of the first, not yet judging changes together."""
+    known = [
+        [v for k in group.members if (v := quantity.values[k]) and v.value > 0.0]
+        for group in groups
+    ]
+    logs = [np.log([own.value for own in values]) for values in known]
+    degrees = sum(len(values) - 1 for values in known if values)
+    squares = sum(float(np.sum((own - own.mean()) ** 2)) for own in logs if len(own))
+
+    def scatter(values: Sequence[Estimate]) -> Component | None:
+        """Of the mean of a group's logarithms; None if it is unknown."""
+        if degrees:
+            return Component(math.sqrt(squares / degrees / len(values)), degrees)
+        (value,) = values
+        if value.standard is None:
+            return None
+        return Component(value.standard / value.value, value.degrees_of_freedom)
+
+    changes = []
+    for group, values, own in zip(groups[1:], known[1:], logs[1:], strict=True):
+        if not (known[0] and values):
+            continue
+        parts = [part for part in (scatter(known[0]), scatter(values)) if part]
+        ratio = float(own.mean() - logs[0].mean())
+        change = Estimate(ratio, None, 0.0, 1)
+        if len(parts) == 2:  # noqa: PLR2004, of both
+            standard, free = combined(parts)
+            change = Estimate(ratio, standard, degrees or free, 1 + degrees)
+        before, half = math.exp(logs[0].mean()), change.uncertainty
+        ends = () if half is None else (math.exp(ratio - half), math.exp(ratio + half))
+        names, chance = (groups[0].name, group.name), _chance(change)
+        after = before * math.exp(ratio)
+        changes.append(Change(quantity, *names, before, after, ends, chance, degrees > 0))
+    return changes
+
+
+def _chance(estimate: Estimate) -> float | None:
+    """Probability of a value as far from zero if the quantity is zero; None if unknown."""
+    if estimate.standard is None:
+        return None
+    if not estimate.standard:
+        return float(estimate.value == 0.0)
+    degrees = np.floor(estimate.degrees_of_freedom + 1e-6)
+    return float(2.0 * stdtr(degrees, -abs(estimate.value / estimate.standard)))
+
+
+def judged(changes: Sequence[Change]) -> list[Change]:
+    """Judge changes together, by Bonferroni: those of the hysteresis, and apart all others."""
+    tested = [change for change in changes if change.probability is not None]
+    count = Counter(change.quantity.name == HYSTERESIS for change in tested)
+    return [
+        replace(change, significant=change.probability <= SIGNIFICANCE / count[first])
+        if change.probability is not None
+        else change
+        for change in changes
+        for first in [change.quantity.name == HYSTERESIS]
+    ]

@@ -1,0 +1,46 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""A parameter of the node: its type, meaning and bounds, and what is wrong with a value."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """Type, meaning and bounds of a parameter."""
+
+    description: str
+    minimum: float | None = None
+    maximum: float | None = None
+    step: int = 0
+    choices: tuple[str, ...] = ()
+    read_only: bool = False
+    check: Callable[[Any], object] = bool
+    """Raises ValueError for other faults."""
+    kind: type = float
+
+    def fault(self, name: str, value: Any) -> str | None:
+        """Return the fault of a value, or None."""
+        kind = type(value)
+        if kind is not self.kind:
+            return f'{name} must be of type {self.kind.__name__}, not {value!r}'
+        if isinstance(value, list) and not all(isinstance(item, str) for item in value):
+            return f'{name} must be a list of strings, not {value!r}'
+        if self.minimum is not None and self.maximum is not None:
+            inside = self.minimum <= value <= self.maximum  # NaN is not
+            if not inside or (self.step and (value - self.minimum) % self.step):
+                steps = f' in steps of {self.step}' if self.step else ''
+                bounds = f'between {self.minimum} and {self.maximum}{steps}'
+                return f'{name} must be {bounds}, not {value!r}'
+        return self.other_fault(name, value)
+
+    def other_fault(self, name: str, value: Any) -> str | None:
+        """Return a fault of a value within the type and the bounds, which ROS checks, or None."""
+        if self.choices and value not in self.choices:
+            return f'{name} must be one of {", ".join(self.choices)}, not {value!r}'
+        try:
+            self.check(value)
+        except ValueError as error:
+            return f'{name}: {error}'
+        return None
