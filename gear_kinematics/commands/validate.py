@@ -21,12 +21,6 @@ _EXIT_CODES = {
     Verdict.FAIL: ExitCode.FAILED,
     Verdict.UNUSABLE: ExitCode.UNUSABLE,
 }
-_OF = {
-    'angle': 'angles and orientations',
-    'position': 'the positions of bodies',
-    'velocity': 'the velocity of the output',
-    'effort': 'the effort of the output',
-}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             type=arguments.between(0.0),
             default=Tolerances().of(unit),
             metavar=unit.upper(),
-            help=f'greatest accepted error of {_OF[quantity]} (default: %(default)g)',
+            help=f'greatest accepted error of each {quantity} (default: %(default)g)',
         )
     limits.add_argument(
         '--strict',

@@ -85,25 +85,27 @@ def faults(report: BagReport) -> Iterator[Finding]:
                 yield Finding(text, topic=topic.topic, stamp=stamp, when=_FIRST, missing=True)
         yield from (replace(fault, topic=topic.topic) for fault in topic.faults)
         for field in topic.fields:
-            yield from _field_faults(field_name(topic, field), field)
+            name = field_name(topic, field)
+            if field.is_beyond:
+                text = _beyond(field)
+                yield Finding(text, topic=name, stamp=field.worst_stamp, when='at')
+            for count, fault, stamp in (
+                (field.non_finite, 'not finite', field.first_non_finite),
+                (field.absent, 'in input or output only', field.first_absent),
+            ):
+                if count:
+                    text = f'{counted(count, "value")} {fault}'
+                    yield Finding(text, topic=name, stamp=stamp, when=_FIRST)
 
 
-def _field_faults(name: str, field: FieldReport) -> Iterator[Finding]:
-    if field.is_beyond:
-        quantity = f' of the {QUANTITIES[field.unit]}' if field.unit in QUANTITIES else ''
-        rotor_angle = angle(field.worst_rotor_angle)
-        where = f' at rotor angle {rotor_angle} rad' if rotor_angle else ''
-        text = (
-            f'error {number(field.max_error)} {field.unit}{where} exceeds the tolerance'
-            f'{quantity}, {number(field.tolerance)} {field.unit}'
-        )
-        yield Finding(text, topic=name, stamp=field.worst_stamp, when='at')
-    if field.non_finite:
-        text = f'{counted(field.non_finite, "value")} not finite'
-        yield Finding(text, topic=name, stamp=field.first_non_finite, when=_FIRST)
-    if field.absent:
-        text = f'{counted(field.absent, "sample")} with the field in input or output only'
-        yield Finding(text, topic=name, stamp=field.first_absent, when=_FIRST)
+def _beyond(field: FieldReport) -> str:
+    quantity = f' of the {QUANTITIES[field.unit]}' if field.unit in QUANTITIES else ''
+    angle = field.worst_rotor_angle
+    where = '' if angle is None else f' at rotor angle {number(angle, 9)} rad'
+    return (
+        f'error {number(field.max_error)} {field.unit}{where} exceeds the tolerance{quantity}, '
+        f'{number(field.tolerance)} {field.unit}'
+    )
 
 
 def _left_out(report: BagReport) -> Iterator[Finding]:
@@ -115,11 +117,6 @@ def _left_out(report: BagReport) -> Iterator[Finding]:
     ]
     if left_out:
         yield Finding(f'not judged, as caused by the recorder: {", ".join(left_out)}')
-
-
-def angle(value: float | None) -> str:
-    """Write a rotor angle; an unknown one is empty."""
-    return '' if value is None else number(value, 9)
 
 
 def field_name(topic: TopicReport, field: FieldReport) -> str:

@@ -125,8 +125,8 @@ def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
 class OutputTopic:
     """One output topic: matches its messages, keeps late ones for a batch, collects faults."""
 
-    _layout: Callable[[bytes], Layout]
-    """Returns the layout of a message."""
+    layout: Callable[[bytes], Layout]
+    """Returns the layout of a message, of which the last text is the label."""
 
     def __init__(
         self, name: str, label: str, expectation: Expectation, *errors: FieldErrors
@@ -168,14 +168,6 @@ class OutputTopic:
         for errors, field in zip(self.errors, fields, strict=True):
             errors.update(field, samples['stamp'], rotor_angle)
         self.series.update(samples['stamp'], rotor_angle, *fields)
-
-    def label_in(self, message: bytes) -> str:
-        """Return what a message has in the place of the label.
-
-        Raises:
-            MalformedMessageError: if it cannot be decoded.
-        """
-        return self._layout(message).texts[-1].decode(errors='replace')
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         """Decode messages for `_compare`; return their stamps and which ones are malformed."""

@@ -39,7 +39,7 @@ class JointStateTopic(OutputTopic):
 
     units: ClassVar[Mapping[str, str]]
     """Units of the fields by their names."""
-    _layout = staticmethod(joint_state_layout)
+    layout = staticmethod(joint_state_layout)
 
     def __init__(self, name: str, joint: str, expectation: Expectation) -> None:
         errors = (
@@ -139,7 +139,7 @@ class OutputState(JointStateTopic):
 class BodyPoses(OutputTopic):
     """body_poses."""
 
-    _layout = staticmethod(pose_array_layout)
+    layout = staticmethod(pose_array_layout)
 
     def __init__(
         self, name: str, frame_id: str, mechanism: Mechanism, expectation: Expectation

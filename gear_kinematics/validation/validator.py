@@ -40,7 +40,7 @@ from gear_kinematics.wire.cdr import MalformedMessageError
 
 _FRAME = 'stator'
 _TOPICS = Topics()
-_FEW = 64  # outputs that show whether an offset is worth a closer look
+_FEW = 64  # outputs that show the zero, which can change in a batch
 _NOT_CORRECTED: Mapping[str, str] = MappingProxyType({})
 _Batch = Mapping[str, TopicMessages]
 """Messages by the names of their topics."""
@@ -128,7 +128,7 @@ class Validator:
             error: damage at which reading ended, if any.
         """
         for _ in range(2):  # late messages wait for one more batch
-            self._take(self._sorted(()))
+            self.feed([()])
         self._drop(len(self._window))
         for group, _ in self._groups:
             group.close()
@@ -239,7 +239,8 @@ class Validator:
         """Adopt the frame prefix of the first output, if any."""
         for output in filter(None, (self.poses, self.output)):
             with suppress(MalformedMessageError, IndexError):
-                label = output.label_in(batch[output.name].data[0])
+                first = batch[output.name].data[0]
+                label = output.layout(first).texts[-1].decode(errors='replace')
                 if label.endswith(output.label):
                     self._prefix_open = False
                     if prefix := label.removesuffix(output.label):
@@ -256,14 +257,11 @@ class Validator:
         It moves the poses too: if there are some, and they agree better without that, only the
         output angle has an offset, which is a fault.
         """
-        rotor = self._topics.rotor
-        few = (
-            {  # as it can change in the batch
-                topic: TopicMessages(messages.data[:_FEW], messages.received[:_FEW])
-                for topic, messages in batch.items()
-            }
-            | {rotor: batch[rotor]}
-        )
+        few = {
+            topic: TopicMessages(messages.data[:_FEW], messages.received[:_FEW])
+            for topic, messages in batch.items()
+        }
+        few[self._topics.rotor] = batch[self._topics.rotor]
         trial = self._trial(few, self._parameters)
         self._zero_open = not trial.output.fit.count
         offset = trial.output.fit.offset(self._task.tolerances.angle)

@@ -78,7 +78,7 @@ def test_failing_parts_fail_with_a_message():
         ('/output_state velocity', 'failure: 5 values not finite'),
         (
             '/output_state effort',
-            'failure: 1 sample with the field in input or output only',
+            'failure: 1 value in input or output only',
         ),
         ('/body_poses', 'failure: no message could be compared'),
     ]

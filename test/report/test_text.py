@@ -61,7 +61,7 @@ def test_every_fault_is_a_sentence_that_names_and_locates_it():
             'tolerance of the angle, 1e-9 rad, at stamp 1700000002623456789'
         ),
         '/output_state velocity: 5 values not finite',
-        '/output_state effort: 1 sample with the field in input or output only',
+        '/output_state effort: 1 value in input or output only',
         '/output_state: 11 messages missing, the first at stamp 1700000001123456789',
         '/output_state: 8 messages too many, the first at stamp 1700000001123456790',
         '/output_state: 1 message out of order',
