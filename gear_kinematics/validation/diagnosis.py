@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_values
-from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
+from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
@@ -184,25 +183,6 @@ class FactorFit:
             scatter = float(yy - factor * xy)
         constant = math.isfinite(factor + scatter) and scatter <= _MAX_SCATTER**2 * yy
         return factor if constant and abs(factor - 1.0) > _MAX_SCATTER else None
-
-
-def describe_factor(field: str, factor: float, ratio: GearRatio) -> str:
-    """Say by which factor, recorded / expected, velocity or effort are wrong, and why."""
-    of_rotor = float(ratio) if field == 'velocity' else 1.0 / float(ratio)
-    reasons = {
-        -1.0: 'the sign is flipped',
-        of_rotor: 'it is that of the rotor',
-        -of_rotor: 'it is that of the rotor, with the sign flipped',
-    }
-    if field == 'velocity':
-        reasons |= {
-            math.degrees(1.0): 'it is in degrees per second',
-            60.0 / TURN: 'it is in revolutions per minute',
-            1.0 / TURN: 'it is in revolutions per second',
-        }
-    near = (text for known, text in reasons.items() if math.isclose(factor, known, rel_tol=1e-4))
-    reason = next(near, '')
-    return f'the recorded {field} is {factor:.6g} times the expected one{reason and ": "}{reason}'
 
 
 class PoseOrder:

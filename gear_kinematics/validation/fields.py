@@ -99,60 +99,51 @@ class FieldErrors:
         )
 
 
-class _Rows(NamedTuple):
-    """Errors of all fields of compared messages."""
-
-    stamp: Array
-    rotor_angle: Array
-    error: Array
-    """(n, fields)."""
-
-
 class SeriesRecorder:
     """Keeps the worst error of each field in each interval of messages."""
 
     def __init__(self, fields: Sequence[FieldErrors]) -> None:
         """Start without samples of these fields."""
         self._fields = fields
-        self._kept: list[_Rows] = []
+        self._start: int | None = None  # stamp of the first message, ns
+        self._kept = np.zeros((0, 2 + len(fields)))
+        """Times since then, s, rotor angles, rad, and errors."""
         self._interval = 1
 
     def update(self, stamp: NDArray[np.int64], rotor_angle: Array, *fields: FieldSamples) -> None:
         """Add compared messages (n,): stamps, ns, rotor angles, rad, and their fields."""
         if not len(stamp):
             return
-        error = np.column_stack([field.error for field in fields])
-        self._kept.append(self._thinned(_Rows(stamp, rotor_angle, error), self._interval))
-        while sum(len(rows.stamp) for rows in self._kept) > _MAX_SAMPLES:
-            self._kept = [self._thinned(_joined(self._kept), 2)]
+        self._start = int(stamp[0]) if self._start is None else self._start
+        time = (stamp - self._start) / SECOND
+        rows = np.column_stack([time, rotor_angle, *(field.error for field in fields)])
+        self._kept = np.concatenate([self._kept, self._thinned(rows, self._interval)])
+        while len(self._kept) > _MAX_SAMPLES:
+            self._kept = self._thinned(self._kept, 2)
             self._interval *= 2
 
     def series(self, topic: str, start: int) -> Series | None:
         """Return the record, with the time 0 at a stamp, ns; None if nothing was compared."""
-        if not self._kept:
+        if self._start is None:
             return None
-        rows = _joined(self._kept)
-        errors = {
+        time, rotor_angle, *errors = self._kept.T
+        time = time + (self._start - start) / SECOND
+        compared = {
             field.name: error.tolist()
-            for field, error in zip(self._fields, rows.error.T, strict=True)
+            for field, error in zip(self._fields, errors, strict=True)
             if not np.isnan(error).all()
         }
-        time = (rows.stamp - start) / SECOND
-        return Series(topic, time.tolist(), rows.rotor_angle.tolist(), errors)
+        return Series(topic, time.tolist(), rotor_angle.tolist(), compared)
 
-    def _thinned(self, rows: _Rows, interval: int) -> _Rows:
+    def _thinned(self, rows: Array, interval: int) -> Array:
         """Keep the moment at which most of a tolerance was used, and the worst of each field."""
         tolerance = [max(field.tolerance, sys.float_info.min) for field in self._fields]
         # Errors of absent values are less than any other.
-        size = np.where(np.isnan(rows.error), -1.0, np.abs(rows.error))
+        size = np.where(np.isnan(rows[:, 2:]), -1.0, np.abs(rows[:, 2:]))
         share = (size / tolerance).max(axis=1, keepdims=True)
         moment = _greatest(share, interval)[:, 0]
-        error = np.take_along_axis(rows.error, _greatest(size, interval), axis=0)
-        return _Rows(rows.stamp[moment], rows.rotor_angle[moment], error)
-
-
-def _joined(kept: Sequence[_Rows]) -> _Rows:
-    return _Rows(*map(np.concatenate, zip(*kept, strict=True)))
+        error = np.take_along_axis(rows[:, 2:], _greatest(size, interval), axis=0)
+        return np.column_stack([rows[moment, :2], error])
 
 
 def _greatest(size: Array, interval: int) -> Array:

@@ -106,8 +106,6 @@ _SENTENCES = {
     'most {rotor.max_speed:.4g} rad/s',
     'zero_stamps': '{rotor.zero_stamps} messages of {rotor.topic} have no stamp: the node stamped '
     'their outputs itself, and they cannot be matched',
-    'unnormalised_stamps': '{rotor.unnormalised_stamps} stamps of {rotor.topic} have a second or '
-    'more of nanoseconds: the node stamps outputs with the same time, normalised',
 }
 """Sentences by the names of the counts in `InputReport`."""
 

@@ -13,7 +13,6 @@ from gear_kinematics.validation.diagnosis import (
     AngleFit,
     FactorFit,
     PoseOrder,
-    describe_factor,
     diagnose,
 )
 from gear_kinematics.validation.fields import FieldErrors, FieldSamples
@@ -133,7 +132,8 @@ class OutputState(JointStateTopic):
             return
         for field, fit in self._factors.items():
             if (factor := fit.factor()) is not None:
-                yield Finding(describe_factor(field, factor, self._gear.gear_ratio), cause=True)
+                text = f'the recorded {field} is {factor:.6g} times the expected one'
+                yield Finding(text, cause=True)
 
 
 class BodyPoses(OutputTopic):

@@ -307,11 +307,6 @@ def swap(one: int, other: int):
     return edit
 
 
-def unnormalise(message) -> None:
-    message.header.stamp.sec -= 1
-    message.header.stamp.nanosec += SECOND
-
-
 @pytest.mark.parametrize(
     ('topic', 'edit', 'text'),
     [
@@ -346,20 +341,12 @@ def unnormalise(message) -> None:
                 'and they cannot be matched'
             ),
         ),
-        (
-            ROTOR,
-            unnormalise,
-            (
-                '1 stamps of /rotor_state have a second or more of nanoseconds: the node stamps '
-                'outputs with the same time, normalised'
-            ),
-        ),
     ],
 )
 def test_what_is_wrong_with_one_message_is_named(recorded, config, topic, edit, text):
     changed, stamp = change_one(recorded, topic, edit)
     report = validate(changed, config)
-    assert report.passed == (edit is unnormalise)
+    assert not report.passed
     received = recorded[index_of(recorded, topic)][1]
     time = (stamp - report.rotor.first_stamp) / SECOND
     text = text.format(time=time, received=received)
@@ -393,20 +380,8 @@ def scale(field: str, factor: float):
     [
         (OUTPUT, scale('position', -1.0), 'the sign is flipped: the recorded output turns'),
         (OUTPUT, scale('position', math.pi), f'the recorded ratio is {-19.0 / math.pi:.8f}'),
-        (
-            OUTPUT,
-            scale('velocity', 180.0 / math.pi),
-            '57.2958 times the expected one: it is in deg',
-        ),
-        (
-            OUTPUT,
-            scale('velocity', 30.0 / math.pi),
-            '9.5493 times the expected one: it is in rev',
-        ),
-        (OUTPUT, scale('velocity', -19.0), '-19 times the expected one: it is that of the rotor'),
-        (OUTPUT, scale('effort', 1.0 / 19.0), ': it is that of the rotor, with the sign flipped'),
-        (OUTPUT, scale('effort', -1.0), 'recorded effort is -1 times the expected one: the sign'),
-        (OUTPUT, scale('effort', 1.25), 'the recorded effort is 1.25 times the expected one'),
+        (OUTPUT, scale('velocity', 180.0 / math.pi), 'velocity is 57.2958 times the expected one'),
+        (OUTPUT, scale('effort', -1.0), 'the recorded effort is -1 times the expected one'),
         (POSES, swap(1, 2), 'another order: satellite_a, oldham_a, satellite_b, oldham_b'),
     ],
 )
