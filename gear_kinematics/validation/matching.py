@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics import Gear, MotionState
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import counted
 from gear_kinematics.validation.count_changes import CountChanges
 from gear_kinematics.validation.fields import (
@@ -122,8 +123,16 @@ def _alike(stamp: Array | int, received: Array | int, window: Array) -> Array:
     return np.asarray((stamp == window['stamp']) & (window['received'] - CLOCK_RESET <= received))
 
 
+def rotor_angle(samples: Array) -> Array:
+    """The rotor angle of samples, (n,), rad."""
+    return np.asarray(TURN * samples['turns'] + samples['angle'])
+
+
 class OutputTopic:
-    """One output topic: matches its messages, keeps late ones for a batch, collects faults."""
+    """One output topic: matches its messages, keeps late ones for a batch, collects faults.
+
+    A class for each type of message, or topic, decodes its messages and compares their fields.
+    """
 
     layout: Callable[[bytes], Layout]
     """Returns the layout of a message, of which the last text is the label."""
@@ -164,17 +173,18 @@ class OutputTopic:
         self.matcher.extra.add(stamps[given_up[~lacking]])
         samples = window.take(index[found])  # faster than by an index
         self._changes.move(samples)
-        rotor_angle, fields = self._compare(usable[found], samples)
+        fields = self._compare(usable[found], samples)
+        angle = rotor_angle(samples)
         for errors, field in zip(self.errors, fields, strict=True):
-            errors.update(field, samples['stamp'], rotor_angle)
-        self.series.update(samples['stamp'], rotor_angle, *fields)
+            errors.update(field, samples['stamp'], angle)
+        self.series.update(samples['stamp'], angle, *fields)
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         """Decode messages for `_compare`; return their stamps and which ones are malformed."""
         raise NotImplementedError
 
-    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
-        """Compare decoded messages with their samples; return rotor angles, rad, and fields."""
+    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+        """Compare decoded messages with their samples; return the fields of `errors`."""
         raise NotImplementedError
 
     def causes(self) -> Iterator[Finding]:

@@ -16,7 +16,7 @@ from gear_kinematics.validation.diagnosis import (
     diagnose,
 )
 from gear_kinematics.validation.fields import FieldErrors, FieldSamples
-from gear_kinematics.validation.matching import Expectation, OutputTopic
+from gear_kinematics.validation.matching import Expectation, OutputTopic, rotor_angle
 from gear_kinematics.validation.report import Finding
 from gear_kinematics.wire.batches import (
     FIELDS,
@@ -51,7 +51,7 @@ class JointStateTopic(OutputTopic):
         self._states = decode_joint_states(messages, self.label)
         return self._states.stamp, self._states.malformed
 
-    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
+    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         states = self._states
         self._faults[f'no joint {self.label!r}'].add(samples['stamp'][~states.joint_found[rows]])
         recorded = states.values[rows, : len(self.units)]
@@ -60,7 +60,7 @@ class JointStateTopic(OutputTopic):
         expected = np.where(np.isfinite(recorded), np.clip(recorded, least, most), least)
         wanted, there = ~np.isnan(expected), states.present[rows, : len(self.units)]
         error = np.where(wanted & there, finite_or_infinite(recorded - expected), np.nan)
-        fields = [
+        return [
             FieldSamples(
                 error[:, k],
                 np.flatnonzero(wanted[:, k] != there[:, k]),
@@ -69,7 +69,6 @@ class JointStateTopic(OutputTopic):
             )
             for k in range(len(self.units))
         ]
-        return _rotor_angle(samples), fields
 
     def _expected(self, samples: Array) -> Sequence[Bounds]:
         """The least and the greatest value of each field; NaN where it is absent."""
@@ -82,10 +81,6 @@ class JointStateTopic(OutputTopic):
             return self._solver(self._gear, angle, rotor_turns=turns).output_angle
         output_turns, rest = self._gear.output_angle(turns, angle, np)
         return np.asarray(TURN * output_turns + rest)
-
-
-def _rotor_angle(samples: Array) -> Array:
-    return np.asarray(TURN * samples['turns'] + samples['angle'])
 
 
 def finite_or_infinite(error: Array) -> Array:
@@ -109,10 +104,10 @@ class OutputState(JointStateTopic):
         velocity, effort = ratio.output_rate(samples['velocity']), float(ratio) * samples['effort']
         return (angle, angle), (velocity, velocity), (effort, effort)
 
-    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
-        rotor_angle, (position, *others) = super()._compare(rows, samples)
+    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
+        position, *others = super()._compare(rows, samples)
         while self._changes.learn(samples, position):
-            rotor_angle, expected = _rotor_angle(samples), self._ideal_angle(samples)
+            expected = self._ideal_angle(samples)
             error = finite_or_infinite(position.recorded - expected)
             error[np.isnan(position.error)] = np.nan
             position = position._replace(expected=expected, error=error)
@@ -121,8 +116,9 @@ class OutputState(JointStateTopic):
             factor.update(field.recorded, field.expected)
         error = position.recorded - position.expected
         usable = np.isfinite(error)
-        self.fit.update(rotor_angle[usable], position.recorded[usable], error[usable])
-        return rotor_angle, (position, *others)
+        angles = rotor_angle(samples)[usable], position.recorded[usable]
+        self.fit.update(*angles, error[usable])
+        return position, *others
 
     def causes(self) -> Iterator[Finding]:
         """Yield what explains errors of the angle, or else of the velocity and the effort."""
@@ -166,7 +162,7 @@ class BodyPoses(OutputTopic):
         self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))
         return self._arrays.stamp, self._arrays.malformed
 
-    def _compare(self, rows: Array, samples: Array) -> tuple[Array, Sequence[FieldSamples]]:
+    def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         arrays, stamp = self._arrays, samples['stamp']
         for k, frame_id in enumerate(arrays.frame_ids):
             if frame_id != self.label.encode():
@@ -182,7 +178,7 @@ class BodyPoses(OutputTopic):
         position = np.hypot(np.hypot(x, y), z).max(axis=1)
         self._order.update(poses[..., :3], expected, position, stamp)
         orientation = _orientation_error(poses[..., 3:], state.output_turn_angle[:, np.newaxis])
-        return _rotor_angle(samples), [
+        return [
             FieldSamples(np.where(known, finite_or_infinite(error), np.nan))
             for error in (position, orientation)
         ]

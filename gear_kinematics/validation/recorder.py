@@ -31,7 +31,7 @@ HOLE = 1.5
 """Median periods between inputs; beyond, an input between them was not recorded."""
 _MAX_STAMPS = 32_768  # of inputs
 _MAX_RESETS = 64  # of the stamps
-_MAX_DELAY = 1_000_000_000  # ns by which the delay of an output may differ from that of inputs
+_MAX_DELAY = 10_000_000_000  # ns by which the age of an output may differ from that of inputs
 _NEVER = 2**62  # ns
 
 
@@ -166,10 +166,10 @@ class RecordedInputs:
     def __init__(self, *, strict: bool) -> None:
         """Start with none; `strict` assumes that every input was recorded."""
         self._strict = strict
-        self._ages: list[list[int]] = []
-        """Time of reception - stamp of the first and the last input since each reset, ns."""
+        self._ages: list[int] = []
+        """Time of reception - stamp of the first input since each reset, ns."""
         self._known = np.zeros(0, np.int64)
-        """The latest stamps + the first of these ages: one clock for all, ns."""
+        """The latest stamps + these ages: one clock for all, ns."""
         self._last = np.zeros(0, np.int64)
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
@@ -179,12 +179,10 @@ class RecordedInputs:
             begins = np.diff(stamp, prepend=before) < -CLOCK_RESET
             self._last = stamp[-1:]
             clock = len(self._ages) + np.cumsum(begins) - 1
-            age = received - stamp
-            self._ages += [[first, first] for first in age[begins].tolist()]
-            self._ages[-1][1] = int(age[-1])
-            stamp = stamp + np.array(self._ages)[clock, 0]
+            self._ages += (received - stamp)[begins].tolist()
+            stamp = stamp + np.array(self._ages)[clock]
         if self._ages:
-            rejected = rejected + self._ages[-1][0]
+            rejected = rejected + self._ages[-1]
             self._known = np.concatenate([self._known, stamp, rejected])[-_MAX_STAMPS:]
             del self._ages[:-_MAX_RESETS]
 
@@ -194,10 +192,9 @@ class RecordedInputs:
             return np.zeros(len(stamp), bool)
         if not self._ages:
             return np.ones(len(stamp), bool)
-        first, last = np.array(self._ages).T[..., np.newaxis]
-        age = received - stamp
-        distance = np.abs(age - np.clip(age, np.minimum(first, last), np.maximum(first, last)))
-        stamp = stamp + first[np.argmin(distance, axis=0), 0]
+        ages = np.array(self._ages)
+        distance = np.abs(received - stamp - ages[:, np.newaxis])
+        stamp = stamp + ages[np.argmin(distance, axis=0)]
         known = np.unique(self._known)
         period = float(np.median(np.diff(known))) if len(known) > 1 else 0.0
         bounds = np.concatenate([[-_NEVER], known, [_NEVER]])
