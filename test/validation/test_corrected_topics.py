@@ -15,7 +15,7 @@ from shipped_bags import BAGS, JOINT_STATE, read_bag
 from validating import texts, topic_of
 
 from gear_kinematics.bag import Message
-from gear_kinematics.correction.calibration_file import Order, Stop
+from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
@@ -75,7 +75,7 @@ def changed(messages, topic: str, number: int, **fields):
     return [*messages[:found], changed, *messages[found + 1 :]]
 
 
-@pytest.mark.parametrize('share', [0.2, 0.35, 0.5, 0.65, 0.8])
+@pytest.mark.parametrize('share', [0.2, 0.65])
 def test_recording_may_begin_at_any_time(config, servo, share):
     begin = [k for k, m in enumerate(servo) if m[0] == '/rotor_state'][round(share * 3000)]
     report = validate(servo[begin:], config)
@@ -184,28 +184,6 @@ def test_lost_inputs_leave_the_history_unknown_and_not_wrong(config):
     assert validate(changed(kept, STATE, 2500, velocity=1e-8), config).verdict == Verdict.FAIL
 
 
-def test_missing_velocities_are_those_of_the_travel_wherever_the_recording_begins(config):
-    def without_velocity(message):
-        topic, received, data = message
-        if topic == '/body_poses':
-            return message
-        state = replaying.decode(data, JOINT_STATE)
-        state.velocity = state.velocity[:0]
-        return topic, received, replaying.encode(state)
-
-    made = replace(MADE, spans=replace(MADE.spans, speed=(-0.5, 0.5)))
-    bag = [without_velocity(message) for message in read_bag(BAGS / 'servo_point_to_point')]
-    messages = corrected(bag, config, made)
-    widths = {
-        replaying.decode(data, JOINT_STATE).position[0] > 1.9e-3
-        for topic, _, data in messages[5000:]
-        if topic == INTERVAL
-    }
-    assert widths == {False, True}  # outside of the span, and inside
-    assert validate(messages, config, made).verdict == Verdict.PASS
-    assert validate(messages[5 * 1003 :], config, made).verdict == Verdict.PASS
-
-
 @pytest.mark.parametrize('changes', [{'frame_prefix': 'left_'}, {'rotor_zero': 0.5}])
 def test_prefix_and_zero_are_those_of_the_other_outputs(config, changes):
     rotor = [m for m in read_bag(BAGS / 'servo_point_to_point') if m[0] == '/rotor_state']
@@ -215,15 +193,6 @@ def test_prefix_and_zero_are_those_of_the_other_outputs(config, changes):
     assert report.verdict == Verdict.PASS, report.findings
     if 'rotor_zero' in changes:
         assert validate(messages, config, strict=True).verdict == Verdict.FAIL
-
-
-def test_gear_of_which_only_the_ratio_is_known_is_corrected_too(config, servo):
-    messages = [message for message in servo if message[0] != '/body_poses']
-    other = replace(config, gear_ratio='-19')
-    report = validate(messages, other)
-    assert report.verdict == Verdict.PASS, report.findings
-    assert [topic.compared for topic in report.topics] == [3000, 3000, 3000]
-    assert not validate(changed(messages, STATE, 2000, position=2e-9), other).passed
 
 
 def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
@@ -238,14 +207,3 @@ def test_single_turn_encoder_is_judged_where_its_turns_do_not_matter():
     assert any(
         'when a single-turn encoder was referenced' in found.text for found in report.findings
     )
-
-
-def test_operator_that_never_settles_is_judged_within_its_reach(config):
-    # The recording travels less: 1e-5 · 100 rad are unknown, less what it does travel.
-    wide = replace(MADE, hysteresis=(Stop(4e-4, 0.6), Stop(100.0, 1e-5)))
-    messages = corrected(swings(config), config, wide)
-    assert validate(messages, config, wide).passed
-    assert validate(changed(messages, STATE, 2000, position=9.9e-4), config, wide).passed
-    assert not validate(changed(messages, STATE, 2000, position=1.01e-3), config, wide).passed
-    assert validate(changed(messages, INTERVAL, 2000, position=-9.9e-4), config, wide).passed
-    assert not validate(changed(messages, INTERVAL, 2000, position=1e-8), config, wide).passed

@@ -13,7 +13,7 @@ import pytest
 import replaying
 from live import rotor_bytes
 from node_loop import answered
-from replaying import SECOND, edited, encode
+from replaying import SECOND, edited
 from shipped_bags import BAGS, CONFIGS, JOINT_STATE, OUTPUT, POSES, ROTOR, TYPES, read_bag
 from validating import field_of, texts, topic_of, validate
 
@@ -99,12 +99,6 @@ def test_shipped_recordings_pass(name, messages, compared):
     assert report.mechanism is None
 
 
-def test_a_bag_without_outputs_is_unusable_and_what_writes_them_is_named(recorded, config):
-    report = validate([m for m in recorded if m[0] == ROTOR], config)
-    assert report.verdict == Verdict.UNUSABLE
-    assert report.error == 'no outputs in it: gearkin compute writes a bag with them'
-
-
 def test_the_input_is_described(config):
     rotor = validate(read_bag(BAGS / 'driver_faults'), config).rotor
     assert rotor.rejected == {
@@ -153,12 +147,10 @@ def turn(body: int, angle: float):
     ('topic', 'field', 'edit', 'error'),
     [
         (OUTPUT, 'position', add('position', 2e-9), 2e-9),
-        (OUTPUT, 'position', add('position', -2e-9), 2e-9),
         (OUTPUT, 'velocity', add('velocity', 2e-9), 2e-9),
         (OUTPUT, 'effort', add('effort', 2e-9), 2e-9),
         (POSES, 'position', move(0, 'x', 2e-9), 2e-9),
-        (POSES, 'position', move(1, 'y', -2e-9), 2e-9),
-        (POSES, 'position', move(2, 'z', 2e-9), 2e-9),
+        (POSES, 'position', move(2, 'z', -2e-9), 2e-9),
         (POSES, 'position', move(3, 'x', 2e-9), 2e-9),
         (POSES, 'orientation', turn(3, 2e-9), 2e-9),
     ],
@@ -238,32 +230,6 @@ def test_garbage_in_one_number_is_an_error_of_that_number(recorded, config, topi
     worst = {f.worst_stamp for t in report.topics for f in t.fields if not f.passed}
     assert worst <= {stamp, None}
     assert not any('times the expected one' in text for text in texts(report))
-
-
-@pytest.mark.parametrize('value', [1.4e154, 1e300])
-@pytest.mark.parametrize('edit', [lambda v: move(2, 'y', v), lambda v: move(2, 'z', -v)])
-def test_garbage_in_one_pose_is_an_error_of_that_pose(recorded, config, edit, value):
-    changed, stamp = change_one(recorded, POSES, edit(value))
-    (failed,) = (f for f in topic_of(validate(changed, config), POSES).fields if not f.passed)
-    assert failed.worst_stamp == stamp
-    assert failed.max_error == pytest.approx(value)
-
-
-@pytest.mark.parametrize('value', [1e17, 1e100])
-def test_garbage_in_the_first_output_gives_no_turns(value):
-    """The turns of the single-turn encoder are then taken from the next output."""
-    config = config_of('single_turn_encoder')
-    messages = read_bag(BAGS / 'single_turn_encoder')
-    index = index_of(messages, OUTPUT, 1)
-    topic, received, data = messages[index]
-    messages[index] = topic, received, edited(data, TYPES[topic], lambda m: m.position.fill(value))
-    report = validate(messages, config)
-    assert report.verdict == Verdict.FAIL
-    assert [t.compared for t in report.topics] == [2500, 2500]
-    errors = field_of(report, OUTPUT, 'position')
-    assert errors.max_error == pytest.approx(value)
-    assert errors.rms_error == pytest.approx(value / math.sqrt(2500))
-    assert not any('turns' in finding for finding in texts(report))
 
 
 def swapped(messages: list[Message], one: int, other: int) -> list[Message]:
@@ -488,7 +454,7 @@ def test_nothing_to_validate_is_unusable(recorded, config):
     for messages, word in (
         ([], 'rotor states'),
         ([m for m in recorded if m[0] != ROTOR], 'rotor states'),
-        ([m for m in recorded if m[0] == ROTOR], 'outputs'),
+        ([m for m in recorded if m[0] == ROTOR], 'no outputs in it: gearkin compute writes'),
     ):
         report = validate(messages, config)
         assert report.verdict == Verdict.UNUSABLE
@@ -525,15 +491,6 @@ def test_batches_leave_no_seams(recorded, config):
     assert (output.missing, output.extra) == (len(dropped), 1)
     assert (poses.missing, poses.compared) == (0, len(own))
     assert all(f.max_error < 1e-11 for t in report.topics for f in t.fields)
-
-
-def test_big_endian_recordings_pass(recorded, config):
-    swapped = [
-        (topic, received, encode(replaying.decode(data, TYPES[topic]), little_endian=False))
-        for topic, received, data in recorded
-    ]
-    assert swapped[0][2][:2] == b'\x00\x00'
-    assert validate(swapped, config).passed
 
 
 @pytest.mark.parametrize(
@@ -585,9 +542,7 @@ def test_the_series_shows_the_worst_deviation(recorded, config):
         ([(OUTPUT, 100), (OUTPUT, 150)], f'2 messages of {OUTPUT} missing, but none of {POSES}'),
         ([(POSES, 150)], f'1 message of {POSES} missing, but none of {OUTPUT}'),
         ([(OUTPUT, 100), (POSES, 100)], f'1 message of {ROTOR} without any output'),
-        ([(OUTPUT, 100), (POSES, 101)], None),
         ([(OUTPUT, 100), (POSES, 100), (POSES, 150)], None),
-        ([], None),
     ],
 )
 def test_who_lost_messages_is_told_by_those_that_are_there(recorded, config, dropped, told):
