@@ -30,7 +30,8 @@ _MAX_END = 500_000_000  # ns by which outputs may end before their inputs
 HOLE = 1.5
 """Median periods between inputs; beyond, an input between them was not recorded."""
 _MAX_STAMPS = 32_768  # of inputs
-_MAX_RESETS = 64  # of the stamps
+_MAX_RESETS = 64  # latest ones, after which an output can come
+_APART = 2**40  # ns between the clocks before and after a reset of the stamps
 _MAX_DELAY = 10_000_000_000  # ns by which the age of an output may differ from that of inputs
 _NEVER = 2**62  # ns
 
@@ -169,7 +170,7 @@ class RecordedInputs:
         self._ages: list[int] = []
         """Time of reception - stamp of the first input since each reset, ns."""
         self._known = np.zeros(0, np.int64)
-        """The latest stamps + these ages: one clock for all, ns."""
+        """The latest stamps, moved so that those of two clocks are far apart, ns."""
         self._last = np.zeros(0, np.int64)
 
     def update(self, received: Array, stamp: Array, rejected: Array) -> None:
@@ -180,11 +181,10 @@ class RecordedInputs:
             self._last = stamp[-1:]
             clock = len(self._ages) + np.cumsum(begins) - 1
             self._ages += (received - stamp)[begins].tolist()
-            stamp = stamp + np.array(self._ages)[clock]
+            stamp = stamp + np.array(self._ages)[clock] + _APART * clock
         if self._ages:
-            rejected = rejected + self._ages[-1]
+            rejected = rejected + self._ages[-1] + _APART * (len(self._ages) - 1)
             self._known = np.concatenate([self._known, stamp, rejected])[-_MAX_STAMPS:]
-            del self._ages[:-_MAX_RESETS]
 
     def lack(self, received: Array, stamp: Array) -> Flags:
         """Whether the inputs of outputs (n,), ns, were not recorded."""
@@ -192,9 +192,10 @@ class RecordedInputs:
             return np.zeros(len(stamp), bool)
         if not self._ages:
             return np.ones(len(stamp), bool)
-        ages = np.array(self._ages)
+        ages = np.array(self._ages[-_MAX_RESETS:])
         distance = np.abs(received - stamp - ages[:, np.newaxis])
-        stamp = stamp + ages[np.argmin(distance, axis=0)]
+        clock = np.argmin(distance, axis=0)
+        stamp = stamp + ages[clock] + _APART * (len(self._ages) - len(ages) + clock)
         known = np.unique(self._known)
         period = float(np.median(np.diff(known))) if len(known) > 1 else 0.0
         bounds = np.concatenate([[-_NEVER], known, [_NEVER]])

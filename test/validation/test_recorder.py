@@ -345,3 +345,15 @@ def test_recordings_of_rosbag2_pass(config, name):
     assert report.verdict == Verdict.PASS
     assert [(t.compared, t.left_out) for t in report.topics] == JUDGED[name]
     assert all(f.max_error < 1e-12 for t in report.topics for f in t.fields)
+
+
+@pytest.mark.parametrize('rate', [50, 200])
+def test_a_loss_where_a_bag_begins_anew_at_once_fails_nothing(traffic, config, rate):
+    start = stamp_of(traffic[rate][0])
+    once = [m for m in traffic[rate] if stamp_of(m) < start + 2 * SECOND]
+    length = once[-1].received - once[0].received + SECOND // 1000
+    messages = [m._replace(received=m.received + k * length) for k in range(3) for m in once]
+    last = [k for k, m in enumerate(messages) if m.topic == ROTOR][len(once) // 3 * 2 - 1]
+    report = validate(messages[:last] + messages[last + 1 :], config)
+    assert report.verdict == Verdict.PASS
+    assert [t.left_out for t in report.topics] == [{NO_INPUT: 1}] * 2
