@@ -1,10 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Causes of deviations: an offset, another mechanism, unit or shaft, another order of poses."""
+"""Causes of deviations: an offset, another mechanism, unit or shaft."""
 
 import math
 from dataclasses import replace
 from fractions import Fraction
-from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,6 @@ from numpy.typing import NDArray
 from gear_kinematics.correction.uncertainty import Component, Estimate, pseudo_values
 from gear_kinematics.kinematics import Gear, Mechanism
 from gear_kinematics.kinematics.gear_ratio import tooth_pairs
-from gear_kinematics.validation.report import Finding
 
 Array = NDArray[np.float64]
 
@@ -24,8 +22,6 @@ _ROUNDING = 5.1e-10
 """Standard uncertainty by the rounding of the sums, relative."""
 _CLEAR_DEVIATION = 2.0
 """In expanded uncertainties."""
-_MAX_BODIES = 6
-"""Number of bodies up to which all orders are tried."""
 _MAX_SCATTER = 1e-5
 """Greatest deviation of all values together from a constant factor, relative to them."""
 
@@ -183,30 +179,3 @@ class FactorFit:
             scatter = float(yy - factor * xy)
         constant = math.isfinite(factor + scatter) and scatter <= _MAX_SCATTER**2 * yy
         return factor if constant and abs(factor - 1.0) > _MAX_SCATTER else None
-
-
-class PoseOrder:
-    """Detects recorded poses that are the expected ones in another order."""
-
-    def __init__(self, bodies: list[str], tolerance: float) -> None:
-        """Start with no poses of bodies, in the expected order, with a tolerance, m."""
-        self._bodies = bodies
-        self._tolerance = tolerance
-        self.cause: Finding | None = None
-
-    def update(
-        self, recorded: Array, expected: Array, error: Array, stamp: NDArray[np.int64]
-    ) -> None:
-        """Add positions (n, bodies, 3) and the greatest error of each message (n,), m."""
-        wrong = error > self._tolerance
-        if self.cause or not wrong.any() or len(self._bodies) > _MAX_BODIES:
-            return
-        first = int(np.argmax(wrong))
-        for order in permutations(range(len(self._bodies))):
-            if np.abs(recorded[first] - expected[first, order]).max() <= self._tolerance:
-                names = ', '.join(self._bodies[k] for k in order)
-                text = f'the poses are in another order: {names}'
-                self.cause = Finding(
-                    text, cause=True, stamp=int(stamp[first]), when='the first at'
-                )
-                return

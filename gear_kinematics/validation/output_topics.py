@@ -12,7 +12,6 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.validation.diagnosis import (
     AngleFit,
     FactorFit,
-    PoseOrder,
     diagnose,
 )
 from gear_kinematics.validation.fields import FieldErrors, FieldSamples
@@ -140,9 +139,7 @@ class BodyPoses(OutputTopic):
     def __init__(
         self, name: str, frame_id: str, mechanism: Mechanism, expectation: Expectation
     ) -> None:
-        branches = [branch.name for branch in mechanism.branches]
         tolerances = expectation.tolerances
-        self._bodies = [f'{kind}_{b}' for kind in ('satellite', 'oldham') for b in branches]
         super().__init__(
             name,
             frame_id,
@@ -152,14 +149,9 @@ class BodyPoses(OutputTopic):
         )
         self._mechanism = mechanism
         self._axial = np.array([[b.axial_position] for b in mechanism.branches] * 2)
-        self._order = PoseOrder(self._bodies, tolerances.position)
-
-    def causes(self) -> Iterator[Finding]:
-        """Yield another order of the poses."""
-        yield from filter(None, [self._order.cause])
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._bodies))
+        self._arrays: PoseArrays = decode_pose_arrays(messages, len(self._axial))
         return self._arrays.stamp, self._arrays.malformed
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
@@ -176,7 +168,6 @@ class BodyPoses(OutputTopic):
         expected = np.append(centres, axial, axis=-1)
         x, y, z = np.moveaxis(poses[..., :3] - expected, -1, 0)
         position = np.hypot(np.hypot(x, y), z).max(axis=1)
-        self._order.update(poses[..., :3], expected, position, stamp)
         orientation = _orientation_error(poses[..., 3:], state.output_turn_angle[:, np.newaxis])
         return [
             FieldSamples(np.where(known, finite_or_infinite(error), np.nan))

@@ -161,7 +161,7 @@ FAULTS = {
     ),
     'satellites swapped': (
         lambda messages, place: one_changed(messages, POSES, place, swap_satellites),
-        'in another order: satellite_b, satellite_a, oldham_a, oldham_b',
+        'exceeds the tolerance of the position',
     ),
     'five poses missing': (five_poses_missing, '5 messages missing'),
     'doubled outputs': (doubled, '10 messages too many'),

@@ -265,25 +265,9 @@ def test_messages_that_were_lost_repeated_swapped_or_restamped_are_counted(
         assert report.verdict == Verdict.FAIL
 
 
-def swap(one: int, other: int):
-    def edit(message) -> None:
-        poses = message.poses
-        poses[one], poses[other] = poses[other], poses[one]
-
-    return edit
-
-
 @pytest.mark.parametrize(
     ('topic', 'edit', 'text'),
     [
-        (
-            POSES,
-            swap(0, 1),
-            (
-                'the poses are in another order: satellite_b, satellite_a, oldham_a, oldham_b, '
-                'the first at {time:+.3f} s'
-            ),
-        ),
         (
             POSES,
             lambda message: setattr(message.header, 'frame_id', 'base'),
@@ -348,7 +332,6 @@ def scale(field: str, factor: float):
         (OUTPUT, scale('position', math.pi), f'the recorded ratio is {-19.0 / math.pi:.8f}'),
         (OUTPUT, scale('velocity', 180.0 / math.pi), 'velocity is 57.2958 times the expected one'),
         (OUTPUT, scale('effort', -1.0), 'the recorded effort is -1 times the expected one'),
-        (POSES, swap(1, 2), 'another order: satellite_a, oldham_a, satellite_b, oldham_b'),
     ],
 )
 def test_what_is_wrong_with_all_messages_is_named(recorded, config, topic, edit, words):
