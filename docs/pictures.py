@@ -29,7 +29,7 @@ from gear_recordings import record_both_encoders  # noqa: E402, see above
 DOCS = Path('docs')
 BAG = 'bags/servo_point_to_point'
 CONFIG = ['--config', 'config/actuator.yaml']
-SHAFT = ['--branch-stiffness', '3000', '--shaft-diameter', '0.012', '--shaft-length', '0.151']
+SHAFT = ['--branch-stiffness', '3000', '--shaft-stiffness', '1069']
 DRAWN = {
     'mechanism.gif': ['animate'],
     'scheme.svg': ['plot', 'scheme'],

@@ -82,13 +82,10 @@ def _facts(mechanism: Mechanism) -> list[_Fact]:
         _Fact('gear_ratio', str(mechanism.gear_ratio)),
         _Fact('mobility_by_counting', loop_closure.mobility_by_counting(mechanism)),
         _Fact('mobility_by_rank', loop_closure.mobility_by_rank(mechanism)),
-        _Fact('redundant_constraints', loop_closure.redundant_constraints(mechanism)),
         _Fact('ring_rolling_radius', mechanism.ring_rolling_radius, 'm'),
         _Fact('satellite_rolling_radius', mechanism.satellite_rolling_radius, 'm'),
         _Fact('oldham_petals', mechanism.oldham_petals),
-        _Fact('vernier_combinations', vernier.combinations(zk)),
         _Fact('vernier_distinct_positions', vernier.distinct_positions(zk)),
-        _Fact('vernier_ring_body_positions', vernier.ring_body_positions(zk)),
         _Fact('vernier_step', vernier.step(zk), 'rad'),
     ]
 

@@ -4,12 +4,11 @@
 import argparse
 import math
 from pathlib import Path
-from typing import TextIO
 
 from gear_kinematics.bag.trajectory import Trajectory, read_trajectory
 from gear_kinematics.commands import arguments, bags
 from gear_kinematics.commands.files import add_force
-from gear_kinematics.commands.output import message_progress
+from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
@@ -53,14 +52,9 @@ def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory
         return whole.between(start, start + (options.duration or math.inf))
 
 
-def warn_if_teeth_cannot_mesh(
-    mechanism: Mechanism, module: float, stream: TextIO | None = None
-) -> None:
-    """Print why gears are drawn without teeth, if these cannot mesh; module in m.
-
-    The text goes to a stream, by default to stdout.
-    """
+def warn_if_teeth_cannot_mesh(mechanism: Mechanism, module: float) -> None:
+    """Print on stderr why gears are drawn without teeth, if these cannot mesh; module in m."""
     try:
         tooth_pair(mechanism, module)
     except InterferenceError as error:
-        print(f'The gears are drawn as circles: {error}', file=stream)
+        complain(f'the gears are drawn as circles: {error}')

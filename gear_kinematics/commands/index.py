@@ -22,7 +22,6 @@ from gear_kinematics.report.document import (
     Pen,
     Section,
     Table,
-    Tone,
 )
 from gear_kinematics.shape.angles import arc, arc_seconds
 
@@ -116,7 +115,6 @@ def _position_table(pins: Pins) -> Table:
             arc(choice.ring_turn),
             f'{arc_seconds(choice.error):+.3f}',
         )
-        tone = Tone.PLAIN if choice.steps else Tone.CHOSEN
-        rows.append(tuple(Cell(text, tone) for text in cells))
+        rows.append(tuple(map(Cell, cells)))
     columns = ('steps', 'tooth', 'ring hole', 'chassis hole', 'turn', 'error [″]')
     return Table(columns, tuple(rows), words=())

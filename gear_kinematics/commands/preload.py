@@ -183,15 +183,13 @@ def _mesh_range(preload: Preload) -> str:
 
 def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
     preload, (a, b) = answer.preload, answer.names
-    known, pair = preload.stiffness, answer.mechanism
-    yield 'teeth', f'{pair.ring_teeth} on the ring gears, {pair.satellite_teeth} on the satellites'
+    known = preload.stiffness
     parts = (
         (f'branch {a}', known.branch_a),
         (f'branch {b}', known.branch_b),
         ('shaft', known.shaft),
     )
     yield 'stiffness', ', '.join(f'{name} {_in_words(value)}' for name, value in parts)
-    yield 'ring turn', f'{arc(answer.pins.ring_turn)} = {answer.pins.ring_turn:.6g} rad'
     if answer.backlash:
         yield 'backlash', f'{arc(answer.backlash)} at the output before the turn'
     if preload.torque:

@@ -3,7 +3,6 @@
 
 import argparse
 import hashlib
-import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -72,8 +71,6 @@ class Reporter:
         to_stdout = [option for option, target in given.items() if target == '-']
         if len(to_stdout) > 1:
             raise ValueError(f'only one report can go to stdout, not {" and ".join(to_stdout)}')
-        if '--html' in to_stdout and sys.stdout.isatty():
-            raise ValueError('--html -: a page goes into a file or a pipe, not to a terminal')
         check_targets(options, given)
         self._silent = bool(to_stdout)
         if options.plot:

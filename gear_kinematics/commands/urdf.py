@@ -2,7 +2,6 @@
 """`gearkin urdf`: print the URDF, and write its meshes."""
 
 import argparse
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,19 +16,12 @@ from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
-    output = arguments.group(parser, 'output')
-    output.add_argument(
+    arguments.group(parser, 'output').add_argument(
         '--meshes',
         type=Path,
         metavar='DIR',
-        help='write the bodies with their teeth to this folder, as STL, and show them',
-    )
-    output.add_argument(
-        '--mesh-uri',
-        type=_mesh_uri,
-        metavar='URI',
-        help='of the folder with the meshes, such as package://my_robot/meshes '
-        '(default: file:// and DIR, or the parameter meshes)',
+        help='write the bodies with their teeth to this folder, as STL, and show them, by the '
+        'URI of the parameter meshes if it has one',
     )
 
 
@@ -37,21 +29,13 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Write the meshes, and print the URDF."""
     config = arguments.load_config(options)
     mechanism, module = config.mechanism, config.module
-    uri = options.mesh_uri or config.meshes
     if options.meshes:
-        warn_if_teeth_cannot_mesh(mechanism, module, sys.stderr)
+        warn_if_teeth_cannot_mesh(mechanism, module)
         _write(mechanism, module, options.meshes)
-        uri = options.mesh_uri or options.meshes.resolve().as_uri()
-    print(replace(config, meshes=uri).urdf(), end='')
+        if config.meshes in {meshes.AUTO, meshes.NONE}:
+            config = replace(config, meshes=options.meshes.resolve().as_uri())
+    print(config.urdf(), end='')
     return ExitCode.DONE
-
-
-def _mesh_uri(text: str) -> str:
-    try:
-        meshes.check(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
-    return text
 
 
 def _write(mechanism: Mechanism, module: float, folder: Path) -> None:

@@ -11,7 +11,7 @@ from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import Measured, shown
 from gear_kinematics.measurement.middle_line import Cause
 from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT, arc_minutes
-from gear_kinematics.report.document import number, printable
+from gear_kinematics.report.document import number
 
 _SMALLER = 0.7
 """Share of their amplitude to which smaller ramps are worth recording."""
@@ -103,12 +103,8 @@ def _judged(figure: Measured, limit: float) -> Judgement:
 # Remarks
 
 
-def remarks(report: LostMotion) -> list[str]:
+def remarks(report: LostMotion) -> Iterator[str]:
     """Describe the basis and the limits of the figures, in sentences."""
-    return [printable(remark) for remark in _remarks(report)]
-
-
-def _remarks(report: LostMotion) -> Iterator[str]:
     yield from report.remarks
     if found := report.figures:
         yield (

@@ -8,7 +8,7 @@ Student's test, with one scatter for all groups.
 import fnmatch
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from os.path import commonprefix
 from typing import NamedTuple
@@ -17,12 +17,12 @@ import numpy as np
 from scipy.special import stdtr
 
 from gear_kinematics.correction.uncertainty import COVERAGE, Component, Estimate, combined
-from gear_kinematics.measurement.figures import STIFFNESS_SHARES, gear_figures
+from gear_kinematics.measurement.figures import gear_figures
 from gear_kinematics.measurement.loops import ALIKE
 from gear_kinematics.measurement.lost_motion import LostMotion
-from gear_kinematics.measurement.measured import HYSTERESIS, Measured
-from gear_kinematics.report.document import number
+from gear_kinematics.measurement.measured import HYSTERESIS
 
+_OF_SMALL_RAMPS = (HYSTERESIS, 'friction')
 SIGNIFICANCE = 1.0 - COVERAGE
 """Probability of a false alarm in each of the two families of `judged`."""
 
@@ -42,7 +42,7 @@ def single(names: Sequence[str]) -> list[Group]:
 
 
 def grouped(names: Sequence[str], patterns: Sequence[str]) -> list[Group]:
-    """Group recordings by globs, of which the first that matches a name counts.
+    """Group recordings by globs, in their order; the first that matches a name counts.
 
     Raises:
         ValueError: if there are not at least two groups.
@@ -50,7 +50,8 @@ def grouped(names: Sequence[str], patterns: Sequence[str]) -> list[Group]:
     firsts = [next((p for p in patterns if fnmatch.fnmatchcase(n, p)), None) for n in names]
     groups = [
         Group(pattern, tuple(k for k, first in enumerate(firsts) if first == pattern))
-        for pattern in dict.fromkeys(first for first in firsts if first)
+        for pattern in dict.fromkeys(patterns)
+        if pattern in firsts
     ]
     if len(groups) < 2:  # noqa: PLR2004, nothing to compare
         only = f'only the group {groups[0].name}' if groups else 'no recording that matches'
@@ -92,41 +93,24 @@ def quantities(reports: Sequence[LostMotion]) -> tuple[list[Quantity], list[str]
         Those of at least two recordings; and the names of recordings whose hysteresis and friction
         are left out, as their smallest ramps are not of the amplitude of the others.
     """
-    smallest = [own.ramps[0].amplitude for report in reports if (own := report.figures)]
-    most = max(smallest, default=0.0) / ALIKE
-    units: dict[str, str] = {}
-    values: dict[str, dict[int, Estimate]] = {}
-    unlike = []
-    for k, report in enumerate(reports):
-        alike = not report.figures or report.figures.ramps[0].amplitude >= most
-        if not alike:
-            unlike.append(report.name)
-        for figure in _figures(report, alike=alike):
-            if isinstance(figure.value, Estimate):
-                units[figure.name] = figure.unit
-                values.setdefault(figure.name, {})[k] = figure.value
+    smallest = {own.name: own.figures.ramps[0].amplitude for own in reports if own.figures}
+    unlike = [name for name, own in smallest.items() if own < max(smallest.values()) / ALIKE]
+    rows = [
+        {
+            f'{figure.name}{figure.at}': figure.value
+            for figure in report.main_figures
+            if isinstance(figure.value, Estimate)
+            and not (figure.name in _OF_SMALL_RAMPS and report.name in unlike)
+        }
+        for report in reports
+    ]
+    units = {f'{own.name}{own.at}': own.unit for report in reports for own in report.main_figures}
     found = [
-        Quantity(name, unit, tuple(values[name].get(k) for k in range(len(reports))))
+        Quantity(name, unit, tuple(row.get(name) for row in rows))
         for name, unit in units.items()
-        if len(values[name]) > 1
+        if sum(name in row for row in rows) > 1
     ]
     return found, unlike
-
-
-def _figures(report: LostMotion, *, alike: bool) -> Iterator[Measured]:
-    if found := report.figures:
-        if alike:
-            yield Measured(HYSTERESIS, 'rad', found.hysteresis)
-            yield Measured('friction', 'N·m', found.friction)
-        yield Measured('lost motion', 'rad', found.lost_motion)
-        corner = STIFFNESS_SHARES[-1] * found.rated_torque
-        for own in found.stiffness:
-            if own.low >= corner:
-                ends = f'{number(own.low)} to {number(found.rated_torque)} N·m'
-                yield Measured(f'stiffness {ends}', 'N·m/rad', own.slope)
-    if motion := report.transmission:
-        yield Measured('lost motion on reversals', 'rad', motion.lost_motion)
-        yield Measured('transmission accuracy', 'rad', motion.forward)
 
 
 # Changes

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from gear_kinematics.measurement.changes import (
-    SIGNIFICANCE,
     Change,
     Group,
     changes_of,
@@ -19,7 +18,7 @@ from gear_kinematics.measurement.changes import (
 from gear_kinematics.measurement.document import Comparison
 from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS, shown
-from gear_kinematics.measurement.wording import ARC_MINUTES, PERCENT
+from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import (
     Cell,
     Figure,
@@ -36,15 +35,7 @@ from gear_kinematics.report.document import (
 _PENS = (Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH)
 _TORQUES = 300
 """Of half a loop in a plot."""
-_JUDGED = (
-    'A change of the hysteresis is called significant by chance in at most '
-    f'{100.0 * SIGNIFICANCE:g} % of comparisons, and likewise one of the others; intervals '
-    f'contain the ratio with a probability of {PERCENT}'
-)
-_WITHIN = (
-    'judged by the scatter within recordings, which is less than that between them: record each '
-    'state several times, and name the groups with --group'
-)
+_WITHIN = 'Record each state several times, and compare with --group: recordings scatter more'
 
 
 def compared(
@@ -64,7 +55,7 @@ def compared(
     sentence = _changed(changes, named)
     sentence += '' if several else _play(reports, named[1])
     sentence += '' if repeated else '; judged by the scatter within single recordings'
-    remarks = [f'{sentence}.', f'{_JUDGED}.' if repeated else f'{_JUDGED}; {_WITHIN}.']
+    remarks = [f'{sentence}.', *([] if repeated else [f'{_WITHIN}.'])]
     if unlike:
         others = f'the smallest ramps of {", ".join(unlike)} are smaller than those of the others'
         remarks.append(f'Hysteresis and friction: not compared where {others}.')

@@ -52,7 +52,7 @@ def document(
     """Return the document on recordings, with a section for each, and then their comparison."""
     sections, recordings = [], []
     for report in reports:
-        sentences = answer(report), limits.judge(report), remarks(report)
+        sentences = answer(report), limits.judge(report), tuple(map(printable, remarks(report)))
         sections.append(_section(report, *sentences))
         recordings.append(_recording(report, *sentences))
     verdicts = [section.verdict for section in sections if section.verdict]
@@ -73,7 +73,7 @@ def document(
 
 
 def _section(
-    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: Sequence[str]
+    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: tuple[str, ...]
 ) -> Section:
     passed = all(judgement.holds for judgement in judged)
     return Section(
@@ -84,7 +84,7 @@ def _section(
             *(Finding('finding', f'{one.text[0].upper()}{one.text[1:]}.') for one in judged),
             Finding('finding', said),
         ),
-        tuple(remarked),
+        remarked,
         Figure(tuple(panels(report)), columns=_COLUMNS),
         key=Table.of_values(Layout.INLINE, *_main(report).items()),
         cases=tuple(Case(one.limit, () if one.holds else (one.text,)) for one in judged)
@@ -146,7 +146,7 @@ def _table(figures: Iterable[Measured]) -> Table:
 
 
 def _recording(
-    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: Sequence[str]
+    report: LostMotion, said: str, judged: Sequence[Judgement], remarked: tuple[str, ...]
 ) -> Mapping[str, Any]:
     recording, both = report.recording, report.recording.encoders
     return {

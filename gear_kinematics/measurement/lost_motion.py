@@ -11,6 +11,7 @@ from gear_kinematics.measurement.ratio import check_ratio
 from gear_kinematics.measurement.recording import Recording
 from gear_kinematics.measurement.transmission import TransmissionFigures, transmission_figures
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import number
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -35,13 +36,20 @@ class LostMotion:
     def main_figures(self) -> tuple[Measured, ...]:
         """The figures of a summary, to which limits apply; without a value where unknown."""
         found, motion = self.figures, self.transmission
-        stiffness = found.stiffness[-1].slope if found and found.stiffness else None
         moving = found or motion
+        top = found.stiffness[-1] if found and found.stiffness else None
+        ends = f' {number(top.low)} to {number(top.high)} N·m' if top else ''
         return (
             Measured(HYSTERESIS, 'rad', found.hysteresis if found else None),
             Measured('backlash', 'rad', found.backlash if found else None),
-            Measured('lost motion', 'rad', moving.lost_motion if moving else None),
-            Measured('stiffness', 'N·m/rad', stiffness),
+            Measured('friction', 'N·m', found.friction if found else None),
+            Measured(
+                'lost motion',
+                'rad',
+                moving.lost_motion if moving else None,
+                '' if found else ' on reversals',
+            ),
+            Measured('stiffness', 'N·m/rad', top.slope if top else None, ends),
             Measured('transmission accuracy', 'rad', motion.forward if motion else None),
         )
 

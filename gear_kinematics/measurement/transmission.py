@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from gear_kinematics.correction.reversals import Pair, Reversals, separate
 from gear_kinematics.correction.transmission_error import Direction
 from gear_kinematics.correction.uncertainty import Component, Estimate, resolution
-from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders
 
 Array = NDArray[np.float64]
@@ -28,7 +27,6 @@ _MIN_SHARE = 0.5
 class TransmissionFigures:
     """Results from a recording of both encoders: angles in rad."""
 
-    samples: int
     travel: float
     """From the least to the greatest output angle."""
     offset: float
@@ -58,7 +56,7 @@ class _Run:
         order = np.argsort(angle, kind='stable')
         self.angle, self.error, self._speed = angle[order], error[order], speed[order]
         self.low, self.high = float(self.angle[0]), float(self.angle[-1])
-        self.turns = (self.high - self.low) / TURN
+        self.travel = self.high - self.low
 
     def mean_speed(self, edges: Array) -> Array:
         """Mean speeds between angles (n,): (n - 1,)."""
@@ -99,8 +97,8 @@ class _Motion:
     def long_runs(self, way: int) -> list[_Run]:
         """Return the runs in a direction that are repeats of the longest."""
         runs = [run for sign, run in self.runs() if sign == way]
-        longest = max((run.turns for run in runs), default=0.0)
-        return [run for run in runs if run.turns >= _MIN_SHARE * longest]
+        longest = max((run.travel for run in runs), default=0.0)
+        return [run for run in runs if run.travel >= _MIN_SHARE * longest]
 
 
 def transmission_figures(
@@ -125,7 +123,6 @@ def transmission_figures(
             found = replace(found, lost_motion=rest.lost_motion, delay=late)
     forward, backward = motion.long_runs(1), motion.long_runs(-1)
     return TransmissionFigures(
-        len(motion.error),
         float(np.ptp(motion.angle)),
         float(np.mean(motion.error)),
         _accuracy(forward, both),

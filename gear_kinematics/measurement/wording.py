@@ -2,9 +2,7 @@
 """The formatting of measured quantities, for people and for JSON."""
 
 import math
-from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from enum import Enum
 from fractions import Fraction
 from typing import Any
 
@@ -62,10 +60,6 @@ def plain(value: Any) -> Any:
             }
         case Fraction():
             return str(value)
-        case Enum():
-            return value.value
-        case Mapping():
-            return {key: plain(item) for key, item in value.items()}
         case tuple() | list():
             return [plain(item) for item in value]
     if is_dataclass(value):

@@ -66,14 +66,13 @@ class Centres:
     """The centres of a branch's bodies, in units of e; `show` moves them.
 
     O4 is where the slot of the satellite (the x axis of its frame) intersects that of the arm (the
-    y axis of the output shaft's frame), on the circle with the diameter O1-O3.
+    y axis of the output shaft's frame).
     """
 
     def __init__(self, axes: Any, mechanism: Mechanism, branch: int) -> None:
         """Draw them at φ2 = 0."""
         self._mechanism, self._branch = mechanism, branch
         axes.plot(_CIRCLE.real, _CIRCLE.imag, color=FAINT, linewidth=0.8)
-        [self.circle] = axes.plot([], [], ':', color=_EDGES['oldham'], linewidth=0.8)
         styles = {
             'satellite slot': ('satellite', 0.8),
             'arm slot': ('output_shaft', 0.8),
@@ -111,8 +110,6 @@ class Centres:
             self.lines[name].set_data(*np.transpose(np.asarray(points)))
         for body, point in (('satellite', o3), ('oldham', o4)):
             self.points[body].set_data(*point[:, np.newaxis])
-        around = 0.5 * (complex(*o3) + abs(complex(*o3)) * _CIRCLE)
-        self.circle.set_data(around.real, around.imag)
 
 
 def outlines(mechanism: Mechanism, module: float) -> Figure:

@@ -8,9 +8,7 @@ import numpy as np
 from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Gear, Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.report.document import Figure, Line, Panel, Pen
-from gear_kinematics.shape import outlines
-from gear_kinematics.shape.outlines import Array
+from gear_kinematics.report.document import Array, Figure, Line, Panel, Pen
 
 MOST_PETALS = 1000
 """With more, a rose looks like a disc."""
@@ -45,7 +43,9 @@ def rose(mechanism: Mechanism) -> Array:
         raise ValueError(
             f'a picture has room for {MOST_PETALS} petals, not for {mechanism.oldham_petals}'
         )
-    return outlines.roses(mechanism, mechanism.oldham_petals, _PETAL_POINTS)
+    count = mechanism.oldham_petals * _PETAL_POINTS + 1
+    angle = np.linspace(0.0, TURN * mechanism.cycle_turns, count)
+    return np.asarray(solve(mechanism, angle).oldham_centre)
 
 
 def slides(mechanism: Mechanism, speed: float) -> Figure:

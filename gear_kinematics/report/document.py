@@ -33,7 +33,6 @@ class Tone(StrEnum):
 
     PLAIN = ''
     NONE = 'none'  # of a count of zero, which says nothing among others
-    CHOSEN = 'chosen'
     NOTABLE = 'notable'
     BAD = 'bad'
 
@@ -143,10 +142,6 @@ class Finding:
     """The moment that it is about, on the x axis of the figure."""
 
 
-MAX_LARGE_DOTS = 100
-"""Most points that are drawn large."""
-
-
 class Pen(StrEnum):
     """Style of a line; the names of the colours in page.css."""
 
@@ -173,11 +168,6 @@ class Line:
     """NaN leaves a gap."""
     points: bool = False
     """Whether to draw only points."""
-
-    @property
-    def opacity(self) -> float:
-        """Less for a line that is there for comparison only, behind the others."""
-        return 0.5 if self.pen == Pen.FAINT and not self.points else 1.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -59,8 +59,6 @@ def _body(document: Document) -> Iterator[str]:
         if several and section.name:
             yield f'<h2>{_badge(section.verdict)}{escape(section.name)}</h2>\n'
         yield from _section(section, k, drawings)
-        if several:
-            yield '<p><a href="#top">to the summary</a></p>\n'
         yield '</section>\n'
     yield f'</main>\n{_footer(document.origin)}{drawings.shapes()}'
 
@@ -84,10 +82,10 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
     if findings:
         yield f'<p class="first {kind}">{findings.pop(0)}</p>\n'
     yield f'<p>{escape(section.answer)}</p>\n' if section.answer else ''
-    yield _list(findings, kind, f'{len(findings)} more findings')
+    yield _list(findings, f'{len(findings)} more findings')
     yield _table(section.key) if section.key else ''
     yield from _figure(section.figure, section.mechanism, name, drawings)
-    yield _list(list(map(escape, section.remarks)), '', f'{len(section.remarks)} remarks')
+    yield _list(list(map(escape, section.remarks)), f'{len(section.remarks)} remarks')
     head, *tables = section.tables
     below = ''.join(map(_table, tables))
     yield _table(head) + (_folded('Tables', below) if len(tables) > 1 else below)
@@ -157,10 +155,10 @@ def _sentence(finding: Finding, figure: str) -> str:
     return f'<a href="#{figure}" data-time="{finding.time:.9g}">{text}</a>'
 
 
-def _list(items: Sequence[str], kind: str, name: str) -> str:
+def _list(items: Sequence[str], name: str) -> str:
     """Write a list of sentences in HTML, folded if they would push away what is below them."""
     written = ''.join(f'<li>{item}</li>' for item in items)
-    listed = f'<ul class="{f"remarks {kind}".strip()}">{written}</ul>\n' if written else ''
+    listed = f'<ul class="remarks">{written}</ul>\n' if written else ''
     return _folded(name, listed) if len(items) > _FEW_SENTENCES else listed
 
 

@@ -9,7 +9,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from gear_kinematics.report.document import MAX_LARGE_DOTS, Figure, Panel, Pen, number
+from gear_kinematics.report.document import Figure, Panel, Pen, number
 from gear_kinematics.report.mark import MARK
 from gear_kinematics.report.page import resource
 
@@ -39,8 +39,6 @@ _FOLDER = '/'
 recording. There are no modules either that could be imported in place of others."""
 _PANEL = (6.0, 5.2)  # inches, side by side
 _STACKED = (7.5, 3.0)  # inches
-_TALLEST = 12.0  # inches, up to which stacked panels have this height
-_LEAST_HEIGHT = 1.5  # inches, of stacked ones
 _FONT_SIZE = 9.0  # points
 _DPI = 150
 _TICK_DIGITS = 8
@@ -64,8 +62,7 @@ def to_image(figure: Figure, path: Path) -> bytes:
     """Draw a figure for a file that was checked."""
     rows, columns = figure.shape
     if figure.stacked:
-        height = min(_STACKED[1], max(_LEAST_HEIGHT, _TALLEST / rows))
-        size = _STACKED[0], rows * height
+        size = _STACKED[0], rows * _STACKED[1]
     else:
         size = columns * _PANEL[0], rows * _PANEL[1]
     with canvas(size) as drawn:
@@ -143,9 +140,8 @@ def _draw(axes: Any, panel: Panel) -> None:
             line.y,
             linestyle='none' if line.points else '--' if line.pen == Pen.MODEL else '-',
             marker='.' if line.points else 'none',
-            markersize=2.0 if len(line.x) > MAX_LARGE_DOTS else 6.0,
+            markersize=3.0,
             linewidth=1.0,
-            alpha=line.opacity,
             color=COLOURS[line.pen],
             label=line.name,
         )

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gear_kinematics.report.document import MAX_LARGE_DOTS, Line, Panel, Pen
+from gear_kinematics.report.document import Line, Panel, Pen
 from gear_kinematics.report.mechanism import MovingMechanism
 
 _GAP = 0.2
@@ -33,7 +33,8 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
     several = len(panels) > 1
     layout: dict[str, Any] = {'shapes': [], 'annotations': [], 'showlegend': False}
     layout['hovermode'] = 'x unified' if several else 'closest'
-    layout['xaxis'] = _x_axis(panels[-1]) | {'anchor': f'y{len(panels)}'}
+    x_label = {'text': _wrapped(panels[-1].x_label)}
+    layout['xaxis'] = {'title': x_label, 'anchor': f'y{len(panels)}', 'constrain': 'domain'}
     time = mechanism.time if mechanism else panels[0].lines[0].x
     plot: dict[str, Any] = {'data': [], 'layout': layout, 'time': _rounded(time)}
     for k, (panel, domain) in enumerate(zip(panels, _domains(len(panels)), strict=True), 1):
@@ -72,13 +73,6 @@ def _domains(count: int) -> Iterator[list[float]]:
         yield [max(0.0, (whole - k - 1 + _GAP) / whole), (whole - k) / whole]
 
 
-def _x_axis(panel: Panel) -> dict[str, Any]:
-    axis: dict[str, Any] = {'title': {'text': _wrapped(panel.x_label)}}
-    if panel.equal:
-        axis['constrain'] = 'domain'
-    return axis
-
-
 def _y_axis(panel: Panel) -> dict[str, Any]:
     # The margin is narrow: the unit is below the name.
     axis: dict[str, Any] = {'title': {'text': escape(panel.y_label).replace(' [', '<br>[')}}
@@ -92,11 +86,10 @@ def _trace(line: Line) -> dict[str, Any]:
     trace: dict[str, Any] = {
         'name': line.name,
         'meta': line.pen,
-        'opacity': line.opacity,
         'y': _rounded(line.y),
     }
     if line.points:
-        trace |= {'mode': 'markers', 'marker': {'size': 3 if len(line.x) > MAX_LARGE_DOTS else 8}}
+        trace |= {'mode': 'markers', 'marker': {'size': 4}}
     if line.pen == Pen.MODEL:
         trace['line'] = {'dash': 'dash'}
     return trace

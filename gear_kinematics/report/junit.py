@@ -9,14 +9,9 @@ from gear_kinematics.report.mark import MARK
 from gear_kinematics.report.text import section_lines
 
 
-def to_junit(document: Document, when: datetime | None = None) -> str:
-    """Write a test suite for each section.
-
-    Args:
-        document: whose sections have cases.
-        when: time of the check; the present by default.
-    """
-    stamp = (when or datetime.now(UTC)).strftime('%Y-%m-%dT%H:%M:%S')
+def to_junit(document: Document) -> str:
+    """Write a test suite for each section of a document whose sections have cases."""
+    stamp = datetime.now(UTC).strftime('%Y-%m-%dT%H:%M:%S')
     root = ET.Element('testsuites')
     for number, section in enumerate(document.sections):
         _add_suite(root, section, document.title.replace(' ', '.'), number, stamp)

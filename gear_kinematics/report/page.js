@@ -58,9 +58,6 @@
     figures.set(element, JSON.parse(script.textContent));
     seen.observe(element);
   }
-  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => {
-    for (const element of figures.keys()) if (element.data) draw(element);
-  });
   addEventListener('beforeprint', () => {
     for (const folded of document.querySelectorAll('details')) folded.open = true;
     for (const element of figures.keys()) if (!element.data) draw(element);

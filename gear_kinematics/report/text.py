@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from rich import box
-from rich.columns import Columns
 from rich.console import Console, Group, RenderableType
 from rich.table import Table as RichTable
 from rich.text import Text
@@ -32,7 +31,6 @@ _VERDICT_STYLES = {
 _TONE_STYLES = {
     Tone.PLAIN: '',
     Tone.NONE: 'dim',
-    Tone.CHOSEN: 'bold',
     Tone.NOTABLE: 'yellow',
     Tone.BAD: 'bold red',
 }
@@ -121,7 +119,9 @@ def _render_section(section: Section, console: Console, *, brief: bool) -> None:
     for table in () if brief else filter(lambda table: table.rows, section.tables):
         if table.layout == Layout.ROWS:
             console.print()
-        console.print(_LAYOUTS[table.layout](table, console))
+            console.print(_rows(table, console))
+        else:
+            console.print(_values(table))
     remarks = () if brief else section.remarks
     if remarks:
         console.print()
@@ -137,20 +137,14 @@ def _bullet(sentence: str, style: str = '') -> RichTable:
     return item
 
 
-def _inline(table: Table, _console: Console) -> RenderableType:
-    values = []
+def _values(table: Table) -> RenderableType:
+    """Return the values of a single row with their labels, below its subject."""
+    grid = RichTable.grid(padding=(0, 2))
     if subject := table.rows[0][0].text:
-        values.append(Text.assemble((f'{table.columns[0]} ', 'dim'), (subject, 'bold')))
+        grid.add_row(Text(table.columns[0], 'dim'), Text(subject, 'bold', overflow='fold'))
     for _, column, cell in table.facts():
         if cell.says:
-            values.append(Text.assemble((f'{column} ', 'dim'), _styled(cell, cell.with_unit())))
-    return Columns(values, padding=(0, 3))
-
-
-def _lines(table: Table, _console: Console) -> RenderableType:
-    grid = RichTable.grid(padding=(0, 2))
-    for _, column, cell in table.facts():
-        grid.add_row(Text(column, 'dim'), _styled(cell, cell.with_unit()))
+            grid.add_row(Text(column, 'dim'), _styled(cell, cell.with_unit()))
     return grid
 
 
@@ -199,6 +193,3 @@ def _transposed(table: Table) -> RenderableType:
 
 def _styled(cell: Cell, text: str) -> Text:
     return Text(text, _TONE_STYLES[cell.tone])
-
-
-_LAYOUTS = {Layout.ROWS: _rows, Layout.INLINE: _inline, Layout.LINES: _lines}

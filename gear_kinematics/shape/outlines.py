@@ -129,22 +129,6 @@ def poses(
     }
 
 
-def roses(mechanism: Mechanism, petals: int, points: int) -> Array:
-    """The paths of the centres of the couplings, O4, from φ2 = 0 on (eqs. 21, 22).
-
-    Args:
-        mechanism: the mechanism.
-        petals: number of petals of each path, up to `oldham_petals`.
-        points: number of points of a petal.
-
-    Returns:
-        m, (petals · points + 1, B, 2).
-    """
-    share = petals / mechanism.oldham_petals
-    angle = np.linspace(0.0, TURN * mechanism.cycle_turns * share, petals * points + 1)
-    return np.asarray(solve(mechanism, angle).oldham_centre)
-
-
 def turned(outline: Array, angle: float) -> Array:
     """Turn points (n, 2) about the origin by an angle, rad."""
     return Pose(np.zeros(2), np.asarray(angle)).place(outline)

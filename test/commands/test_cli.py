@@ -61,13 +61,10 @@ def test_describe_tells_the_numbers_of_the_specification(capsys):
         'gear_ratio': '-19',
         'mobility_by_counting': 0,
         'mobility_by_rank': 1,
-        'redundant_constraints': 1,
         'ring_rolling_radius': pytest.approx(0.022),
         'satellite_rolling_radius': pytest.approx(0.0209),
         'oldham_petals': 40,
-        'vernier_combinations': 531_360,
         'vernier_distinct_positions': 265_680,
-        'vernier_ring_body_positions': 6642,
         'vernier_step': pytest.approx(2.36494e-5, rel=1e-5),
         'module': 0.0005,
         'working_pressure_angle': pytest.approx(math.acos(math.cos(math.radians(20.0)) / 1.1)),
@@ -90,7 +87,6 @@ def test_describe_prints_numbers_for_people(capsys):
         'working pressure angle': '31° 19′ 56.577″',
         'vernier step': '4.878″',
         'contact ratio': '1.86138',
-        'vernier combinations': '531360',
     }
     assert {name: lines[name] for name in shown} == shown
     assert lines['tip interference margin'].endswith('″')
@@ -143,7 +139,7 @@ def test_outputs_are_those_of_the_node_that_was_asked_for(capsys, two_nodes, tmp
 )  # fmt: skip
 def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypatch, arguments):
     monkeypatch.chdir(tmp_path)
-    assert refusal(*arguments, '--config', two_nodes) == (
+    assert refusal(*arguments, '--config', two_nodes).endswith(
         f'{two_nodes}: parameters of more than one node: '
         '/left/gear_state_publisher, /right/gear_state_publisher; choose one with --node'
     )

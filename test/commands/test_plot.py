@@ -46,8 +46,10 @@ def test_scheme_without_teeth_says_why(tmp_path, capsys):
     pair = ('--ring-teeth', '30', '--satellite-teeth', '28')
     path = str(tmp_path / 'a.svg')
     assert main(['plot', 'scheme', path, *pair, '--eccentricity', '0.0011']) == 0
-    [told] = capsys.readouterr().out.splitlines()
-    assert told.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
+    [told] = capsys.readouterr().err.splitlines()
+    assert told.startswith(
+        'gearkin: the gears are drawn as circles: involute teeth of module 0.0005 m '
+    )
     assert 'at an eccentricity of 0.0011 m' in told
     assert main(['plot', 'scheme', path, *pair, '--eccentricity', '0.00065']) == 0
     assert main(['plot', 'roses', path, *pair, '--eccentricity', '0.0011']) == 0
@@ -59,9 +61,11 @@ def test_animation_has_the_promised_frames(tmp_path, capsys):
     path = tmp_path / 'loop.gif'
     pair = ('--ring-teeth', '4', '--satellite-teeth', '3', '--eccentricity', '0.0008')
     assert main(['animate', str(path), *pair, '--rate', '3']) == 0
-    told, circles = capsys.readouterr().out.splitlines()
-    assert told == f'{path}: 10 frames, 20 per second'
-    assert circles.startswith('The gears are drawn as circles: involute teeth of module 0.0005 m ')
+    printed = capsys.readouterr()
+    assert printed.out == f'{path}: 10 frames, 20 per second\n'
+    assert printed.err.startswith(
+        'gearkin: the gears are drawn as circles: involute teeth of module 0.0005 m '
+    )
     assert path.read_bytes().startswith(SIGNATURES['gif'])
     with Image.open(path) as image:
         assert (image.n_frames, image.size) == (10, (420, 280))
@@ -135,7 +139,7 @@ def test_of_a_gear_with_only_a_ratio_the_output_is_plotted(other_gear, tmp_path,
 @pytest.mark.parametrize(
     'command',
     ['plot scheme a.png', 'plot slides a.png', 'animate a.gif', 'urdf', 'describe',
-     'index --degrees 1', 'preload --degrees 1'],
+     'index --degrees 1', 'preload --degrees 1 --branch-stiffness 1 --shaft-stiffness 1'],
 )  # fmt: skip
 def test_what_needs_bodies_refuses_a_gear_with_only_a_ratio(command, other_gear):
     error = 'gear_ratio is 1457/26: only the ratio of this gear is known, not its bodies'

@@ -7,8 +7,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from blocked_bags import BAGS, gearkin, refusal
-from terminals import ENVIRONMENT, Terminal
+from blocked_bags import BAGS, refusal
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.report.mark import is_report
@@ -52,7 +51,7 @@ RECORDINGS = {
     'lost-motion --plot before.csv samples.txt': 'a recording',
     'calibrate samples.txt -o before.csv': 'a recording',
     'describe --json before.csv': 'a recording',
-    'preload --degrees 1 --json k1.mcap': 'a recording',
+    'index --degrees 1 --json k1.mcap': 'a recording',
     'animate k1.mcap': 'a recording',
 }
 
@@ -149,18 +148,6 @@ def test_a_file_that_cannot_be_written_is_named_before_any_work(arguments, error
     before = contents(work)
     assert refusal('validate', 'k1.mcap', *arguments) == error
     assert contents(work) == before
-
-
-@pytest.mark.slow
-def test_a_page_is_not_written_to_a_terminal():
-    with Terminal() as terminal:
-        done = gearkin('describe', '--html', '-', stdout=terminal.other, env=ENVIRONMENT)
-        assert terminal.text() == ''
-    assert done.returncode == 2
-    assert done.stderr == (
-        'gearkin: --html -: a page goes into a file or a pipe, not to a terminal\n'
-    )
-    assert gearkin('describe', '--html', '-').stdout.startswith('<!DOCTYPE html>')
 
 
 def test_a_calibration_replaces_a_calibration_alone(work):

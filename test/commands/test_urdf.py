@@ -40,8 +40,6 @@ def test_meshes_of_the_default_are_the_installed_ones(capsys):
     assert main(['urdf']) == 0
     prefix = 'package://gear_kinematics/meshes/80_76_0_0011_0_0005/'
     assert mesh_names(capsys.readouterr().out) == {prefix + name for name in FILES}
-    assert main(['urdf', '--mesh-uri', 'none']) == 0
-    assert mesh_names(capsys.readouterr().out) == set()
 
 
 def test_uri_can_be_that_of_another_package(capsys, tmp_path):
@@ -50,15 +48,11 @@ def test_uri_can_be_that_of_another_package(capsys, tmp_path):
         '/**:\n  ros__parameters: {ring_teeth: 61, satellite_teeth: 58, eccentricity: 0.001,\n'
         '    meshes: "package://from_file/meshes"}\n'
     )
-    uri = 'package://my_robot/meshes'
     words = ['urdf', '--config', str(config)]
-    for options, folder in (
-        ([], 'package://from_file/meshes'),
-        (['--meshes', str(tmp_path / 'm'), '--mesh-uri', uri], uri),
-    ):
+    for options in ([], ['--meshes', str(tmp_path / 'm')]):
         assert main([*words, *options]) == 0
         names = mesh_names(capsys.readouterr().out)
-        assert names == {f'{folder}/{name}' for name in FILES}
+        assert names == {f'package://from_file/meshes/{name}' for name in FILES}
     assert {path.name for path in (tmp_path / 'm').iterdir()} == FILES
 
 
@@ -92,7 +86,7 @@ def test_teeth_that_cannot_mesh_are_told_beside_the_urdf(capsys, tmp_path):
     assert main(['urdf', '--config', str(config), '--meshes', str(tmp_path / 'm')]) == 0
     captured = capsys.readouterr()
     assert mesh_names(captured.out)
-    assert captured.err.startswith('The gears are drawn as circles: ')
+    assert captured.err.startswith('gearkin: the gears are drawn as circles: ')
 
 
 def test_urdf_without_meshes_needs_no_extra(tmp_path, monkeypatch):
@@ -101,8 +95,3 @@ def test_urdf_without_meshes_needs_no_extra(tmp_path, monkeypatch):
     error = "mapbox_earcut is not installed: pip install 'gear_kinematics[mesh]'"
     assert refusal('urdf', '--meshes', tmp_path / 'm') == error
     assert not (tmp_path / 'm').exists()
-
-
-def test_uri_that_is_none_is_refused():
-    error = refusal('urdf', '--mesh-uri', 'my meshes')
-    assert error.startswith('argument --mesh-uri: must be auto, none or a URI')

@@ -88,7 +88,7 @@ ROOMS = {
     'report': ('kinematics', 'shape'),
     'validation': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
     'measurement': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
-    'plotting': ('bag', 'correction', 'kinematics', 'report', 'shape'),
+    'plotting': ('bag', 'kinematics', 'report', 'shape'),
     'ros': (
         'bag',
         'correction',

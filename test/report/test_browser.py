@@ -162,21 +162,6 @@ def test_it_plays_to_the_end_and_from_the_start_again_until_it_is_paused(report)
     expect(button).to_have_text('Play')
 
 
-def test_dark_pages_keep_the_cursor(tab, report):
-    _, section = report
-    select(section, 9)
-    lines = section.locator('.shapelayer path')
-    count = lines.count()
-    light = lines.last.get_attribute('style')
-    tab.emulate_media(color_scheme='dark')
-    try:
-        expect(lines.last).not_to_have_attribute('style', light)
-        expect(lines).to_have_count(count)
-    finally:
-        tab.emulate_media(color_scheme='light')
-    expect(lines.last).to_have_attribute('style', light)
-
-
 # What it shows first
 
 ROTOR = replace(samples.ROTOR, first_stamp=samples.START)
