@@ -2,14 +2,13 @@
 """`gearkin commission`: the parameters of the node, from recordings of both encoders."""
 
 import argparse
-import math
+import sys
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import add_recordings, ratio_text, sources
-from gear_kinematics.commands.files import write_text
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import (
     Console,
@@ -23,17 +22,19 @@ from gear_kinematics.measurement.commissioning import Channel, Request, actuator
 from gear_kinematics.measurement.commissioning.check import judge
 from gear_kinematics.measurement.commissioning.document import check_document, document
 from gear_kinematics.measurement.commissioning.reading import read_positions
-from gear_kinematics.measurement.ratio import ENCODER_ERROR
 from gear_kinematics.measurement.recording import Encoders, Recording
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
+from gear_kinematics.report.document import printable
 
+_Heard = tuple[list[tuple[Recording, Encoders]], Request]
+"""Recordings, and the request with the joints that were heard."""
 _WAIT = 4.0  # s; a driver may find this listener only when it announces itself, every 3 s
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
-    add_recordings(parser, 'rotor', 'output', 'time', configured=False)
+    add_recordings(parser, 'rotor', 'output', configured=False)
     recording = arguments.group(parser, 'recording')
     recording.add_argument(
         '--live',
@@ -58,17 +59,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--check', type=Path, metavar='FILE', help='judge this parameter file, and write none'
     )
     gear.add_argument(
-        '--encoder-error',
-        type=arguments.between(1e-3, 90.0),
-        default=math.degrees(ENCODER_ERROR),
-        metavar='DEG',
-        help='that each encoder may have, once a turn (default: %(default)g)',
-    )
-    gear.add_argument(
         '--zero-here',
         type=_moment,
-        metavar='START|END|S',
-        help='the output angle is 0 then, in the last recording: s from its start, or since 1970 '
+        metavar='START|END|STAMP',
+        help='the output angle is 0 then, in the last recording; a stamp or time of it, s '
         "(default: at 0 of the output's encoder)",
     )
     output = arguments.group(parser, 'output')
@@ -77,7 +71,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         '--output',
         default=default_config().name,
         metavar='FILE',
-        help='the parameter file; - is stdout (default: %(default)s); replaces nothing',
+        help='the parameter file (default: %(default)s); replaces nothing',
     )
     arguments.add_verbose(parser, 'print tables and remarks in a pipe, too')
     add_report_forms(parser)
@@ -85,22 +79,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> ExitCode:
     """Write a parameter file, or judge one."""
-    path, to_stdout = Path(options.output), options.output == '-'
-    others = {} if options.check else {'-o': options.output}
-    if others and not to_stdout and (path.exists() or path.is_symlink()):
+    path = Path(options.output)
+    if not options.check and (path.exists() or path.is_symlink()):
         raise ValueError(f'{path}: exists already; give another name with -o')
     if options.live == bool(options.recordings):
         raise ValueError('name recordings, or --live, which hears the drivers instead')
+    others = {} if options.check else {'-o': options.output}
     reporter = Reporter(options, others=others, brief=not options.verbose)
     file = NodeParameters.load(options.check) if options.check else None
     request = Request(
         ratio=file.gear.gear_ratio if file else _ratio(options),
         teeth=options.teeth,
         zero_here=options.zero_here,
-        encoder_error=math.radians(options.encoder_error),
     )
-    likely = (file.rotor_joint, file.output_encoder_joint) if file else ('', '')
-    recordings, request = (_hear if options.live else _read)(options, request, likely)
+    if file:
+        options.joint = options.joint or file.rotor_joint
+        options.encoder_joint = options.encoder_joint or file.output_encoder_joint
+    recordings, request = (_hear if options.live else _read)(options, request)
     result = commission(recordings, request)
     if file:
         judgements = list(judge(result, file))
@@ -108,23 +103,20 @@ def run(options: argparse.Namespace) -> ExitCode:
         failed = any(each.holds is False for each in judgements)
         return ExitCode.FAILED if failed else ExitCode.DONE
     if not result.fault:
-        text = actuator_file(result, default_config().name if to_stdout else path.name)
-        write_text('-', text) if to_stdout else write_new(path, text)
-    elif to_stdout or options.quiet:  # where no report says it
+        write_new(path, actuator_file(result, path.name))
+    elif options.quiet:  # where no report says it
         complain(result.fault)
     reporter.write(document(result, options.output))
     return ExitCode.FAILED if result.fault else ExitCode.DONE
 
 
-def _read(
-    options: argparse.Namespace, request: Request, likely: tuple[str, str]
-) -> tuple[list[tuple[Recording, Encoders]], Request]:
-    """Read the recordings; likely joints are taken where they exist and no option names others."""
+def _read(options: argparse.Namespace, request: Request) -> _Heard:
+    """Read the recordings."""
     joints = options.joint, options.encoder_joint
     recordings, channels = [], set()
     for path in options.recordings:
         with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-            read = read_positions(path, sources(options), joints, progress, likely)
+            read = read_positions(path, sources(options), joints, progress)
         recordings.append(read[:2])
         channels.add(read[2:])
     if len(channels) > 1:
@@ -133,9 +125,7 @@ def _read(
     return recordings, replace(request, rotor=rotor, output=output)
 
 
-def _hear(
-    options: argparse.Namespace, request: Request, likely: tuple[str, str]
-) -> tuple[list[tuple[Recording, Encoders]], Request]:
+def _hear(options: argparse.Namespace, request: Request) -> _Heard:
     """Hear both encoders until they tell what is needed, or the user ends it.
 
     Raises:
@@ -152,12 +142,12 @@ def _hear(
 
     console, drivers = Console(stderr=True), listen(_WAIT)
     list_drivers(drivers, console)
-    heard = {joint for driver in drivers for joint in driver.joints}
-    usual = [joint if joint in heard else None for joint in likely]
-    given = options.rotor_topic, options.joint or usual[0]
+    given = options.rotor_topic, options.joint
     rotor = choose_joint(drivers, given, 'rotor', '--rotor-topic and --joint')
-    given = options.encoder_topic, options.encoder_joint or usual[1]
+    given = options.encoder_topic, options.encoder_joint
     output = choose_joint(drivers, given, 'output', '--encoder-topic and --encoder-joint', rotor)
+    chosen = 'rotor: {1} on {0}; output: {3} on {2}'.format(*rotor, *output)
+    print(printable(chosen), file=sys.stderr)
     request = replace(request, rotor=Channel(*rotor), output=Channel(*output))
     with stopped_by_signals() as stopped, replay_node('') as node:
         live = LiveCommissioning(node, request, once=True)

@@ -3,6 +3,7 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics.commands import arguments
 from gear_kinematics.commands.bags import add_rotor
@@ -14,7 +15,6 @@ _COLUMNS = {
     'torque': 'N·m',
     'rotor': 'angle of the rotor',
     'output': 'angle of the output encoder',
-    'time': 's, unless its name ends in a unit',
 }
 
 
@@ -35,9 +35,16 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     recording.add_argument(
         '--encoder-topic', metavar='NAME', help='(default: found by type and name)'
     )
-    arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
+    gear = arguments.group(parser, 'gear')  # before the columns, also where the command adds to it
     if configured:
-        _add_gear(parser)
+        arguments.add_config(parser)
+        gear.add_argument(
+            '--ratio',
+            type=ratio_text,
+            metavar='I',
+            help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
+            'from the teeth; gearkin commission finds it)',
+        )
     group = parser.add_argument_group('columns of a CSV', 'by default found by name')
     for role in roles:
         group.add_argument(f'--{role}-column', metavar='NAME', help=_COLUMNS[role])
@@ -45,16 +52,14 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
         '--angle-unit', choices=ANGLE_UNITS, help='of all angles (default: by name, or rad)'
     )
     if 'torque' in roles:
-        what = 'angle and torque are' if 'angle' in roles else 'the torque is'
         group.add_argument(
             '--on-rotor',
             action='store_true',
-            help=f'{what} of the rotor, unless the name of the column says output',
+            help='angle and torque are of the rotor, unless the name of the column says output',
         )
     count = arguments.between(1, kind=int)
     group.add_argument(
         '--rotor-counts',
-        '--counts',
         type=count,
         metavar='N',
         help='steps per turn of the encoder of the rotor, or of the angle column: in them are the '
@@ -65,20 +70,9 @@ def add_recordings(parser: argparse.ArgumentParser, *roles: str, configured: boo
     )
 
 
-def _add_gear(parser: argparse.ArgumentParser) -> None:
-    arguments.add_config(parser)
-    arguments.group(parser, 'gear').add_argument(
-        '--ratio',
-        type=ratio_text,
-        metavar='I',
-        help='exact gear ratio, such as -19 or 1457/26 (default: the parameter gear_ratio, or '
-        'from the teeth; gearkin commission finds it)',
-    )
-
-
 def sources(options: argparse.Namespace) -> Sources:
     """The columns and topics given by the options."""
-    names = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
+    names: dict[str, Any] = {role: getattr(options, f'{role}_column', None) for role in _COLUMNS}
     return Sources(
         **names,
         unit=options.angle_unit,

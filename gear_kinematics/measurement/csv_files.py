@@ -25,8 +25,6 @@ from gear_kinematics.measurement.recording import (
     RecordingError,
     RotorMotion,
     locked_output,
-    times_of_rows,
-    unit_since_1970,
 )
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.nearest import among
@@ -64,12 +62,13 @@ _UNITS: Mapping[str, Mapping[str, float | None]] = {
 """In SI units; None: counts of an encoder."""
 _KNOWN_UNITS = {unit for units in _UNITS.values() for unit in units}
 _BRACKETS = re.compile(r'[\[(]\s*([^\])]*?)\s*[\])]')
-_ENDINGS = ('rad', 'deg', 'degree', 'degrees', 'rev', 'gon', 'min', 'sec', 'nm')
 _WORD = re.compile(r'[^\s_/-]+')
 _MOST_ROWS = 1_800_000
 """Half an hour at 1 kHz: measuring takes up to 250 bytes a row."""
 _LEAST = 1e-30
 """Numbers that are smaller are 0: of none of those that follow, squares and inverses underflow."""
+_LATEST = 4_102_444_800.0
+"""s since 1970: in 2100."""
 _LONGEST = 2**16
 """Characters in a line."""
 _SHOWN = 800
@@ -86,7 +85,6 @@ class Sources:
     torque: str | None = None
     rotor: str | None = None
     output: str | None = None
-    time: str | None = None
     unit: str | None = None
     """Unit of all angles, one of ANGLE_UNITS; None: by their names, or rad."""
     on_rotor: bool = False
@@ -95,6 +93,8 @@ class Sources:
     """Counts per turn of the encoder of the rotor, or of the angle column."""
     output_counts: int | None = None
     """The same of the output's encoder."""
+    raw_counts: bool = False
+    """Whether counts stay what they are, where those per turn are not given."""
     rotor_topic: str | None = None
     encoder_topic: str | None = None
 
@@ -120,7 +120,7 @@ def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
     Raises:
         ValueError: if they do not suffice, or a unit is not known.
     """
-    named = {role: name for role in _NAMES if (name := getattr(given, role))}
+    named = {role: name for role in _NAMES if (name := getattr(given, role, None))}
     for name in named.values():
         if name not in header:
             raise ValueError(f'no column {name!r}{among(name, header, most=len(header))}')
@@ -133,16 +133,12 @@ def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
     if {'rotor', 'output'} <= found.keys() and 'angle' not in named:
         found.pop('angle', None)
     elif 'torque' in found and (angles := [found[role] for role in _ANGULAR if role in found]):
-        others = {role: name for role, name in found.items() if role not in _ANGULAR}
-        found = {'angle': angles[0], **others}
+        found = {'angle': angles[0], 'torque': found['torque']}
     else:
-        unknown = ', '.join(filter(None, (_split(name)[2] for name in header)))
-        listed = f'{_listed("angle")}, {_listed("torque")}'
-        hint = f'; unknown units: {unknown}; known: {listed}' if unknown else f'; units: {listed}'
         raise ValueError(
             'neither an angle and a torque nor a rotor and an output among the columns '
             f'{", ".join(header)}; name them with --angle-column, --torque-column, '
-            f'--rotor-column, --output-column{hint}'
+            f'--rotor-column, --output-column; units: {_listed("angle")}, {_listed("torque")}'
         )
     moteus = {name.lower() for name in header} >= _MOTEUS
     units = [_split(found[role])[1] for role in _ANGULAR if role in found]
@@ -151,37 +147,32 @@ def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
 
 
 def _column(role: str, name: str, given: Sources, common: str) -> Column:
-    plain, unit, unknown = _split(name)
-    unknown = unknown or ('' if unit in _UNITS[role] else unit)
-    if unknown and not (given.unit and role in _ANGULAR):
-        raise ValueError(f'{name}: the unit {unknown} is not known; known: {_listed(role)}')
+    plain, unit = _split(name)
+    if unit and unit not in _UNITS[role] and not (given.unit and role in _ANGULAR):
+        raise ValueError(f'{name}: the unit {unit} is not known; known: {_listed(role)}')
     if role in _ANGULAR:
         unit = given.unit or unit or common
     scale = _UNITS[role].get(unit, 1.0)
     if scale is None:
         encoder = 'output' if role == 'output' else 'rotor'
         counts = getattr(given, f'{encoder}_counts')
-        if counts is None:
+        if counts is None and not given.raw_counts:
             raise ValueError(f'{name} has counts: give those per turn with --{encoder}-counts')
-        scale, unit = TURN / counts, f'{counts} counts a turn'
+        scale = TURN / counts if counts else 1.0
+        unit = f'{counts} counts a turn' if counts else 'counts'
     on_rotor = given.on_rotor and plain.partition('_')[0] not in _OUTPUT
     return Column(name, scale, unit, on_rotor)
 
 
-def _split(name: str) -> tuple[str, str, str]:
-    """A name without its unit, in the form of `_NAMES`, the unit, and the unit if it is not known.
-
-    Either may be empty. An unknown unit is in brackets, or ends as a known one.
-    """
+def _split(name: str) -> tuple[str, str]:
+    """A name without its unit, in the form of `_NAMES`, and the unit, in brackets or known."""
     text, unit = name.strip().lower(), ''
     if brackets := _BRACKETS.search(text):
         text, unit = text.replace(brackets[0], ' '), brackets[1]
     words = _WORD.findall(text)
-    last = words[-1] if words else ''
-    if not unit and last in _KNOWN_UNITS:
+    if not unit and words and words[-1] in _KNOWN_UNITS:
         unit = words.pop()
-    likely = unit or (last if last.endswith(_ENDINGS) else '')
-    return '_'.join(words), unit, '' if likely in _KNOWN_UNITS else likely
+    return '_'.join(words), unit
 
 
 def _listed(role: str) -> str:
@@ -206,34 +197,25 @@ def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
         raise RecordingError(f'{path}: no usable rows')
     remarks = [f'one row of {every} is used: no more are kept in memory'] if every > 1 else []
     if left_out := int(np.count_nonzero(~usable)):
-        remarks.append(f'{left_out} rows were left out: not finite, or too large')
-    stray = usable & np.any([_stray(data[role]) for role in _ANGULAR if role in data], axis=0)
-    if left_out := int(np.count_nonzero(stray)):
-        remarks.append(f'{left_out} rows were left out: turns away from those around them')
-        usable &= ~stray
+        remarks.append(f'{left_out} rows were left out: no numbers, or too large')
     data['segment'] = np.cumsum(~usable)  # the motion in rows that are left out is unknown
     data = {
         role: np.where(np.abs(rows := values[usable]) < _LEAST, 0.0, rows)
         for role, values in data.items()
     }
-    start = None
     if 'time' in data:
-        name, time = found['time'].name, data.pop('time')
-        if not found['time'].unit:
-            time *= unit_since_1970(time[0]) or 1.0
-        start = float(time[0]) if unit_since_1970(time[0]) else None
+        name, seen = found['time'].name, len(data['time'])
         try:
-            data['time'] = times_of_rows(time)
+            data['time'] = _stamps(data['time'])
         except RecordingError as error:
-            if sources.time:
-                raise RecordingError(f'{path}: the times in {name}: {error}') from error
+            del data['time']
             remarks.append(f'the times in {name} are not used: {error}')
         else:
-            if (kept := len(data['time'])) < len(time):
-                remarks.append(
-                    f'the time in {name} goes back after {kept} rows: the others are left out'
-                )
-                data = {role: values[:kept] for role, values in data.items()}
+            kept = len(data['time'])
+            data = {role: values[:kept] for role, values in data.items()}
+            if kept < seen:
+                what = f'goes back after {kept} rows: the others are left out'
+                remarks.append(f'the time in {name} {what}')
     if 'torque' in data and found['torque'].on_rotor:
         data['torque'] *= float(ratio)
     encoders = locked = None
@@ -242,30 +224,35 @@ def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
     else:
         at_output = ratio if found['angle'].on_rotor else Fraction(1)
         step = step_of(sources.rotor_counts, data['angle'])
-        locked = locked_output(data['torque'], data['angle'], step, at_output, data.get('time'))
+        locked = locked_output(data['torque'], data['angle'], step, at_output)
     return Recording(
-        path, path.name, tuple(_described(found)), len(usable), start, encoders, locked,
-        tuple(remarks), lacking='not both a rotor and an output among the columns; name them with '
-        '--rotor-column and --output-column',
+        path, path.name, tuple(_described(found)), len(usable), encoders, locked,
+        tuple(remarks),
     )  # fmt: skip
 
 
-def _stray(angle: Array) -> Array:
-    """Whether a row is turns away from both that before and that after it, which agree."""
-    around = np.pad(angle, 1, mode='reflect')
-    with np.errstate(invalid='ignore'):  # of infinite numbers
-        away = np.minimum(np.abs(angle - around[:-2]), np.abs(angle - around[2:]))
-        stray: Array = (away > 2.0 * TURN) & (np.abs(around[2:] - around[:-2]) < 0.01 * away)
-    return stray
+def _stamps(time: Array) -> Array:
+    """Stamps, ns, of the rows before the clock was set back, by their times in s.
+
+    Raises:
+        RecordingError: if they are no times.
+    """
+    if not np.all(np.abs(time) < _LATEST):  # NaN compares false
+        raise RecordingError('no numbers, or too large to be s: name their unit, as in time_ns')
+    back = np.flatnonzero(np.diff(time) < 0.0)
+    time = time[: back[0] + 1] if len(back) else time
+    if time[-1] == time[0]:
+        raise RecordingError('they stand still')
+    return np.round(time * SECOND).astype(np.int64)
 
 
 def _encoders(data: Mapping[str, Array], sources: Sources, ratio: Fraction) -> Encoders:
-    rows, time = np.arange(len(data['rotor'])), data.get('time')
-    stamp = np.round((rows if time is None else time) * SECOND).astype(np.int64)
+    rows = np.arange(len(data['rotor']))
+    stamp = data.get('time', rows * SECOND)
     effort = data['torque'] / float(ratio) if 'torque' in data else None
     return Encoders(
         RotorMotion(stamp, *split_turns(data['rotor']), effort, data['segment']),
-        timed=time is not None,
+        timed='time' in data,
         before=rows,
         share=np.zeros(len(rows)),
         measured=data['output'],
@@ -319,13 +306,9 @@ def _read(path: Path, sources: Sources) -> tuple[dict[str, Column], dict[str, Ar
 def _numbers(
     header: list[str], rows: Iterable[list[str]], found: Mapping[str, Column]
 ) -> tuple[Array, int]:
-    readers = [
-        (header.index(column.name), _number_or_nan if role == 'time' else float)
-        for role, column in found.items()
-    ]
+    places = [header.index(column.name) for column in found.values()]
     values = array('d')  # a row takes no more memory than its numbers
-    width, every = len(readers), 1
-    nothing = width * [math.nan]
+    width, every = len(places), 1
     for line, row in enumerate(rows, start=2):
         if (line - 2) % every:
             continue
@@ -333,14 +316,13 @@ def _numbers(
             values = array('d', np.frombuffer(values).reshape(-1, width)[::2].tobytes())
             every *= 2
         try:
-            values.extend([read(row[place]) for place, read in readers] if row else nothing)
-        except (IndexError, ValueError) as error:
-            cause = 'too few columns' if isinstance(error, IndexError) else error
-            raise ValueError(f'line {line}: {cause}') from error
+            values.extend(_number(row[place]) if row else math.nan for place in places)
+        except IndexError as error:
+            raise ValueError(f'line {line}: too few columns') from error
     return np.frombuffer(values).reshape(-1, max(1, width)), every
 
 
-def _number_or_nan(text: str) -> float:
+def _number(text: str) -> float:
     try:
         return float(text)
     except ValueError:

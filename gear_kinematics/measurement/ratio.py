@@ -15,13 +15,14 @@ from gear_kinematics.correction.uncertainty import Component, Estimate, combined
 from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
+from gear_kinematics.measurement.wording import plus_minus
 from gear_kinematics.report.document import number
 
 Array = NDArray[np.float64]
 
 ENCODER_ERROR = math.radians(1.0)
 """rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
-printed gears by about as much."""
+printed gears by about as much: that of the rotor's encoder, and of gear and output's encoder."""
 _BLOCKS = 23
 """Prime, as blocks of whole cycles of an error would not differ."""
 _SAMPLES = 230, 10_000
@@ -41,8 +42,9 @@ _LEAST_NOISE = 1e-9
 """rad: less than the step of any encoder."""
 _STEP = 0.01
 """s around a sample, for its speed; of a row without times."""
-_TURNS = (*(n / 12 for n in (*range(1, 12), *range(13, 25))), 2.5, 3, 4, 5, 7, 10, 20, 50, 100)
-"""Of the output, that may be advised; just one is the weak spot, as hardly anything repeats."""
+_ONE_TURN, _MOST_ADVISED = 390, 36_000
+"""deg of the output: more than a turn, as hardly anything repeats in just one; and the most that
+is advised."""
 _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
 _MAX_DISTANCE = 2
@@ -84,18 +86,14 @@ class RatioEstimate:
     @property
     def enough(self) -> float:
         """Expanded uncertainty below which the simplest fraction is no coincidence."""
-        # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q. A gear to a
-        # higher speed is judged by the inverse.
-        small = min(abs(self.simplest.numerator), self.simplest.denominator)
-        unit = min(1.0, self.measured.value**2)
-        return unit * _BY_CHANCE / (_MAX_DISTANCE * small * (small + 1))
+        # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
+        q = self.simplest.denominator
+        return _BY_CHANCE / (_MAX_DISTANCE * q * (q + 1))
 
     @property
     def plus_minus(self) -> str:
-        """The measured ratio ± its expanded uncertainty, to two digits of that."""
-        spread = self.measured.uncertainty or 0.0
-        decimals = max(0, 1 - math.floor(math.log10(spread)))
-        return f'{self.measured.value:.{decimals}f} ± {spread:.{decimals}f}'
+        """The measured ratio ± its expanded uncertainty."""
+        return plus_minus(self.measured)
 
     @property
     def tooth_pairs(self) -> tuple[tuple[int, int], ...]:
@@ -146,14 +144,12 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.simplest}'
 
 
-def estimate_ratio(
-    rotor: Array, output: Array, time: Array | None = None, encoder_error: float = ENCODER_ERROR
-) -> RatioEstimate:
+def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> RatioEstimate:
     """Estimate the ratio by least squares that expect errors of a bounded size.
 
     The output angle is slope · rotor angle + offset + play by direction + delay · speed + errors
     that repeat with each turn of output or rotor: for k cycles a turn, their amplitude is at most
-    `encoder_error`/k, with a probability of 95 %. What less than a turn leaves open of them is in
+    `ENCODER_ERROR`/k, with a probability of 95 %. What less than a turn leaves open of them is in
     the uncertainty; over more, they are fitted. All else is in the scatter of the estimates with
     one block of successive samples left out.
 
@@ -161,10 +157,10 @@ def estimate_ratio(
         rotor: (n,), rad, counting turns, in the order of time.
         output: (n,), rad, counting turns.
         time: (n,), s.
-        encoder_error: rad, of the output's encoder and the gear, and of the rotor's encoder.
 
     Raises:
-        RecordingError: if there are too few samples, or the output hardly turns with the rotor.
+        RecordingError: if there are too few samples, or the output hardly turns with the rotor, or
+            more than it.
     """
     for angle, body in ((rotor, 'rotor'), (output, 'output')):
         if not np.ptp(angle):
@@ -185,27 +181,27 @@ def estimate_ratio(
         around = [times[kept] - late + step for step in (-_STEP, 0.0, _STEP)]
         early, at, after = (np.interp(when, times, rotor) for when in around)
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
-        columns = _columns(at, slope, encoder_error, way[kept], slope * (after - early))
+        columns = _columns(at, slope, way[kept], slope * (after - early))
         fit = _Fit(columns, output[kept] - slope * at)
         travel = float(np.ptp(at))
         slope, late = slope + fit.slope / travel, late - fit.delay
     parts = Component(fit.spread / travel), Component(fit.scatter / travel, _BLOCKS - 1)
     measured = Estimate(slope, *combined(parts), _BLOCKS)
     if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):
-        error = f'for errors of {number(math.degrees(encoder_error))}°'
+        error = f'for errors of {number(math.degrees(ENCODER_ERROR))}°'
         raise RecordingError(f'the output does not follow the rotor, or turns too little {error}')
     measured = measured.inverse()
+    if abs(measured.value) + (measured.uncertainty or 0.0) < 1.0:
+        raise RecordingError('the output turns more than the rotor: exchange the two')
     found = RatioEstimate(measured, tuple(islice(_fractions(measured), _SHOWN)))
-    return (
-        found if found.taken else replace(found, advice=_advice(found, fit, travel, encoder_error))
-    )
+    return found if found.taken else replace(found, advice=_advice(found, abs(slope) * travel))
 
 
-def _columns(rotor: Array, slope: float, error: float, way: Array, step: Array) -> Array:
+def _columns(rotor: Array, slope: float, way: Array, step: Array) -> Array:
     """Each term as large as it may be: (n, terms); slope, offset, play and delay are first."""
     x = (rotor - np.mean(rotor)) / np.ptp(rotor)
     columns = [x, np.ones(len(x)), _PLAY * way, _DELAY / (2.0 * _STEP) * step]
-    amplitudes = error, (abs(slope) + _ROTOR_SHARE) * error
+    amplitudes = ENCODER_ERROR, (abs(slope) + _ROTOR_SHARE) * ENCODER_ERROR
     for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
         for k in range(1, most + 1):
             size = amplitude / (_TO_STANDARD * k)
@@ -249,36 +245,28 @@ def _noise(residual: Array) -> float:
     return most
 
 
-def _advice(found: RatioEstimate, fit: _Fit, travel: float, error: float) -> str:
-    """How far to turn the output evenly so that the simplest candidate would be alone."""
-    ratio = abs(found.measured.value)
-    # The scatter falls as the uncertainty does that the expected errors explain.
-    needed = fit.spread / travel * found.enough / (found.measured.uncertainty or math.inf)
-    for turns in _TURNS:
-        even = np.linspace(0.0, turns * TURN * ratio, 1500)
-        columns = _columns(even, 1.0 / ratio, error, *np.zeros((2, len(even))))
-        sums = fit.samples / len(even) * np.pad(columns.T @ columns, (0, 1))
-        spread = _solve(sums, fit.noise)[1]
-        if even[-1] > travel and spread / even[-1] <= needed:
-            stops = ' (a gear with stops: confirm its nameplate ratio)' if turns > 1.0 else ''
-            return f'turn the output by {360.0 * turns:.0f}° or more{stops}'
-    return 'confirm its nameplate ratio, as no motion will tell it'
+def _advice(found: RatioEstimate, travel: float) -> str:
+    """How far to turn the output so that the simplest candidate would be alone."""
+    degrees = _ONE_TURN
+    if (turned := math.degrees(travel)) >= _ONE_TURN:  # then the uncertainty falls as it grows
+        more = (found.measured.uncertainty or 0.0) / found.enough
+        degrees = 90 * math.ceil(more * turned / 90.0)
+    if degrees > _MOST_ADVISED:
+        return 'confirm its nameplate ratio, as no motion will tell it'
+    return (
+        f'turn the output by {degrees}° or more (a gear with stops: confirm its nameplate ratio)'
+    )
 
 
 def _fractions(measured: Estimate) -> Iterator[Fraction]:
-    """Fractions that may be a ratio, the simplest and nearest first.
-
-    The denominator is that of a gear to a lower speed; of one to a higher speed, the numerator.
-    """
+    """Fractions that may be a ratio, the simplest and nearest first."""
     low, high = _interval(measured)
-    if inverse := abs(measured.value) < 1.0:
-        low, high = 1 / high, 1 / low
-    least, middle = simplest_fraction(low, high).denominator, float(low + high) / 2
+    least = simplest_fraction(low, high).denominator
     for q in range(least, _COMPLEX * least):
         whole = range(math.ceil(low * q), math.floor(high * q) + 1)
-        for p in sorted(whole, key=lambda p: abs(p - middle * q)):
+        for p in sorted(whole, key=lambda p: abs(p - measured.value * q)):
             if math.gcd(p, q) == 1:
-                yield Fraction(q, p) if inverse else Fraction(p, q)
+                yield Fraction(p, q)
 
 
 def _interval(measured: Estimate) -> tuple[Fraction, Fraction]:

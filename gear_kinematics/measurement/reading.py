@@ -24,7 +24,6 @@ from gear_kinematics.measurement.recording import (
     Recording,
     RecordingError,
     RotorMotion,
-    before_set_back,
     in_order,
     locked_output,
     match,
@@ -34,6 +33,7 @@ from gear_kinematics.state.output_encoder import measured_angle
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.batches import JointStates, decode_joint_states
 from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.topics import OUTPUT_ENCODER
 
 _MOST_STATES = 1_800_000
 """Half an hour at 1 kHz: measuring takes up to 200 bytes for each state of rotor or output."""
@@ -73,9 +73,17 @@ def read_encoders(
     Raises:
         BagError, RecordingError: see `read`; if it lacks the output's encoder.
     """
+    sources = sources or Sources()
+    if not is_csv(path):
+        with Bag(path) as bag:
+            if not find_encoder_topic(bag, sources.encoder_topic):
+                raise RecordingError(f'{path}: {missing_encoder(bag)}')
     recording = read(path, parameters, sources, progress)
     if recording.encoders is None:
-        raise RecordingError(f'{path}: {recording.lacking}')
+        raise RecordingError(
+            f'{path}: not both a rotor and an output among the columns; name them with '
+            '--rotor-column and --output-column'
+        )
     return recording, recording.encoders
 
 
@@ -90,7 +98,6 @@ def _read_bag(
         encoder = find_encoder_topic(bag, sources.encoder_topic)
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
         states = States(rotor, encoder, parameters, _MOST_STATES)
-        no_encoder = '' if encoder else missing_encoder(bag)
         topics = [topic for topic in (rotor, encoder) if topic]
         try:
             for batch in bag.batches(topics, progress):
@@ -98,7 +105,7 @@ def _read_bag(
                 states.add(found[rotor], found[encoder] if encoder else None)
         except DamagedBagError as error:
             damage = str(error)
-    return states.recording(path, sources, no_encoder, damage)
+    return states.recording(path, sources, damage)
 
 
 class States:
@@ -111,14 +118,10 @@ class States:
         self._rotor, self._encoder, self._parameters = rotor, encoder, parameters
         self._input = RotorInput(parameters)
         self._inputs, self._outputs = _Columns(most // (2 if encoder else 1)), _Columns(most // 2)
-        self._start: float | None = None
         self._lacking = ''
 
     def add(self, rotor: TopicMessages, encoder: TopicMessages | None) -> None:
         """Add what came on both topics."""
-        firsts = [of.received[0] for of in (rotor, encoder) if of and of.received]
-        if self._start is None and firsts:
-            self._start = min(firsts) / SECOND
         new = self._input.accept_batch(rotor.data, rotor.received)
         self._inputs.add((new.stamp, new.turns, new.angle, new.effort, new.segment))
         if encoder:
@@ -126,57 +129,51 @@ class States:
             self._lacking = self._lacking or states.missing_joint
             self._outputs.add(_measured(states, encoder.received, self._parameters))
 
-    def recording(
-        self, path: Path, sources: Sources, no_encoder: str = '', damage: str | None = None
-    ) -> Recording:
+    def recording(self, path: Path, sources: Sources, damage: str | None = None) -> Recording:
         """Return what has been added so far as a recording of a path.
 
-        Where there is no topic of an encoder, `no_encoder` says what is to be done, and `damage`,
-        what has ended the reading. BagError or RecordingError: there is nothing to measure.
+        `damage` says what has ended the reading. BagError or RecordingError: there is nothing to
+        measure.
         """
         rotor, encoder, parameters = self._rotor, self._encoder, self._parameters
         rejected = self._input.rejected
         remarks = [f'{rotor}: {count} states {cause}' for cause, count in rejected.items()]
-        for topic, columns in ((rotor, self._inputs), (encoder, self._outputs)):
-            if columns.every > 1:
-                what = f'one state of {columns.every} is used: no more are kept in memory'
+        for topic, read in ((rotor, self._inputs), (encoder, self._outputs)):
+            if read.every > 1:
+                what = f'one state of {read.every} is used: no more are kept in memory'
                 remarks.append(f'{topic}: {what}')
-        rotor_columns = self._inputs.joined()
-        rows = len(rotor_columns[0]) if rotor_columns else 0
+        columns = self._inputs.joined()
+        rows = len(columns[0]) if columns else 0
         if not rows:
             why = f': {self._input.why_rejected}' if rejected else ''
             raise BagError(f'{path}: no usable rotor states on {rotor}{why}')
-        if (kept := before_set_back(rotor_columns[0])) < rows:
-            what = f'the clock was set back; the {kept} states before it are used'
-            remarks.append(f'{rotor}: {what}')
-        stamp, turns, angle, effort, segment = (column[:kept] for column in rotor_columns)
+        stamp, turns, angle, effort, segment = _in_order(columns, rotor, remarks)
         has_effort = np.isfinite(effort).any()
         motion = RotorMotion(stamp, turns, angle, effort if has_effort else None, segment)
         described = [f'rotor {rotor}, joint {parameters.rotor_joint!r}, rad']
         encoders = locked = None
         if encoder:
-            stamps, angles = self._outputs.joined()
-            if self._lacking and not len(stamps):
+            measured = self._outputs.joined()
+            if self._lacking and not len(measured[0]):
                 raise BagError(f'{path}: {encoder}: {self._lacking}')
-            encoders, left_out = _compared(motion, stamps, angles, parameters, sources)
-            remarks += [f'{encoder}: {text}' for text in left_out]
+            stamps, angles = _in_order(measured, encoder, remarks)
+            encoders = _compared(motion, stamps, angles, parameters, sources)
             if not len(encoders.measured):
                 what = 'no output angle was measured between two rotor states'
                 raise RecordingError(f'{path}: {what}')
             described.append(f'output {encoder}, rad')
         elif not has_effort:
-            raise BagError(f'{path}: {rotor} has no effort, and {no_encoder}')
+            raise BagError(f'{path}: {rotor} has no effort, and no {OUTPUT_ENCODER} is there')
         else:
             ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
             step = step_of(sources.rotor_counts, motion.turned)
-            seconds = (stamp[known] - stamp[known][0]) / SECOND
             torque, turned = float(ratio) * effort[known], motion.turned[known]
-            locked = locked_output(torque, turned, step, ratio, seconds)
+            locked = locked_output(torque, turned, step, ratio)
         if has_effort:
             described.append(f'torque: effort of {rotor} times the ratio, N·m')
         return Recording(
-            path, path.name, tuple(described), rows, self._start, encoders, locked,
-            tuple(remarks), damage, no_encoder,
+            path, path.name, tuple(described), rows, encoders, locked,
+            tuple(remarks), damage,
         )  # fmt: skip
 
 
@@ -194,33 +191,30 @@ class _Columns:
     """What the states of a topic say, batch by batch: of too many, one of every so many."""
 
     def __init__(self, most: int) -> None:
-        self._most = most
+        self._most, self._seen, self.every = most, 0, 1
         self._batches: list[list[Array]] = []
-        self._seen = self._kept = 0
-        self.every = 1
 
     def add(self, columns: Sequence[Array]) -> None:
         first = -self._seen % self.every
         self._seen += len(columns[0])
-        self._keep([column[first :: self.every].copy() for column in columns])
-        while self._kept > self._most:
+        self._batches.append([column[first :: self.every].copy() for column in columns])
+        while sum(len(batch[0]) for batch in self._batches) > self._most:
             self.every *= 2
-            columns, self._kept = self.joined(), 0
-            self._batches.clear()
-            self._keep([column[::2].copy() for column in columns])
-
-    def _keep(self, columns: list[Array]) -> None:
-        self._batches.append(columns)
-        self._kept += len(columns[0])
+            self._batches = [[column[::2].copy() for column in self.joined()]]
 
     def joined(self) -> list[Array]:
-        """Columns of all batches; frees those of the batches one by one."""
-        columns = list(zip(*self._batches, strict=True))
-        self._batches.clear()
-        joined = [np.concatenate(columns.pop(0)) for _ in range(len(columns))]
-        if joined:
-            self._batches.append(joined)
-        return joined
+        """Columns of all batches."""
+        return [np.concatenate(batches) for batches in zip(*self._batches, strict=True)]
+
+
+def _in_order(columns: Sequence[Array], topic: str, remarks: list[str]) -> list[Array]:
+    """Keep the rows whose stamps, the first column, are in order; remark what is left out."""
+    kept, disordered = in_order(columns[0])
+    if disordered:
+        remarks.append(f'{topic}: {disordered} states out of order')
+    if rest := len(columns[0]) - len(kept) - disordered:
+        remarks.append(f'{topic}: the clock was set back; the last {rest} states are left out')
+    return [column[kept] for column in columns]
 
 
 def _compared(
@@ -229,15 +223,8 @@ def _compared(
     angles: Array,
     parameters: NodeParameters,
     sources: Sources,
-) -> tuple[Encoders, list[str]]:
-    """Interpolate the rotor to the angles of the output; say what is left out."""
-    left_out = []
-    kept, disordered = in_order(stamps)
-    if disordered:
-        left_out.append(f'{disordered} angles out of order')
-    if rest := len(stamps) - len(kept) - disordered:
-        left_out.append(f'the clock was set back; the last {rest} angles are left out')
-    stamps, angles = stamps[kept], angles[kept]
+) -> Encoders:
+    """Interpolate the rotor to the angles of the output."""
     gap = round(parameters.transmission_error_max_gap * SECOND)
     before, share, inside = match(motion.stamp, stamps, gap)
     outside = int(np.count_nonzero((stamps < motion.stamp[0]) | (stamps > motion.stamp[-1])))
@@ -245,7 +232,7 @@ def _compared(
         'outside of the rotor states': outside,
         'gap of the rotor states': len(stamps) - len(before) - outside,
     }
-    encoders = Encoders(
+    return Encoders(
         motion,
         timed=True,
         before=before,
@@ -255,4 +242,3 @@ def _compared(
         output_step=step_of(sources.output_counts, angles),
         unmatched={cause: count for cause, count in unmatched.items() if count},
     )
-    return encoders, left_out

@@ -21,8 +21,6 @@ Array = NDArray[Any]
 
 _SPEED_WINDOW = 0.02
 """s, over which the speed is averaged."""
-_EARLIEST, _LATEST = 631_152_000.0, 4_102_444_800.0
-"""s, 1990 and 2100: between them, a time counts from 1970."""
 
 
 class RecordingError(ValueError):
@@ -67,19 +65,15 @@ class Loading:
     """rad at the output, between readings of the angle."""
     measured: bool
     """Whether an encoder measured the output; if not, it is taken to be locked."""
-    time: Array | None = None
-    """s since the first sample, increasing; None if it is not known."""
 
 
-def locked_output(
-    torque: Array, angle: Array, step: Step, ratio: Fraction, time: Array | None
-) -> Loading:
+def locked_output(torque: Array, angle: Array, step: Step, ratio: Fraction) -> Loading:
     """Angles of a rotor with an encoder of a step, under a torque at the output, N·m.
 
     The output is taken to be locked; the ratio is 1 where the angles are those at the output.
     """
     step = step.scaled(float(1 / ratio))
-    return Loading(torque, angle / float(ratio), step, measured=False, time=time)
+    return Loading(torque, angle / float(ratio), step, measured=False)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -138,13 +132,9 @@ class Encoders:
         output: Array = self.rotor.turned * (ratio.denominator / ratio.numerator)
         return output
 
-    def rotor_step_at_output(self, ratio: Fraction) -> Step:
-        """The step of the rotor's encoder, rad of the output."""
-        return self.rotor_step.scaled(float(1 / ratio))
-
     def error_step(self, ratio: Fraction) -> Step:
         """The step of the error, rad."""
-        return self.rotor_step_at_output(ratio).joined(self.output_step)
+        return self.rotor_step.scaled(float(1 / ratio)).joined(self.output_step)
 
     def error(self, ratio: Fraction) -> Array:
         """Measured minus ideal output angle, rad, without jumps; its zero is arbitrary."""
@@ -223,8 +213,6 @@ class Recording:
     """Descriptions of the data that were read."""
     rows: int
     """Number of samples read."""
-    start: float | None
-    """s since 1970, by the times in it; None if they do not count from there."""
     encoders: Encoders | None = None
     locked: Loading | None = None
     """Angles under torque without an encoder at the output, which is taken to be locked."""
@@ -232,8 +220,6 @@ class Recording:
     """Clauses about what was left out or assumed."""
     damage: str | None = None
     """At which reading ended."""
-    lacking: str = ''
-    """How to give the encoder that it lacks."""
 
     @property
     def sentences(self) -> list[str]:
@@ -250,9 +236,8 @@ class Recording:
         known = np.isfinite(torque)
         if not known.any():
             return None
-        time = both.seconds[known] if both.timed else None
         step, twist = both.error_step(ratio), -both.error(ratio)[known]
-        return Loading(torque[known], twist, step, measured=True, time=time)
+        return Loading(torque[known], twist, step, measured=True)
 
     @cached_property
     def sha256(self) -> str:
@@ -268,12 +253,6 @@ class Recording:
 # Stamps
 
 
-def before_set_back(stamps: Array) -> int:
-    """Number of stamps before the first that is older than the one before it."""
-    back = np.flatnonzero(np.diff(stamps) < 0)
-    return int(back[0]) + 1 if len(back) else len(stamps)
-
-
 def in_order(stamps: Array) -> tuple[Array, int]:
     """Choose stamps, ns, as the node does: those in disorder by up to a second are left out.
 
@@ -285,42 +264,3 @@ def in_order(stamps: Array) -> tuple[Array, int]:
     late = late[~np.logical_or.accumulate(late > CLOCK_RESET)]
     kept = np.flatnonzero(late == 0)
     return kept, len(late) - len(kept)
-
-
-def unit_since_1970(time: float) -> float | None:
-    """The unit, s, of a time that counts from 1970 in s, ms, µs or ns; None if it does not."""
-    units = (1.0, 1e-3, 1e-6, 1e-9)
-    return next((unit for unit in units if _EARLIEST <= time * unit < _LATEST), None)
-
-
-def times_of_rows(time: Array) -> Array:
-    """Return when each row was sampled, s since the first.
-
-    Rows between two steps of a coarse clock have equal times; they are spread evenly until the
-    next step.
-
-    Args:
-        time: (n,), s, as it was read.
-
-    Returns:
-        (k,), increasing, of the rows before the clock was set back.
-
-    Raises:
-        RecordingError: if most are later than that, or the others are not finite, or stand still.
-    """
-    kept = before_set_back(time)
-    if 2 * kept < len(time):
-        raise RecordingError('they go back')
-    time = time[:kept]
-    if not np.isfinite(time).all():
-        raise RecordingError('they are not numbers')
-    since = time - time[0]
-    first = np.concatenate([[0], 1 + np.flatnonzero(np.diff(since))])  # rows of a new time
-    if len(first) < 2:  # noqa: PLR2004, one interval
-        raise RecordingError('they stand still')
-    # The last step has no next one: its rows are as far apart as the others on average.
-    interval = since[-1] / first[-1]
-    end = since[-1] + interval * (len(since) - first[-1])
-    steps, times = np.append(first, len(since)), np.append(since[first], end)
-    spread: Array = np.interp(np.arange(len(since)), steps, times)
-    return spread

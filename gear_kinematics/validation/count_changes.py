@@ -9,7 +9,6 @@ import numpy as np
 from gear_kinematics.kinematics import split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.report.document import counted
 from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.report import Finding
 
@@ -22,7 +21,6 @@ _STEP = np.dtype(
         ('after', np.int64),  # number of the last sample that is known not to have it
         ('turns', np.float64),  # the rotor angle is 2π turns + angle more than recomputed
         ('angle', np.float64),  # rad
-        ('gap', bool),  # whether it is taken from the outputs after a gap
     ]
 )
 
@@ -70,9 +68,8 @@ class CountChanges:
         self._parameters, self._ratio = parameters, parameters.gear.gear_ratio
         self._tolerance, self._homing = tolerance, homing
         self._rotor_tolerance = tolerance * abs(float(self._ratio))
-        self._steps = np.array([(-1, -1, 0.0, 0.0, False)], _STEP)  # ascending
-        self._first_turns: float | None = None  # before the recording
-        self._dropped_gaps = 0
+        self._steps = np.array([(-1, -1, 0.0, 0.0)], _STEP)  # ascending
+        self._turns_taken = False
         self._latest: tuple[int, float] | None = None
         """Number of the last sample with an output, and its angle, rad."""
 
@@ -142,26 +139,14 @@ class CountChanges:
                 stamp=change.stamp,
                 when='from',
             )
-        if self._first_turns:
-            yield Finding(
-                'the turns of the single-turn encoder before the recording, '
-                f'{self._first_turns:.0f}, are taken from the outputs'
-            )
-        if gaps := self._dropped_gaps + _changed_gaps(self._steps):
-            yield Finding(
-                'the turns of the single-turn encoder are taken from the outputs again after '
-                f'{counted(gaps, "gap")}'
-            )
+        if self._turns_taken:
+            yield Finding('the turns of the single-turn encoder are taken from the outputs')
 
-    def _add(
-        self, number: Array, after: Any, turns: Any, angle: Any, *, gap: bool = False
-    ) -> None:
+    def _add(self, number: Array, after: Any, turns: Any, angle: Any) -> None:
         new = np.empty(len(number), _STEP)
         new['number'], new['after'], new['turns'], new['angle'] = number, after, turns, angle
-        new['gap'] = gap
         steps = np.concatenate([self._steps, new])
         steps = steps[np.argsort(steps['number'], kind='stable')]  # an output can come late
-        self._dropped_gaps += _changed_gaps(steps[: 1 - _MAX_STEPS])
         self._steps = steps[-_MAX_STEPS:]
 
     def _learn_gaps(self, samples: Array, error: Array) -> bool:
@@ -176,9 +161,8 @@ class CountChanges:
         if not len(segments):
             return False
         count, whole = count[fits][rows], whole[fits][rows]
-        if self._first_turns is None:
-            self._first_turns = float(whole[0])
-        self._add(segments, segments - 1, count['turns'] + whole, count['angle'], gap=True)
+        self._turns_taken |= bool(whole.any())
+        self._add(segments, segments - 1, count['turns'] + whole, count['angle'])
         return True
 
     def _learn_changes(self, samples: Array, position: FieldSamples) -> None:
@@ -222,9 +206,3 @@ class CountChanges:
 def _step_at(steps: Array, samples: Array) -> Array:
     """The step of each sample, (n,)."""
     return steps[np.maximum(np.searchsorted(steps['number'], samples['number'], 'right') - 1, 0)]
-
-
-def _changed_gaps(steps: Array) -> int:
-    """The gaps after which the turns of a single-turn encoder are others, but for the first."""
-    others = (np.diff(steps['turns']) != 0) & steps['gap'][1:] & (steps['number'][:-1] >= 0)
-    return int(np.count_nonzero(others))

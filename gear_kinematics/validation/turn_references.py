@@ -17,7 +17,6 @@ from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import counted, number
 from gear_kinematics.state.referenced_input import ReferencedInput
-from gear_kinematics.state.turn_reference import SAMPLES, Decision
 from gear_kinematics.validation.count_changes import Change, CountChanges, LastOutput
 from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.report import Finding
@@ -37,10 +36,6 @@ class _Segment:
     """Stamp of the first sample that is referenced."""
     uncertainty: float = 0.0
     """rad, of the output angle."""
-    ready: int | None = None
-    """Stamp of the first sample after half of the angles that the node needs for a reference."""
-    refused: Decision | None = None
-    """The first one."""
 
 
 class TurnReferences:
@@ -62,17 +57,14 @@ class TurnReferences:
         ]
         arrivals.sort(key=itemgetter(1))
         columns = (samples[name].tolist() for name in ('segment', 'turns', 'angle'))
-        reference, found = self._input.reference, self._input.take(arrivals)
-        for (row, _), segment, turns, angle in zip(found, *columns, strict=True):
+        for (row, _), segment, turns, angle in zip(
+            self._input.take(arrivals), *columns, strict=True
+        ):
             own, stamp = self._segments.setdefault(segment, _Segment()), row[0]
             own.turns, own.angle = row[1] - turns, row[2] - angle
             if self._input.rotor.referenced:
                 own.since = own.since or stamp
-                own.uncertainty = reference.uncertainty or 0.0
-            else:
-                own.refused = own.refused or reference.decision
-                if 2 * reference.compared >= SAMPLES:
-                    own.ready = own.ready or stamp
+                own.uncertainty = self._input.reference.uncertainty or 0.0
 
     def findings(self, changes: CountChanges) -> Iterator[Finding]:
         """Judge the references that the outputs show."""
@@ -85,7 +77,7 @@ class TurnReferences:
             own, found = self._segments.get(segment, _Segment()), changes_in[segment]
             fault = self._fault(own, found, last)
             agreed += own.since is not None and not fault
-            unjudged = ', which is not judged: too few angles of output_encoder are recorded'
+            unjudged = ', which is not judged: the recorded output_encoder gives none'
             if fault or (found and own.since is None):
                 moved = self._written(last.turns, last.angle)
                 yield Finding(
@@ -112,10 +104,6 @@ class TurnReferences:
             if changes or last.stamp - own.since > _PATIENCE:
                 given = self._written(own.turns, own.angle)
                 return f', but the recorded output_encoder gives {given}'
-        elif changes and own.refused and (own.ready or last.stamp) <= changes[0].stamp:
-            used, margin = math.degrees(own.refused.used), math.degrees(own.refused.margin)
-            leaves = f'{used:.3g}° of {margin:.3g}° margin'
-            return f', but the recorded output_encoder leaves it open: {leaves}'
         return ''
 
     def _agree(self, turns: float, angle: float, own: _Segment) -> bool:

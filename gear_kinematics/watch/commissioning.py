@@ -72,8 +72,8 @@ class LiveCommissioning:
         if not self.collected:
             return Answer(self.fault, done=False)
         stamp = self._channels[self._topics[1]].stamp
-        since = (stamp if stamp > 0 else time.time_ns()) - int(self.collected[1].rotor.stamp[0])
-        self.request = replace(self.request, zero_here=since / SECOND)
+        now = stamp if stamp > 0 else time.time_ns()
+        self.request = replace(self.request, zero_here=now / SECOND)
         return Answer('The output angle is 0 here.', done=True)
 
     def close(self) -> None:

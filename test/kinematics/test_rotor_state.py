@@ -75,12 +75,9 @@ def test_forwards_again_it_is_the_same_output_to_the_last_bits(
 )
 @pytest.mark.parametrize('direction', [1, -1])
 def test_velocity_is_geared_up_and_effort_down(ratio, output, rotor, direction):
+    assert rotor_state_for(GearRatio.parse(ratio), 0.5)[2:] == (None, None)
     state = rotor_state_for(GearRatio.parse(ratio), 0.0, *output, direction=direction)
     assert state[2:] == tuple(direction * value for value in rotor)
-
-
-def test_what_is_not_given_is_not_known():
-    assert rotor_state_for(GearRatio(-19), 0.5)[2:] == (None, None)
 
 
 @given(**STATES, **DRIVERS)

@@ -31,7 +31,7 @@ def states(x, starts, radius=RADIUS):
 
 def followed(both: Encoders):
     """What is said of them of a gear with a ratio of 1."""
-    recording = Recording(Path(), '', (), len(both.measured), None, both)
+    recording = Recording(Path(), '', (), len(both.measured), both)
     return Samples(recording, both, Fraction(1)).stop_states(RADIUS)
 
 

@@ -24,9 +24,9 @@ STROKE = 15.0  # rad of the output
 FULL_TURN = ramped_strokes(STROKE, 10.0, 1.0)
 
 
-def recorded(rotor, output, times=None):
-    both = encoders(rotor, output, None if times is None else stamps(times))
-    return Recording(Path('gear'), 'gear', (), len(rotor), None, both), both
+def recorded(rotor, output, times):
+    both = encoders(rotor, output, stamps(times))
+    return Recording(Path('gear'), 'gear', (), len(rotor), both), both
 
 
 def wrapped(angle, turn, low=0.0):
@@ -69,10 +69,6 @@ def value(result, name):
     return found
 
 
-def opened(result):
-    return {each.what for each in result.open}
-
-
 @pytest.mark.parametrize(
     ('ratio', 'senses', 'wraps'),
     [
@@ -80,8 +76,6 @@ def opened(result):
         (Fraction(-19), (-1, 1), (True, False)),
         (Fraction(-19), (-1, -1), (True, True)),
         (Fraction(1457, 26), (1, -1), (False, True)),
-        (Fraction(1457, 26), (1, 1), (True, True)),
-        (Fraction(36, 5), (-1, 1), (False, True)),
         (Fraction(36, 5), (1, -1), (True, False)),
     ],
 )
@@ -122,33 +116,13 @@ def test_ratio_and_sign_are_found_or_open(ratio, senses, zeros, wraps, low):
     assert value(known, 'rotor_direction') == senses[0] * senses[1]
 
 
-@pytest.mark.parametrize(
-    ('change', 'kind', 'evidence'),
-    [
-        (0.0, 'multi_turn', 'the same'),
-        (3.0 * TURN, 'single_turn', 'absolute within the turn'),
-        (1.9, 'multi_turn', 'from where it was switched on'),
-    ],
-)
-def test_power_cycle_between_recordings(change, kind, evidence):
-    first, second = (
-        recorded(rotor + offset, output, times)
-        for offset in (0.0, change)
-        for times, rotor, output in [readings()]
-    )
-    result = commissioned(first, second)
-    found = next(v for v in result.values if v.name == 'rotor_encoder')
-    assert found.value == kind
-    assert evidence in found.evidence
-    assert 'zero of the rotor after a power cycle' not in opened(result)
-    after = next(v for v in result.values if v.name == 'rotor_zero')
-    assert after.value == pytest.approx(
-        change % TURN if kind == 'single_turn' else change, abs=0.02
-    )
-    assert ('next power cycle' in after.evidence) == (change == 1.9)
-    alone = commissioned(first)
-    assert 'zero of the rotor after a power cycle' in opened(alone)
-    lines = actuator_file(alone).splitlines()
+def test_several_recordings_tell_the_ratio_by_the_longest_and_the_zero_by_the_last():
+    times, rotor, output = readings()
+    short = recorded(rotor[:1500] + 1.9, output[:1500], times[:1500])
+    result = commissioned(recorded(rotor, output, times), short)
+    assert (result.between, result.longest.travel) == (-19, np.ptp(output))
+    assert value(result, 'rotor_zero') == pytest.approx(1.9, abs=0.02)
+    lines = actuator_file(result).splitlines()
     command = [line for line in lines if '--ros-args' in line]
     assert len(command) == 1  # to be copied
     assert max(len(line) for line in lines if line not in command) <= 110
@@ -168,10 +142,6 @@ def test_less_than_a_rotor_turn_leaves_the_kind_open():
         (lambda r, o: (np.degrees(r), o), r'rotor are degrees .*1/2\^14 turn.*by 0.0174532925'),
         (lambda r, o: (r, np.degrees(o) % 360.0), r'output are degrees .*\d+ wraps at 360'),
         (lambda r, o: (np.round(r / TURN * 2**14) / 2**14, o), r'turns .*1/2\^14 .*by 6.28318531'),
-        (
-            lambda r, o: (np.floor(r / TURN % 1.0 * 4096), o),
-            r'counts .*at 4096.*0.00153398079',
-        ),
         (lambda r, o: (np.floor(r / TURN % 1.0 * 4000), o), 'counts .*unknown number'),
         (lambda r, o: (np.floor(r / TURN * 4096), o), 'counts .*whole numbers.*unknown number'),
     ],
@@ -187,7 +157,7 @@ def test_positions_in_another_unit_are_told_and_give_no_file(unit, said):
         assert result.ratio.measured.value == pytest.approx(-19.0, abs=0.01)
 
 
-@pytest.mark.parametrize('moment', ['START', 'END', 4.0, 1_700_000_004.0])
+@pytest.mark.parametrize('moment', ['START', 'END', 1_700_000_004.0])
 def test_zero_is_where_it_is_named(moment):
     times, rotor, output = readings(zeros=(7.0, 0.3), wraps=(False, True))
     result = commissioned(recorded(rotor, output, times), zero_here=moment)
@@ -200,42 +170,21 @@ def test_zero_is_where_it_is_named(moment):
 
 def test_zero_outside_of_the_recording_is_refused():
     times, rotor, output = readings()
-    with pytest.raises(RecordingError, match=r'no sample at 50 s; it is 39\.99 s long'):
+    with pytest.raises(RecordingError, match=r'no sample at 50 s; it is from 1700000000 to 17'):
         commissioned(recorded(rotor, output, times), zero_here=50.0)
-    with pytest.raises(RecordingError, match='without times, name START or END'):
-        commissioned(recorded(rotor, output), zero_here=4.0)
 
 
-@pytest.mark.parametrize(
-    ('angles', 'said'),
-    [
-        (lambda rotor, output: (output, rotor), 'rotor and output may be exchanged'),
-        (lambda rotor, output: (0.0 * rotor, output), 'the rotor does not turn'),
-        (lambda rotor, output: (rotor, 0.0 * output), 'open: the output does not turn'),
-        (lambda rotor, output: (rotor[:50], output[:50]), 'samples in motion are too few'),
-    ],
-)
-def test_what_tells_no_ratio_gives_no_file(angles, said):
-    result = commissioned(recorded(*angles(*readings()[1:])))
-    assert said in result.answer
+def test_rotor_and_output_that_are_exchanged_give_no_file():
+    times, rotor, output = readings()
+    result = commissioned(recorded(output, rotor, times))
+    assert 'the output turns more than the rotor: exchange the two' in result.answer
     assert result.answer == result.fault
 
 
-@pytest.mark.parametrize(('ratio', 'holds'), [(-19, True), (-21, False)])
-def test_given_ratio_must_be_within_the_interval(ratio, holds):
-    times, rotor, output = readings(profile=ramped_strokes(0.6, 10.0, 1.0))
-    result = commissioned(recorded(rotor, output, times), ratio=GearRatio(ratio, 1))
-    # Over 0.6 rad, errors of ±0.0175 rad once per turn leave a few per cent open.
-    assert bool(result.between) is holds
-
-
-@pytest.mark.parametrize(('gap', 'left_out'), [(0.4, 200), (0.08, 0)])
-def test_turns_that_pass_in_a_gap_are_left_out(gap, left_out):
+def test_turns_that_pass_in_a_gap_leave_the_ratio_open():
     times, rotor, output = readings(wraps=(True, False))
-    seen = (times < 2.0) | (times >= 2.0 + gap)  # the rotor turns at 5 Hz
-    result = commissioned(recorded(rotor[seen], output[seen], times[seen]))
-    assert result.between == -19
-    assert result.longest.left_out == left_out
+    seen = (times < 2.0) | (times >= 2.4)  # the rotor turns at 5 Hz
+    assert not commissioned(recorded(rotor[seen], output[seen], times[seen])).between
 
 
 def test_greatest_speed_is_allowed_twice():

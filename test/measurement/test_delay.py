@@ -2,11 +2,10 @@
 """A delay between the stamps of both encoders is no lost motion, and another ratio no error."""
 
 import math
-import re
 
 import numpy as np
 import pytest
-from gear_recordings import encoders, write_csv
+from gear_recordings import encoders
 from simulated_encoders import (
     ARC_MINUTE,
     TURN,
@@ -17,7 +16,6 @@ from simulated_encoders import (
     stamps,
 )
 
-from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.ratio import check_ratio
 from gear_kinematics.measurement.recording import Encoders, RecordingError
@@ -83,22 +81,6 @@ def test_intervals_hold_for_any_seed():
             inside += abs(estimate.value - true) <= estimate.uncertainty
     # 95 % of 80: fewer than 70 have a probability of less than 1 %.
     assert inside >= 70
-
-
-@pytest.mark.slow
-def test_delay_is_in_seconds_and_in_rows_only_without_times(tmp_path, capsys):
-    drive = Drive(PLAY, delay=4e-3, **STEPS)
-    times, rotor, output = drive.readings(sine_strokes(1.0, 2.0), 8.0, 500.0)
-    for columns, delay, unit in (({}, 2.0, 'rows'), ({'time_s': times}, 4.0, 'ms')):
-        csv = write_csv(tmp_path / 'late.csv', rotor=rotor, output=output, **columns)
-        assert main(['lost-motion', '-v', str(csv)]) == 0
-        printed = capsys.readouterr().out
-        value, shown = re.search(
-            r'delay of the output encoder: value: (\S+) ± \S+ (\S+)', printed
-        ).groups()
-        assert float(value) == pytest.approx(delay, abs=0.02)
-        assert shown == unit
-    assert 'The stamps of the two encoders differ by a delay' in printed
 
 
 # Another ratio

@@ -66,7 +66,7 @@ def recorded(simulated: Simulated, gear: int, *, timed: bool = True) -> tuple[Re
     both = encoders(rotor, measured, stamp, COUNTS, COUNTS)
     both = replace(both, rotor=both.rotor._replace(effort=effort))
     path = Path(__file__)  # of no importance but for its hash
-    return Recording(path, f'gear {gear}', (), len(rotor), None, both), both
+    return Recording(path, f'gear {gear}', (), len(rotor), both), both
 
 
 def halves(simulated: Simulated) -> tuple[Simulated, Simulated]:

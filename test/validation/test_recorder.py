@@ -266,9 +266,7 @@ def test_turns_before_the_recording_are_taken_from_the_outputs(single_turn):
     assert abs(output_turns(next(m for m in later if m.topic == OUTPUT))) > 1.0
     report = validate(later, config)
     assert report.verdict == Verdict.PASS
-    (said,) = [f.text for f in report.findings if 'before the recording' in f.text]
-    first = output_turns(next(m for m in later if m.topic == OUTPUT))
-    assert str(round(first)) in said or str(math.floor(first)) in said
+    assert any('are taken from the outputs' in finding.text for finding in report.findings)
     assert all(field.max_error < 1e-12 for topic in report.topics for field in topic.fields)
 
 

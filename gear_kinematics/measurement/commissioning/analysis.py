@@ -17,17 +17,13 @@ from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.joint import Joint
 from gear_kinematics.measurement.commissioning.positions import COUNTED
-from gear_kinematics.measurement.ratio import ENCODER_ERROR, RatioEstimate, estimate_ratio
+from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
 from gear_kinematics.measurement.transmission import transmission_figures
 from gear_kinematics.measurement.wording import plus_minus
 from gear_kinematics.parameters.node_parameters import default_value
 from gear_kinematics.report.document import number
 
-_BY_CHANCE = 0.025
-"""Turns of the rotor within which its zero moved by whole turns; by chance, one in 20 does."""
-_HALF = 0.5
-"""Turns of the rotor within which a zero has to be known for its turns to be compared."""
 _FASTER = 2.0
 """The speed that is allowed / the greatest seen, which is hardly the greatest that there is."""
 _MILLI = 1e3
@@ -52,10 +48,8 @@ class Request:
     teeth: tuple[int, int] | None = None
     """Of ring gear and satellite, which have this ratio."""
     zero_here: float | Literal['START', 'END'] | None = None
-    """When the output is at its angle 0, in the last recording: s from its start, or since 1970;
-    None: at 0 of its encoder."""
-    encoder_error: float = ENCODER_ERROR
-    """rad; see `estimate_ratio`."""
+    """When the output is at its angle 0, by the stamps of the last recording, s; None: at 0 of its
+    encoder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,16 +120,15 @@ def commission(
         request: what else is known.
 
     Raises:
-        RecordingError: if a recording has too few samples, or none at the time of `zero_here`.
+        RecordingError: if a recording has too few samples, no times, or no sample at `zero_here`.
     """
     joints = tuple(Joint.of(*recording) for recording in recordings)
     longest = max(joints, key=lambda joint: joint.travel)
-    encoders, error = longest.encoders, request.encoder_error
+    encoders = longest.encoders
     ratio, between, delay, fault = None, None, None, longest.unit_fault
     if longest.rotor.turn and longest.output.turn:
-        time = encoders.seconds if encoders.timed else None
         try:
-            ratio = estimate_ratio(longest.turned, encoders.measured, time, error)
+            ratio = estimate_ratio(longest.turned, encoders.measured, encoders.seconds)
         except RecordingError as why:
             fault = fault or f'The ratio is open: {why}.'
         else:
@@ -145,18 +138,14 @@ def commission(
     if ratio and known and not fault:
         between = GearRatio(abs(known) if ratio.measured.value > 0.0 else -abs(known))
         found += _ratio(ratio, between, request)
-        if encoders.timed:
-            travel = default_value('transmission_error_travel')
-            delay = transmission_figures(encoders, between, travel).delay
+        travel = default_value('transmission_error_travel')
+        delay = transmission_figures(encoders, between, travel).delay
     elif ratio and ratio.advice:
         found.append(Open('ratio', f'{ratio.plus_minus}{_candidates(ratio)}', ratio.advice))
-    cycle = _power_cycle(joints, between, error)
-    single = cycle == _WITHIN or any(joint.rotor.wraps for joint in joints)
-    found.append(_kind(joints, cycle, single=single))
-    if isinstance(cycle, Open):
-        found.append(cycle)
+    found.append(_kind(joints))
     if between:
-        found += _zeros(joints[-1], between, request.zero_here, cycle, single=single)
+        single = any(joint.rotor.wraps for joint in joints)
+        found += _zeros(joints[-1], between, request.zero_here, single=single)
     found += _motion(longest, delay)
     return Commissioning(
         request,
@@ -183,11 +172,6 @@ def _doubt(ratio: RatioEstimate, travel: float, given: GearRatio | None) -> str:
     if given:
         wrong = f'The given ratio {given} does not agree with the measured {seen}'
         return '' if agrees(given, ratio) else f'{wrong}{_candidates(ratio)}.'
-    if abs(ratio.measured.value) < 1.0:
-        return (
-            f'The ratio is {seen}: rotor and output may be exchanged; exchange them, '
-            f'or confirm with --ratio={ratio.simplest}.'
-        )
     if ratio.taken:
         return ''
     return (
@@ -232,52 +216,19 @@ def _ratio(ratio: RatioEstimate, between: GearRatio, request: Request) -> Iterat
     yield Value('output_encoder_direction', 1, 'the sense of the encoder is kept')
 
 
-_KEPT = 'its zero was the same in all recordings'
-_WITHIN = 'its zero moved by whole turns at most: it is absolute within the turn'
-_LOST = 'its zero moved: it counts from where it was switched on'
-
-
-def _power_cycle(joints: Sequence[Joint], between: GearRatio | None, error: float) -> str | Open:
-    """What happened to the rotor's zero between the recordings."""
-    what = 'zero of the rotor after a power cycle'
-    if len(joints) == 1 or not between:
-        return Open(what, 'it takes the ratio and two recordings', 'make one after a power cycle')
-    zeros, ratio = [joint.zeros(between) / TURN for joint in joints], float(between)
-    bound = float(max(*map(np.ptp, zeros), abs(ratio) * error / TURN))
-    # The output's encoder may have begun in the next turn.
-    moves = [
-        min((move, move + ratio, move - ratio), key=abs)
-        for move in np.diff([zero.mean() for zero in zeros]).tolist()
-    ]
-    apart = max(abs(move - round(move)) for move in moves)
-    if apart > bound:
-        return _LOST
-    if apart > _BY_CHANCE or bound > _HALF:
-        known = f'it moved by {number(max(map(abs, moves)))} turns, ± {number(bound)}'
-        return Open(what, known, 'make both recordings over the same angles of the output')
-    wraps = any(joint.rotor.wraps for joint in joints)
-    return _WITHIN if wraps or any(map(round, moves)) else _KEPT
-
-
-def _kind(joints: Sequence[Joint], cycle: str | Open, *, single: bool) -> Value | Open:
+def _kind(joints: Sequence[Joint]) -> Value | Open:
     """The kind of the rotor's encoder."""
     most = max((joint.rotor for joint in joints), key=lambda rotor: (rotor.wraps, rotor.turns))
-    seen = most.evidence if most.wraps else f'the rotor turned {number(most.turns)} turns'
-    if not single:
-        if most.turns <= COUNTED:
-            return Open('rotor_encoder', seen, 'turn the rotor by more than one')
-        seen += ' without a wrap'
-    told = f'; {cycle}' if isinstance(cycle, str) else ''
-    return Value('rotor_encoder', 'single_turn' if single else 'multi_turn', f'{seen}{told}')
+    if most.wraps:
+        return Value('rotor_encoder', 'single_turn', most.evidence)
+    seen = f'the rotor turned {number(most.turns)} turns'
+    if most.turns <= COUNTED:
+        return Open('rotor_encoder', seen, 'turn the rotor by more than one')
+    return Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap')
 
 
 def _zeros(
-    last: Joint,
-    between: GearRatio,
-    zero_here: float | str | None,
-    cycle: str | Open,
-    *,
-    single: bool,
+    last: Joint, between: GearRatio, zero_here: float | str | None, *, single: bool
 ) -> Iterator[Value]:
     """Find the zeros with which the output angles of both encoders agree on average."""
     zero, why = 0.0, 'the zero of the encoder is kept'
@@ -290,22 +241,17 @@ def _zeros(
     rotor = last.zeros(between) + float(between) * zero
     mean, spread = float(np.mean(rotor)), float(np.ptp(rotor)) / abs(float(between))
     evidence = f'both encoders then agree on average, within {number(math.degrees(spread))}°'
-    if cycle != _KEPT:
-        true = 'within the turn' if single and cycle != _LOST else 'until the next power cycle'
-        evidence += f'; true {true}: then home, or set output_encoder_reference: absolute'
+    evidence += ', but for whole turns' if single else '; check it after a power cycle'
     yield Value('rotor_zero', mean % TURN if single else mean, evidence)
 
 
 def _motion(joint: Joint, delay: Estimate | None) -> Iterator[Value | Open | str]:
     """Delay, rates and speeds."""
-    if not joint.encoders.timed:
-        yield Open('delay, rates and speeds', 'the recording has no times', 'record them')
-        return
-    if delay:
-        yield f'The stamps of the output are late by {plus_minus(delay, _MILLI)} ms.'
-    else:
+    if not delay:
         advice = 'turn the output there and back three times or more, at different speeds'
         yield Open('delay between the encoders', 'it is not told from hysteresis', advice)
+    elif (late := plus_minus(delay, _MILLI)) != '0 ± 0':
+        yield f'The stamps of the output are late by {late} ms.'
     both = joint.encoders.rotor.seconds, joint.encoders.seconds
     rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
     yield f'Rates: {rotor} of the rotor, {output} of the output.'

@@ -9,6 +9,7 @@ import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, agrees
+from gear_kinematics.measurement.ratio import ENCODER_ERROR
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import number
 
@@ -27,13 +28,6 @@ class Judgement:
 
 def judge(result: Commissioning, file: NodeParameters) -> Iterator[Judgement]:
     """Compare the parameters of a file with what recordings determine."""
-    for name, channel in (
-        ('rotor_joint', result.request.rotor),
-        ('output_encoder_joint', result.request.output),
-    ):
-        if found := channel.joint:  # a CSV file has none
-            written = getattr(file, name)
-            yield Judgement(name, repr(written), found, written in ('', found))
     if fault := result.longest.unit_fault:
         yield Judgement('unit', 'rad', fault, holds=False)
     ratio, written = file.gear.gear_ratio, str(file.gear.gear_ratio)
@@ -57,9 +51,10 @@ def judge(result: Commissioning, file: NodeParameters) -> Iterator[Judgement]:
         yield Judgement(kind.name, file.rotor_encoder, f'{kind.value}: {kind.evidence}', fits)
     if inside and right:
         yield _zero(result, file)
-    if speed := result.longest.greatest_speed:
-        seen, most = f'{number(speed)} rad/s', file.max_rotor_speed
-        yield Judgement('max_rotor_speed', number(most), f'{seen} were seen', speed <= most)
+    speed, most = result.longest.greatest_speed, file.max_rotor_speed
+    yield Judgement(
+        'max_rotor_speed', number(most), f'{number(speed)} rad/s were seen', speed <= most
+    )
 
 
 def _zero(result: Commissioning, file: NodeParameters) -> Judgement:
@@ -68,7 +63,7 @@ def _zero(result: Commissioning, file: NodeParameters) -> Judgement:
     by_rotor = file.rotor_direction * (last.turned - file.rotor_zero) / float(ratio)
     measured = file.output_encoder_direction * (last.encoders.measured - file.output_encoder_zero)
     error = measured - by_rotor
-    allowed = max(float(np.ptp(error)), result.request.encoder_error)
+    allowed = max(float(np.ptp(error)), ENCODER_ERROR)
     period = math.inf
     if file.single_turn:  # turns of the rotor are unknown at the start
         period = TURN / abs(ratio.numerator)

@@ -41,7 +41,16 @@ def document(result: Commissioning, target: str) -> Document:
         result.values,
         ('', 'value', 'evidence'),
     )
-    return _document('gearkin commission', result, answer, values)
+    left = Table.of_items(
+        {
+            'open': lambda each: each.what,
+            'known': lambda each: each.known,
+            'what to do': lambda each: each.advice,
+        },
+        result.open,
+        ('', 'known', 'what to do'),
+    )
+    return _document('gearkin commission', result, answer, (values, left))
 
 
 def check_document(result: Commissioning, file: str, judgements: Sequence[Judgement]) -> Document:
@@ -64,7 +73,7 @@ def check_document(result: Commissioning, file: str, judgements: Sequence[Judgem
         ('', 'file', 'recording', 'state'),
     )
     verdict = Verdict.FAIL if wrong else Verdict.PASS
-    made = _document('gearkin commission --check', result, answer, table, verdict)
+    made = _document('gearkin commission --check', result, answer, (table,), verdict)
     return replace(made, data={**made.data, 'judgements': plain(tuple(judgements))})
 
 
@@ -72,26 +81,18 @@ def _document(
     title: str,
     result: Commissioning,
     answer: str,
-    table: Table,
+    tables: tuple[Table, ...],
     verdict: Verdict | None = None,
 ) -> Document:
-    left = Table.of_items(
-        {
-            'open': lambda each: each.what,
-            'known': lambda each: each.known,
-            'what to do': lambda each: each.advice,
-        },
-        result.open,
-        ('', 'known', 'what to do'),
-    )
+    recordings = [joint.recording for joint in result.joints]
     remarks = list(result.notes)
-    for joint in result.joints:
-        remarks += [f'{joint.recording.name}: {sentence}' for sentence in joint.sentences]
-    names = [joint.recording.name for joint in result.joints]
+    for recording in recordings:
+        remarks += [f'{recording.name}: {sentence}' for sentence in recording.sentences]
+    names = [recording.name for recording in recordings]
     section = Section(
         printable(', '.join(names)),
-        (table, left),
-        verdict,
+        tables,
+        None,  # the finding says it, and why
         (Finding('finding', printable(answer)),),
         tuple(map(printable, remarks)),
         Figure(tuple(_panels(result))),

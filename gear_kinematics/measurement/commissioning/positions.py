@@ -61,8 +61,7 @@ class Positions:
             return f'counts ({self.evidence}), of which a turn has an unknown number'
         if self.unit == 'rad':
             return ''
-        factor = f'{TURN / self.turn:.9g}'
-        return f'{self.unit} ({self.evidence}): multiply by {factor} (a CSV: --angle-unit)'
+        return f'{self.unit} ({self.evidence}): multiply by {TURN / self.turn:.9g}'
 
 
 def positions_of(values: Array, step: Step) -> Positions:
