@@ -73,7 +73,7 @@ setup(
         'watch': WATCH,
         # `gearkin validate --html`; rosdep has no key for it.
         'html': ['plotly>=5.24'],
-        # ROS 1 bags, `gearkin compute`, and what `gearkin watch` records; Ubuntu has no package.
+        # ROS 1 bags and `gearkin compute`; Ubuntu has no package.
         'rosbags': ROSBAGS,
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],

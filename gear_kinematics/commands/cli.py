@@ -28,7 +28,7 @@ COMMANDS: dict[str, tuple[str, str]] = {
     'replay': ("publish a bag's rotor topic with its own timing", 'replay logs/monday --loop'),
     'demo': ('play the shipped bag into the live node and validate its outputs', 'demo'),
     'init': ('list running drivers, and write a parameter file for one', 'init --joint m1'),
-    'watch': ('show a running node and its driver live', 'watch --record logs/monday'),
+    'watch': ('show a running node and its driver live', 'watch --text'),
     'describe': ('ratio, mobility, vernier and teeth of a gear', 'describe --html gear.html'),
     'index': (
         'pin holes for a turn of the ring gear or the phase of branch B',

@@ -72,14 +72,5 @@ def write_new(path: Path, text: str) -> None:
         raise ConfigError(f'{path}: {error.strerror}') from error
 
 
-def unused_name(folder: Path, name: str) -> Path:
-    """Return the path of the name in a folder, with a number if it is taken."""
-    path, number = folder / name, 1
-    while path.exists() or path.is_symlink():
-        number += 1
-        path = (folder / name).with_stem(f'{Path(name).stem}_{number}')
-    return path
-
-
 def _one_line(text: str) -> str:
     return ''.join(char if char.isprintable() else '�' for char in text)

@@ -3,7 +3,6 @@
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -13,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from rclpy.node import Node
+from rclpy.qos import ReliabilityPolicy
 
 from gear_kinematics.bag import Message, by_topic
 from gear_kinematics.kinematics.rotor_turns import TURN
@@ -22,12 +22,12 @@ from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.reading import States
 from gear_kinematics.measurement.recording import Encoders, Recording
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config
-from gear_kinematics.parameters.new_config import start_command, unused_name, write_new
+from gear_kinematics.parameters.new_config import start_command, write_new
 from gear_kinematics.watch.gear import GearNode
-from gear_kinematics.watch.recording import Channel
+from gear_kinematics.watch.polled import Polled
 from gear_kinematics.watch.view import Answer, Commission, Entry, shown
 from gear_kinematics.wire import topics
-from gear_kinematics.wire.cdr import SECOND
+from gear_kinematics.wire.cdr import SECOND, header_stamp
 
 _MOST_STATES = 40_000
 """20 s of both encoders at 1 kHz, analysed in 0.2 s of a processor; of more, one of every two,
@@ -55,7 +55,10 @@ class LiveCommissioning:
         self.fault = 'Nothing has been heard yet.'  # why there is no file
         self.shown = Commission('', GUIDE)
         self._topics = request.rotor.topic, request.output.topic
-        self._channels = {name: Channel(node, name, topics.JOINT_STATE) for name in self._topics}
+        reliability = ReliabilityPolicy.BEST_AVAILABLE
+        self._heard = {
+            topic: Polled(node, topic, reliability=reliability) for topic in self._topics
+        }
         rotor, output = request.rotor.joint, request.output.joint
         parameters = replace(NodeParameters.load(), rotor_joint=rotor, output_encoder_joint=output)
         self._states = States(*self._topics, parameters, _MOST_STATES)
@@ -65,21 +68,28 @@ class LiveCommissioning:
 
     def poll(self) -> None:
         """Take what has come."""
-        self._queue.put([m for channel in self._channels.values() for m in channel.take()])
+        self._queue.put(
+            [
+                (topic, received, data)
+                for topic, heard in self._heard.items()
+                for data, received in heard.take()
+            ]
+        )
 
     def zero_here(self) -> Answer:
         """Let the output angle be 0 where the output is now."""
         if not self.collected:
             return Answer(self.fault, done=False)
-        stamp = self._channels[self._topics[1]].stamp
+        last = self._heard[self._topics[1]].last
+        stamp = header_stamp(last.data) if last else 0
         now = stamp if stamp > 0 else time.time_ns()
         self.request = replace(self.request, zero_here=now / SECOND)
         return Answer('The output angle is 0 here.', done=True)
 
     def close(self) -> None:
         """Unsubscribe; the analysis ends by itself."""
-        for channel in self._channels.values():
-            channel.source.close()
+        for heard in self._heard.values():
+            heard.close()
         self._queue.put(None)
 
     def finish(self) -> None:
@@ -115,7 +125,7 @@ class LiveCommissioning:
             self.result, self.fault = None, str(error)
         except Exception as error:  # noqa: BLE001, messages that no one expected end nothing
             self.result, self.fault = None, f'{type(error).__name__}: {error}'
-        channels = self._channels.values()
+        channels = self._heard.values()
         count, lost = sum(c.count for c in channels), sum(c.losses.missing for c in channels)
         heard = f'{request.rotor.joint} (rotor) and {request.output.joint} (output): '
         heard += f'{count} messages, {lost} lost; '
@@ -125,9 +135,11 @@ class LiveCommissioning:
             self.shown = Commission(heard + self.fault, GUIDE)
 
     def write(self) -> Answer:
-        """Write the parameter file to a new name in the working directory."""
-        result = self._known()
-        return written(lambda name: actuator_file(result, name), *self._topics)
+        """Write the parameter file into the working directory; it replaces nothing."""
+        name, (rotor, output) = default_config().name, self._topics
+        write_new(Path(name), actuator_file(self._known(), name))
+        command = start_command(rotor, name, output)
+        return Answer(f'{name} is written. Start:\n{command}', done=True)
 
     def changes(self, gear: GearNode) -> dict[str, Any]:
         """Return what a running node has to change.
@@ -137,9 +149,7 @@ class LiveCommissioning:
                 would fit neither gear.
         """
         result, (rotor, output) = self._known(), self._topics
-        if not (gear.gear and gear.parameters):
-            raise ValueError(f'{gear.name} has not told its parameters yet.')
-        if not {rotor, output} <= set(gear.heard) or gear.inputs.get(topics.ROTOR_STATE) == output:
+        if not (gear.gear and gear.parameters and gear.hears(rotor) and gear.hears(output)):
             what = f'{rotor} as {topics.ROTOR_STATE} and {output} as {topics.OUTPUT_ENCODER}'
             raise ValueError(f'{gear.name} does not hear {what}: write the file, and start it.')
         has = gear.parameters.values() | {'gear_ratio': str(gear.gear.gear_ratio)}
@@ -159,17 +169,6 @@ class LiveCommissioning:
         return self.result
 
 
-def written(text: Callable[[str], str], rotor: str, output: str = '') -> Answer:
-    """Write a parameter file, by its name, to a new one in the working directory.
-
-    The topics are those of the drivers, with which the node is started.
-    """
-    path = unused_name(Path(), default_config().name)
-    write_new(path, text(path.name))
-    command = start_command(rotor, path.name, output)
-    return Answer(f'{path} is written. Start:', done=True, command=command)
-
-
 def _progress(result: Commissioning, heard: str) -> Commission:
     """Show how much is known of what a parameter file needs, and what to do for the rest."""
     angle, ratio = result.longest.encoders.measured, result.ratio
@@ -186,8 +185,6 @@ def _progress(result: Commissioning, heard: str) -> Commission:
         advice = f'Go on: {ratio.advice}, or give the ratio on the nameplate.'
     elif min(turned) == 1.0:
         advice = result.fault or 'Go on: turn the rotor by more than a turn.'
-        if not ratio and result.travel:
-            advice = 'Go on turning the output, slowly: there is not enough motion yet.'
     entries = [Entry(v.name, shown(v.value), v.evidence) for v in result.values]
     for left in result.open:
         so_far = ratio.plus_minus if ratio and left.what == 'ratio' else 'open'

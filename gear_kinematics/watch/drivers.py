@@ -1,20 +1,76 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The JointState topics of drivers: their joints, and how often they come."""
+"""The ROS graph: the nodes of gears, and the drivers with their joints and rates."""
 
 import time
-from collections.abc import Collection
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
 from rclpy.node import Node
-from sensor_msgs.msg import JointState
 
+from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.ros.live import replay_node
-from gear_kinematics.watch.graph import driver_topics, gear_nodes
-from gear_kinematics.watch.polled import Latest
+from gear_kinematics.watch.polled import Polled
+from gear_kinematics.wire import topics
 from gear_kinematics.wire.cdr import MalformedMessageError, joint_names, joint_state_layout
 
 _PERIOD = 0.1  # s between looks at graph and messages
+_WAIT = 4.0  # s; a driver may find a listener only when it announces itself, every 3 s
+_TRIGGER = 'std_srvs/srv/Trigger'
+_PUBLISHED = {
+    name
+    for name, topic in topics.TOPICS.items()
+    if topic.publisher == 'node' and topic.type == topics.JOINT_STATE
+}
+
+
+class Graph:
+    """The publishers of JointState topics, and the nodes of gears: they have ~/home, too."""
+
+    def __init__(self, node: Node) -> None:
+        """Look at the graph."""
+        self._publishers = {
+            topic: {
+                (full_name(end), bytes(end.endpoint_gid))
+                for end in node.get_publishers_info_by_topic(topic)
+            }
+            for topic, types in node.get_topic_names_and_types()
+            if topics.JOINT_STATE in types
+        }
+        homes = {
+            service.rpartition('/')[0]
+            for service, types in node.get_service_names_and_types()
+            if service.endswith('/home') and _TRIGGER in types
+        }
+        self.gears = sorted(name for name in homes if topics.OUTPUT_STATE in self.outputs_of(name))
+
+    def outputs_of(self, gear: str) -> dict[str, str]:
+        """Return the topics of a gear's node by the names that they have without remapping.
+
+        Where `output_state` has another name, it is the only unknown one beside a known one.
+        """
+        outputs = {
+            topics.base_name(topic): topic
+            for topic, publishers in self._publishers.items()
+            if any(name == gear for name, _ in publishers)
+        }
+        unknown = outputs.keys() - _PUBLISHED
+        if topics.OUTPUT_STATE not in outputs and len(unknown) == 1 < len(outputs):
+            outputs[topics.OUTPUT_STATE] = outputs[unknown.pop()]
+        return outputs
+
+    def publishers_of(self, gear: str) -> set[bytes]:
+        """Identify the publishers of a gear's `output_state`: a node that restarts has others."""
+        topic = self.outputs_of(gear).get(topics.OUTPUT_STATE, '')
+        return {gid for name, gid in self._publishers.get(topic, ()) if name == gear}
+
+    def drivers(self) -> list[str]:
+        """Find the topics that somebody else than the nodes of gears publishes."""
+        return sorted(
+            topic
+            for topic, publishers in self._publishers.items()
+            if any(name not in self.gears for name, _ in publishers)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +80,6 @@ class Driver:
     topic: str
     joints: tuple[str, ...]  # as `rotor_joint` selects them; empty before the first message
     rate: float  # messages per second
-    publishers: int
 
 
 class Drivers:
@@ -32,53 +87,47 @@ class Drivers:
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._latest: dict[str, Latest] = {}
+        self._heard: dict[str, Polled] = {}
 
-    def look(self, gears: Collection[str]) -> None:
-        """Subscribe to new topics; `gears` are the nodes whose topics are left out."""
-        found = driver_topics(self._node, gears)
-        for topic in self._latest.keys() - set(found):
-            self._latest.pop(topic).close()
-        for topic in found:
-            if topic not in self._latest:
-                self._latest[topic] = Latest(self._node, topic, JointState)
+    def look(self, found: Iterable[str]) -> None:
+        """Listen to the topics that there are now."""
+        found = set(found)
+        for topic in self._heard.keys() - found:
+            self._heard.pop(topic).close()
+        for topic in found - self._heard.keys():
+            self._heard[topic] = Polled(self._node, topic)
 
     def poll(self) -> None:
         """Take what has come."""
-        for latest in self._latest.values():
-            latest.poll()
-
-    def latest(self, topic: str | None) -> Latest | None:
-        """The latest message of a topic, if it is one of these."""
-        return self._latest.get(topic or '')
-
-    @property
-    def all_heard(self) -> bool:
-        """Whether a message has come of each topic."""
-        return all(latest.last for latest in self._latest.values())
+        for heard in self._heard.values():
+            heard.take()
 
     def found(self) -> list[Driver]:
         """List the topics by name."""
         return [
-            Driver(topic, _joints(latest), latest.rate, latest.publishers())
-            for topic, latest in sorted(self._latest.items())
+            Driver(topic, _joints(heard), heard.rate)
+            for topic, heard in sorted(self._heard.items())
         ]
 
 
-def _joints(latest: Latest) -> tuple[str, ...]:
+def _joints(heard: Polled) -> tuple[str, ...]:
     with suppress(MalformedMessageError):
-        names = joint_names(joint_state_layout(latest.last.data)) if latest.last else ()
+        names = joint_names(joint_state_layout(heard.last.data)) if heard.last else ()
         return tuple(name.decode(errors='replace') for name in names)
     return ()
 
 
-def listen(seconds: float) -> list[Driver]:
+def listen(seconds: float = _WAIT) -> list[Driver]:
     """Find the drivers in a time of some seconds, and hear each in as many more."""
     with replay_node('') as node:
         drivers = Drivers(node)
+        found: list[Driver] = []
         end = time.monotonic() + seconds
-        while (now := time.monotonic()) < end or (now < end + seconds and not drivers.all_heard):
-            drivers.look(gear_nodes(node))
+        while (now := time.monotonic()) < end or (
+            now < end + seconds and not all(driver.joints for driver in found)
+        ):
+            drivers.look(Graph(node).drivers())
             drivers.poll()
+            found = drivers.found()
             time.sleep(_PERIOD)
-        return drivers.found()
+        return found

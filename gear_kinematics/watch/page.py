@@ -11,23 +11,20 @@ _BODY = """\
 <header class="bar">
 <h1>gearkin watch</h1>
 <span id="node"></span>
-<span><span id="state" class="badge">connecting</span> <span id="duration"></span></span>
-<div class="buttons">
+<span id="state" class="badge">connecting</span>
+<span id="message"></span>
 <button type="button" id="home" disabled>Home</button>
-<button type="button" id="record" disabled>Record</button>
-</div>
 </header>
 <main>
 <section class="live" aria-label="mechanism and values">
 <div id="mechanism" class="motion"></div>
 <dl id="values"></dl>
-<div id="curves"></div>
-<template id="curve"><figure><figcaption><span></span><span></span></figcaption>
+<figure id="curve"><figcaption></figcaption>
 <svg viewBox="0 0 300 100" preserveAspectRatio="none" aria-hidden="true">
-<line x1="0" x2="300" vector-effect="non-scaling-stroke"/>
-<path vector-effect="non-scaling-stroke"/></svg></figure></template>
+<path vector-effect="non-scaling-stroke"/></svg></figure>
 </section>
 <section class="live"><h2>Diagnostics</h2><dl id="diagnostics"></dl></section>
+<section id="drivers"><h2>Drivers: topics of type JointState</h2><dl></dl></section>
 <section id="commission" hidden><details>
 <summary>Commission: find the parameters of a gear with an encoder at rotor and output</summary>
 <form><label>rotor <select name="rotor"></select></label>
@@ -40,18 +37,11 @@ _BODY = """\
 <button type="button" value="write">Write actuator.yaml</button>
 <button type="button" value="take">Take into the running node</button>
 <button type="button" value="end">End</button></div></div></details></section>
-<section><details id="drivers"><summary>Drivers: topics of type JointState</summary>
-<div class="scroll"><table><thead><tr><th scope="col" class="words">joint</th>
-<th scope="col" class="words">topic</th><th scope="col" class="number">rate</th><td></td></tr>
-</thead><tbody></tbody></table></div></details></section>
 </main><div id="messages">
-<p id="message"></p>
 <p id="question" role="group" aria-label="home" hidden><span></span>
 <button type="button">Cancel</button> <button type="button">Set it</button></p>
 <p id="answer" role="status"></p>
 <p id="undo" hidden><button type="button">Undo</button> <span></span></p>
-<p id="command" hidden><code></code> <button type="button">Copy</button></p>
-<p id="recording"></p>
 </div>
 """
 

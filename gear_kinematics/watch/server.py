@@ -7,7 +7,6 @@ import json
 import logging
 import secrets
 import socket
-import threading
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict
@@ -20,8 +19,7 @@ from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request
 from gear_kinematics.watch.page import drawing, watch_page
-from gear_kinematics.watch.text import wait_and_list
-from gear_kinematics.watch.view import Answer, View
+from gear_kinematics.watch.view import Answer
 from gear_kinematics.watch.watcher import PERIOD, Watcher
 
 HOST = '127.0.0.1'
@@ -29,39 +27,27 @@ _NAMES = (HOST, 'localhost')
 """Host names of requests. A page elsewhere whose name is made to lead here (DNS rebinding) has
 another one; a forwarded port has another number."""
 _LARGEST = 4096  # bytes of a request's body, and of a command
-_PING = 20.0  # s
 
 
-def serve(watcher: Watcher, console: Console, stopped: Callable[[], bool], port: int = 0) -> None:
-    """Serve the page until stopped; its address and the drivers are printed."""
-    server = Server(watcher, port)
+def serve(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
+    """Serve the page until stopped; its address is printed."""
+    server = Server(watcher)
     console.print(f'Open {server.address}', soft_wrap=True, markup=False, highlight=False)
-
-    def list_drivers() -> None:
-        with suppress(BrokenPipeError):  # nobody reads it
-            wait_and_list(watcher, console, stopped)
-
-    lister = threading.Thread(target=list_drivers)
-    lister.start()
-    try:
-        asyncio.run(server.run(stopped))
-    finally:
-        lister.join()
+    asyncio.run(server.run(stopped))
 
 
 class Server:
     """The page, with a new secret in its address."""
 
-    def __init__(self, watcher: Watcher, port: int = 0) -> None:
-        """Open the port, or a free one; raises OSError if it is taken."""
+    def __init__(self, watcher: Watcher) -> None:
+        """Open a free port."""
         token = secrets.token_urlsafe(24)
-        self._socket = socket.create_server((HOST, port))
+        self._socket = socket.create_server((HOST, 0))
         self._socket.setblocking(False)  # noqa: FBT003, its only argument
         given = {'watcher': watcher, 'token': token}
         self._application = Application(
             [(r'/([^/]+)/', _Page, given), (r'/([^/]+)/live', _Live, given)],
             log_function=lambda _: None,
-            websocket_ping_interval=_PING,
             websocket_max_message_size=_LARGEST,
         )
         self.address = f'http://{HOST}:{self._socket.getsockname()[1]}/{token}/'
@@ -137,16 +123,12 @@ class _Live(_Guarded, WebSocketHandler):
         try:
             command = json.loads(message)
             match command['do']:
-                case 'configure':
-                    asked = watcher.configure(str(command['topic']), str(command['joint']))
                 case 'commission':
                     rotor, output = (Channel(*map(str, command[of])) for of in ('rotor', 'output'))
                     request = Request(rotor=rotor, output=output)
                     asked = watcher.commission(request, str(command['ratio']))
-                case 'zero_here' | 'write' | 'take' | 'end' as name:
-                    asked = watcher.commissioning(name)
-                case 'home' | 'undo' | 'record' | 'stop' as name:
-                    asked = getattr(watcher, name)()
+                case 'home' | 'undo' | 'zero_here' | 'write' | 'take' | 'end' as name:
+                    asked = watcher.ask(name)
                 case other:
                     raise ValueError(other)
             answer = await asyncio.wrap_future(asked)
@@ -155,15 +137,15 @@ class _Live(_Guarded, WebSocketHandler):
         await self.write_message({'answer': answer._asdict()})
 
     async def _send(self) -> None:
-        drawn = View().gear
+        drawn = None
         loop = asyncio.get_running_loop()
         with suppress(WebSocketClosedError):
             while True:
                 due = loop.time() + PERIOD
-                watcher, view = self._watcher, self._watcher.view
-                if view.gear != drawn:
-                    drawn = view.gear
-                    html = await loop.run_in_executor(None, drawing, watcher.drawn, watcher.module)
+                view = self._watcher.view
+                if self._watcher.drawn != drawn:
+                    drawn = self._watcher.drawn
+                    html = await loop.run_in_executor(None, drawing, *drawn)
                     await self.write_message({'drawing': html})
                 await self.write_message({'view': asdict(view)})  # until it has gone out
                 await asyncio.sleep(due - loop.time())

@@ -3,35 +3,26 @@
 
 import math
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from typing import Any, Literal, NamedTuple
 
 from gear_kinematics.kinematics import Gear
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.shape.angles import arc, arc_seconds
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.shape.angles import arc
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN
 from gear_kinematics.watch.drivers import Driver
 from gear_kinematics.watch.gear import GearNode, Joint, Status
-from gear_kinematics.watch.polled import Latest
 from gear_kinematics.wire import topics
 
-State = Literal['no node', 'connecting', 'connected', 'no input', 'no output', 'ended', 'fault']
-Tone = Literal['', 'stale', 'notable', 'bad']
-"""Out of date, a warning, or an error; the names are those of the page's classes."""
+Tone = Literal['', 'stale', 'notable', 'bad', 'pass', 'fail', 'unusable']
+"""The names are those of the page's classes."""
 
-_TONES = {'no node': 'unusable', 'connecting': 'unusable', 'connected': 'pass'}  # or fail
-_MAX_OUTPUT_AGE = 1.0  # s, after which it is out of date
+_TONES: dict[str, Tone] = {'no node': 'unusable', 'connecting': 'unusable', 'connected': 'pass'}
 _MAX_STATUS_AGE = 3.0  # s; diagnostics come every second
 _RPM = 60.0 / TURN  # of 1 rad/s
 _LEVELS = {OK: 'healthy', WARN: 'warning', ERROR: 'error'}
-
-
-class Curve(NamedTuple):
-    """The latest value of a curve; None while there is none."""
-
-    unit: str
-    value: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +33,6 @@ class Entry:
     value: str
     detail: str = ''
     tone: Tone = ''
-    curve: Curve | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,11 +50,6 @@ class Answer(NamedTuple):
 
     text: str
     done: bool
-    command: str = ''
-    """To copy into a terminal."""
-
-    def __str__(self) -> str:
-        return f'{self.text} {self.command}'.strip()
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,91 +57,64 @@ class View:
     """What there is to see."""
 
     node: str = ''  # full name of the node; '' as long as there was none
-    state: State = 'no node'
-    tone: str = _TONES['no node']  # pass, fail or unusable
-    duration: str = ''  # of the state, where it matters
+    state: str = 'no node'  # or connecting, connected, no output, ended, or fault
+    tone: Tone = 'unusable'
     message: str = ''  # on the state, in sentences
     values: tuple[Entry, ...] = ()
     diagnostics: tuple[Entry, ...] = ()
     drivers: tuple[Driver, ...] = ()
-    recording: str = ''  # on the recording in progress, if there is one
-    failure: str = ''  # why the last recording ended by itself, if it did
-    rotor: float | None = None  # angle within the turn, degrees
+    rotor: float | None = None  # angle, degrees; None while it is unknown or out of date
     output: float | None = None
     question: str = ''  # to ask before homing; '' where there is nothing to home
     undo: str = ''  # parameters before their last change, to go back to; '' where there is none
-    gear: int = 0  # raised when the drawing of the gear may have changed
     commission: Commission | None = None  # while a gear is commissioned
 
 
-def view_of(gear: GearNode, rotor: Latest | None, others: Sequence[str]) -> View:
-    """Show a node; the arguments are those of `state_of`."""
-    return View(
-        values=tuple(values_of(gear, rotor)),
-        diagnostics=tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values()),
-        **state_of(gear, rotor, others),
-        **_angles(gear),
-        **_homing(gear),
-    )
+def view_of(gear: GearNode | None) -> View:
+    """Show the node that was found or asked for."""
+    state, message = _state_of(gear)
+    view = View(gear.name if gear else '', state, _TONES.get(state, 'fail'), message)
+    if not gear:
+        return view
+    statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
+    return replace(view, diagnostics=statuses, values=tuple(values_of(gear)), **_motion_of(gear))
 
 
-def state_of(gear: GearNode | None, rotor: Latest | None, others: Sequence[str]) -> dict[str, Any]:
-    """Tell whether the node that was found or asked for runs, and has input.
-
-    `rotor` are the driver's messages, if their topic is known; `others` are further nodes.
-    """
-    state, duration, message = _state_of(gear, rotor)
-    if others:
-        message = f'{message} Also running: {", ".join(others)}; choose with --node.'.strip()
-    shown = {'node': gear.name if gear else '', 'state': state, 'tone': _TONES.get(state, 'fail')}
-    return {**shown, 'duration': duration, 'message': message}
-
-
-def _state_of(gear: GearNode | None, rotor: Latest | None) -> tuple[State, str, str]:
-    start = 'Start it for one of the drivers.'
+def _state_of(gear: GearNode | None) -> tuple[str, str]:
+    start = 'gearkin init writes a parameter file for a driver.'
     if gear is None:
-        return 'no node', '', f'No gear_state_publisher is running. {start}'
-    if gear.restarts < 0:
-        return 'no node', '', f'{gear.name} is not running. {start}'
+        return 'no node', f'No gear_state_publisher is running. {start}'
+    if not gear.seen:
+        return 'no node', f'{gear.name} is not running. {start}'
     if not gear.running:
-        return 'ended', '', f'{gear.name} has ended. Waiting for it to start again.'
+        return 'ended', f'{gear.name} has ended. Waiting for it to start again.'
     if gear.fault:
-        return 'fault', '', f'Its parameters cannot be used: {gear.fault}'
+        return 'fault', f'Its parameters cannot be used: {gear.fault}'
     if not gear.parameters or not gear.known:
-        return 'connecting', '', ''
-    if rotor and (rotor.age is None or rotor.age > gear.parameters.input_timeout):
-        return 'no input', '' if rotor.age is None else _duration(rotor.age), ''
+        return 'connecting', ''
     output = gear.joint(topics.OUTPUT_STATE)
-    if output and _freshness(output):  # the topic of a driver that has ended is gone
-        return 'no output' if rotor else 'no input', _duration(output.age), ''
-    if not (output or rotor):
-        return 'no input', '', ''
-    return 'connected', '', ''
+    if not output:
+        return 'no output', 'There was none yet.'
+    if _freshness(output, gear.parameters):
+        return 'no output', f'The last was {output.age:.1f} s ago.'
+    return 'connected', ''
 
 
-def _angles(gear: GearNode) -> dict[str, Any]:
-    """Give the angles of the drawing, within the turn."""
-    output = gear.joint(topics.OUTPUT_STATE)
-    if not (output and gear.gear):
+def _motion_of(gear: GearNode) -> dict[str, Any]:
+    """Give the angles of the drawing, and what can be asked and undone."""
+    parameters, output = gear.parameters, gear.joint(topics.OUTPUT_STATE)
+    if not (gear.running and gear.known and gear.gear and parameters):
         return {}
-    rotor = gear.gear.gear_ratio.rotor_angle(output.position)
-    return {
-        name: math.degrees(math.remainder(angle, TURN))
-        for name, angle in (('rotor', rotor), ('output', output.position))
-    }
-
-
-def _homing(gear: GearNode) -> dict[str, Any]:
-    if not (gear.running and gear.known and gear.parameters):
-        return {}
-    output, home = gear.joint(topics.OUTPUT_STATE), math.degrees(gear.parameters.home_angle)
-    where = 'Set the output'
-    if output and not _freshness(output):
+    angles, where = {}, 'Set the output'
+    if output and not _freshness(output, parameters):
+        rotor = gear.gear.gear_ratio.rotor_angle(output.position)
+        angles = {'rotor': math.degrees(rotor), 'output': math.degrees(output.position)}
         where = f'The output is at {_degrees(output.position, 1)}. Set it'
     earlier = ', '.join(f'{name} {shown(value)}' for name, value in gear.earlier.items())
     # Homing forgets the turns of a single-turn encoder.
-    undo = '' if gear.parameters.single_turn else earlier
-    return {'question': f'{where} to {home:.1f}°?', 'undo': undo}
+    undo = '' if parameters.single_turn else earlier
+    question = f'{where} to {_degrees(parameters.home_angle, 1)}?'
+    return {**angles, 'question': question, 'undo': undo}
 
 
 def shown(value: str | float) -> str:
@@ -164,34 +122,31 @@ def shown(value: str | float) -> str:
     return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
 
 
-def values_of(gear: GearNode, rotor: Latest | None) -> Iterator[Entry]:
-    """Describe the latest values; `rotor` are the driver's messages, if their topic is known."""
-    output = gear.joint(topics.OUTPUT_STATE)
-    if output and gear.gear:
-        yield from _motion(output, gear.gear)
-    if gear.parameters:
-        yield _zero(gear, gear.parameters.rotor_zero)
-    if rotor:
-        age = rotor.age
-        timeout = gear.parameters.input_timeout if gear.parameters else 1.0
-        detail = 'no message yet' if age is None else f'last message {_duration(age)} ago'
-        tone: Tone = 'bad' if age is None or age > timeout else ''
-        yield Entry('input', f'{rotor.rate:.0f} Hz', detail, tone)
+def values_of(gear: GearNode) -> Iterator[Entry]:
+    """Describe the latest values."""
+    if not (gear.parameters and gear.gear):
+        return
+    if output := gear.joint(topics.OUTPUT_STATE):
+        yield from _motion(output, gear.gear, _freshness(output, gear.parameters))
+        yield Entry('output rate', f'{gear.rate:.0f} Hz')
+    yield _zero(gear, gear.parameters.rotor_zero)
     if corrected := gear.joint(topics.CORRECTED_STATE):
         interval = gear.joint(topics.CORRECTED_INTERVAL)
         detail = f'± {arc(interval.position)} (95 %)' if interval else ''
-        angle = _degrees(corrected.position)
-        yield Entry('corrected angle', angle, detail, _freshness(corrected))
+        tone = _freshness(corrected, gear.parameters)
+        yield Entry('corrected angle', _degrees(corrected.position), detail, tone)
     if error := gear.joint(topics.TRANSMISSION_ERROR):
-        tone, detail = _freshness(error), _peak_to_peak(gear)
-        curve = _curve('″', arc_seconds(error.position), tone)
-        yield Entry('transmission error', arc(error.position), detail, tone, curve)
+        status = gear.statuses.get('transmission error')
+        peak = status.values.get('peak to peak (rad)', '') if status else ''
+        detail = f'peak to peak {peak} rad' if peak else ''
+        tone = _freshness(error, gear.parameters)
+        yield Entry('transmission error', arc(error.position), detail, tone)
 
 
 def status_entry(status: Status, now: float) -> Entry:
     """Describe a status of diagnostics at a time, s, with what to do about it."""
     if (age := now - status.at) > _MAX_STATUS_AGE:
-        return Entry(status.subject, f'no diagnostics for {_duration(age)}', tone='bad')
+        return Entry(status.subject, f'no diagnostics for {age:.1f} s', tone='bad')
     level = _LEVELS.get(status.level, 'unknown level')
     if status.level == OK:
         return Entry(status.subject, level)
@@ -200,15 +155,15 @@ def status_entry(status: Status, now: float) -> Entry:
     return Entry(status.subject, f'{level}: {status.message}', advice, tone)
 
 
-def _motion(output: Joint, gear: Gear) -> Iterator[Entry]:
-    ratio, tone, angle = gear.gear_ratio, _freshness(output), output.position
-    rotor, curve = ratio.rotor_angle(angle), _curve('°', math.degrees(angle), tone)
-    yield Entry('output angle', _degrees(angle), f'{angle:.5f} rad', tone, curve)
+def _motion(output: Joint, gear: Gear, tone: Tone) -> Iterator[Entry]:
+    ratio, angle = gear.gear_ratio, output.position
+    rotor = ratio.rotor_angle(angle)
+    yield Entry('output angle', _degrees(angle), f'{angle:.5f} rad', tone)
     yield Entry('rotor angle', _degrees(rotor), f'{rotor / TURN:.3f} turns', tone)
     if output.velocity is not None:
         speed = _RPM * output.velocity
         detail = f'rotor {ratio.rotor_angle(speed):.1f} rpm'
-        yield Entry('output speed', f'{speed:.2f} rpm', detail, tone, _curve(' rpm', speed, tone))
+        yield Entry('output speed', f'{speed:.2f} rpm', detail, tone)
 
 
 def _zero(gear: GearNode, zero: float) -> Entry:
@@ -220,34 +175,9 @@ def _zero(gear: GearNode, zero: float) -> Entry:
     return Entry('zero', f'{zero:.3f} rad', lost, 'notable')
 
 
-def _curve(unit: str, value: float, tone: Tone) -> Curve:
-    return Curve(unit, value if math.isfinite(value) and not tone else None)
-
-
-def _peak_to_peak(gear: GearNode) -> str:
-    """The peak-to-peak value in the window of the diagnostics, and its limit."""
-    status = gear.statuses.get('transmission error')
-    try:
-        value = float(status.values['peak to peak (rad)']) if status else math.nan
-    except (KeyError, ValueError):  # as 'none'
-        return ''
-    if not gear.parameters or not abs(value) <= TURN:
-        return ''
-    limit = arc(gear.parameters.transmission_error_limit)
-    length = gear.parameters.transmission_error_window
-    return f'peak to peak {arc(value)} in {length:g} s, limit {limit}'
-
-
-def _freshness(joint: Joint) -> Tone:
-    return 'stale' if joint.age > _MAX_OUTPUT_AGE else ''
+def _freshness(joint: Joint, parameters: NodeParameters) -> Tone:
+    return 'stale' if joint.age > parameters.input_timeout else ''
 
 
 def _degrees(angle: float, digits: int = 3) -> str:
     return f'{round(math.degrees(angle), digits) + 0.0:.{digits}f}°'  # no -0.0
-
-
-def _duration(seconds: float) -> str:
-    seconds = max(seconds, 0.0)
-    if seconds < 1.0:
-        return f'{1e3 * seconds:.0f} ms'
-    return f'{seconds:.1f} s' if seconds < 60.0 else f'{seconds / 60.0:.0f} min'  # noqa: PLR2004

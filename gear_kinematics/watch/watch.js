@@ -3,23 +3,17 @@
 'use strict';
 (() => {
   const RETRY = 1000; // ms
-  const SPAN = 10; // s of a curve
+  const SPAN = 10; // s of the curve
   const find = id => document.getElementById(id);
-  const [mechanism, drivers, home, record, command, question, undo, commission, guide] =
-    ['mechanism', 'drivers', 'home', 'record', 'command', 'question', 'undo', 'commission', 'guide'].map(find);
+  const [mechanism, home, question, undo, commission, guide] =
+    ['mechanism', 'home', 'question', 'undo', 'commission', 'guide'].map(find);
   const form = commission.querySelector('form');
   let server;
-  let frame; // the latest one that is not shown yet
-  let recording = false;
-  const curves = {}; // [time in s, value or null] by name
+  let points = []; // [time in s, output angle in degrees or null]
 
   function set(element, text, className = '') {
     if (element.textContent !== text) element.textContent = text;
     if (element.className !== className) element.className = className;
-  }
-
-  function fill(parent, ...texts) {
-    texts.forEach(([text, className], k) => set(parent.children[k], text, className));
   }
 
   function make(tag, ...children) {
@@ -28,56 +22,34 @@
     return element;
   }
 
-  function resize(parent, count, child) {
-    while (parent.children.length > count) parent.lastElementChild.remove();
-    while (parent.children.length < count) parent.append(child());
-  }
-
   function showEntries(list, entries) {
-    resize(list, entries.length, () => make('div', make('dt'), make('dd'), make('dd')));
-    entries.forEach(({name, value, detail, tone}, k) => fill(list.children[k], [name], [value, tone],
-      [detail, 'detail']));
-  }
-
-  function showCurve(figure, {name, curve: [unit, value]}) {
-    const now = performance.now() / 1000;
-    const points = (curves[name] ?? []).filter(([time]) => time > now - SPAN);
-    points.push([now, value]);
-    curves[name] = points;
-    const values = points.map(([, known]) => known).filter(known => known !== null);
-    const [low, high] = values.length ? [Math.min(...values), Math.max(...values)] : [0, 0];
-    const scale = 88 / Math.max(high - low, 1e-3);
-    const height = known => (50 - scale * (known - (low + high) / 2)).toFixed(1);
-    const path = points.map(([time, known], k) => known === null ? '' :
-      `${(points[k - 1]?.[1] ?? null) === null ? 'M' : 'L'}` +
-      `${(300 + 300 * (time - now) / SPAN).toFixed(1)},${height(known)}`);
-    figure.querySelector('path').setAttribute('d', path.join(''));
-    for (const end of ['y1', 'y2']) figure.querySelector('line').setAttribute(end, height(0));
-    fill(figure.firstElementChild, [`${name}, ${SPAN} s`],
-      [values.length ? `${low.toFixed(1)} to ${high.toFixed(1)}${unit}` : 'no values']);
-  }
-
-  function driverRow() {
-    const button = make('button', 'Write config');
-    const row = make('tr', make('td'), make('td'), make('td'), make('td', button));
-    button.addEventListener('click', () => send({do: 'configure', ...row.driver}));
-    return row;
-  }
-
-  function showDrivers(found) {
-    const rows = found.flatMap(({joints, ...more}) =>
-      (joints.length ? joints : ['']).map(joint => ({joint, ...more})));
-    const body = drivers.querySelector('tbody');
-    resize(body, rows.length, driverRow);
-    rows.forEach(({topic, joint, rate, publishers}, k) => {
-      const row = body.children[k];
-      const button = row.querySelector('button');
-      row.driver = {topic, joint};
-      fill(row, [joint, 'words'], [topic, 'words'],
-        [`${rate.toFixed(0)} Hz${publishers > 1 ? `, ${publishers} drivers` : ''}`, 'number']);
-      button.hidden = !joint;
-      button.setAttribute('aria-label', `Write config for joint ${joint} on ${topic}`);
+    while (list.children.length > entries.length) list.lastElementChild.remove();
+    while (list.children.length < entries.length) {
+      list.append(make('div', make('dt'), make('dd'), make('dd')));
+    }
+    entries.forEach(({name, value, detail, tone}, k) => {
+      const [title, text, more] = list.children[k].children;
+      set(title, name);
+      set(text, value, tone);
+      set(more, detail, 'detail');
     });
+  }
+
+  function showCurve(angle) {
+    const now = performance.now() / 1000;
+    points = [...points.filter(([time]) => time > now - SPAN), [now, angle]];
+    const known = points.map(([, value]) => value).filter(value => value !== null);
+    find('curve').hidden = !known.length;
+    if (!known.length) return;
+    const [low, high] = [Math.min(...known), Math.max(...known)];
+    const scale = 88 / Math.max(high - low, 1e-3);
+    const height = value => (50 - scale * (value - (low + high) / 2)).toFixed(1);
+    const path = points.map(([time, value], k) => value === null ? '' :
+      `${(points[k - 1]?.[1] ?? null) === null ? 'M' : 'L'}` +
+      `${(300 + 300 * (time - now) / SPAN).toFixed(1)},${height(value)}`);
+    find('curve').querySelector('path').setAttribute('d', path.join(''));
+    set(find('curve').firstElementChild,
+      `output angle, ${SPAN} s: ${low.toFixed(1)} to ${high.toFixed(1)}°`);
   }
 
   function showJoints(found) {
@@ -94,62 +66,45 @@
   }
 
   function showCommission(now) {
-    const button = form.querySelector('button');
     guide.hidden = !now;
-    set(button, now ? 'Change' : 'Start');
+    set(form.querySelector('button'), now ? 'Change' : 'Start');
     if (!now) return;
-    fill(guide, [now.advice, now.known === 1 ? 'pass' : '']);
+    set(guide.firstElementChild, now.advice, now.known === 1 ? 'pass' : '');
     guide.querySelector('progress').value = now.known;
     set(guide.querySelector('.detail'), now.heard, 'detail');
     showEntries(guide.querySelector('dl'), now.entries);
   }
 
-  function showState(state, tone, duration, message) {
-    const name = state.replace(' ', '-');
-    if (document.body.className !== name) {
-      document.body.className = name;
-      drivers.open = state === 'no node'; // there it is what matters
-    }
+  function showState(state, tone, message) {
+    document.body.className = state.replace(' ', '-');
     set(find('state'), state, `badge ${tone}`);
-    set(find('duration'), duration);
     set(find('message'), message);
   }
 
-  function show() {
-    const now = frame;
-    frame = undefined;
-    if (!now) return;
+  function show(now) {
     if (now.rotor !== null) {
-      for (const name of ['rotor', 'output']) mechanism.style.setProperty(`--${name}`, `${now[name]}deg`);
+      for (const name of ['rotor', 'output']) {
+        mechanism.style.setProperty(`--${name}`, `${now[name] % 360}deg`);
+      }
     }
-    recording = now.recording !== '';
-    const running = !['no node', 'connecting', 'ended'].includes(now.state);
-    showState(now.state, now.tone, now.duration, now.message);
+    showState(now.state, now.tone, now.message);
     set(find('node'), now.node);
-    set(find('recording'), now.recording ? `Recording to ${now.recording}` : now.failure,
-      now.recording ? '' : 'bad');
-    set(record, recording ? 'Stop recording' : 'Record', recording ? 'on' : '');
     home.disabled = !now.question;
     undo.hidden = !now.undo;
     set(undo.lastElementChild, `sets ${now.undo} again`);
     if (home.disabled) question.hidden = true;
-    else fill(question, [now.question]);
-    record.disabled = !recording && !running && !now.drivers.length;
+    else set(question.firstElementChild, now.question);
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
-    const shown = now.values.filter(({curve}) => curve);
-    resize(find('curves'), shown.length,
-      () => find('curve').content.firstElementChild.cloneNode(true));
-    shown.forEach((entry, k) => showCurve(find('curves').children[k], entry));
-    showDrivers(now.drivers);
+    showCurve(now.output);
+    showEntries(find('drivers').lastElementChild, now.drivers.map(({topic, joints, rate}) =>
+      ({name: topic, value: joints.join(', '), detail: `${rate.toFixed(0)} Hz`, tone: ''})));
     showJoints(now.drivers);
     showCommission(now.commission);
   }
 
-  function showAnswer({text, done, command: line}) {
+  function showAnswer({text, done}) {
     set(find('answer'), text, done ? '' : 'bad');
-    fill(command, [line], ['Copy']);
-    command.hidden = !line;
   }
 
   function send(message) {
@@ -162,14 +117,11 @@
       const message = JSON.parse(data);
       if ('drawing' in message) mechanism.innerHTML = message.drawing;
       if ('answer' in message) showAnswer(message.answer);
-      if ('view' in message) {
-        if (!frame) requestAnimationFrame(show);
-        frame = message.view;
-      }
+      if ('view' in message) show(message.view);
     });
     server.addEventListener('close', () => {
-      showState('no connection', 'fail', '', 'gearkin watch has ended, or cannot be reached. Trying again.');
-      home.disabled = record.disabled = question.hidden = undo.hidden = true;
+      showState('no connection', 'fail', 'gearkin watch has ended, or cannot be reached. Trying again.');
+      home.disabled = question.hidden = undo.hidden = true;
       setTimeout(connect, RETRY);
     });
   }
@@ -192,16 +144,11 @@
     if (key === 'Escape') ask(false);
   });
   undo.firstElementChild.addEventListener('click', () => send({do: 'undo'}));
-  record.addEventListener('click', () => send({do: recording ? 'stop' : 'record'}));
   form.addEventListener('submit', event => {
     event.preventDefault();
     const [rotor, output] = [form.rotor, form.output].map(select => JSON.parse(select.value));
     send({do: 'commission', rotor, output, ratio: form.ratio.value});
   });
   guide.addEventListener('click', ({target}) => target.value && send({do: target.value}));
-  command.querySelector('button').addEventListener('click', async ({target}) => {
-    await navigator.clipboard.writeText(command.querySelector('code').textContent);
-    set(target, 'Copied');
-  });
   connect();
 })();

@@ -161,8 +161,6 @@ def test_file_for_two_nodes_is_refused_naming_them(two_nodes, tmp_path, monkeypa
         ('describe --config missing.yaml', 'missing.yaml: No such file or directory'),
         ('preload --setting 1 2', 'expected 3 arguments; see gearkin preload --help'),
         ('validate bag --junit', '--junit: expected one argument'),
-        ('watch --port -1', 'argument --port: must be between 0 and 65535, not -1'),
-        ('watch --port 65536', 'argument --port: must be between 0 and 65535, not 65536'),
     ],
 )
 def test_unusable_arguments_get_one_clear_line_and_code_2(arguments, cause):
@@ -191,10 +189,8 @@ HEADINGS = (
 """Of the help of all commands, in this order."""
 
 
-def test_watch_and_init_replace_nothing(tmp_path, monkeypatch):
+def test_init_replaces_nothing(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / 'actuator.yaml').write_text('mine')
     assert refusal('init') == 'actuator.yaml: exists already; give another name with -o'
-    (tmp_path / 'monday').symlink_to('nowhere')
-    assert refusal('watch', '--record', 'monday') == 'monday: exists already'
     assert (tmp_path / 'actuator.yaml').read_text() == 'mine'

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gear_kinematics.parameters import ConfigError, NodeParameters, default_config
-from gear_kinematics.parameters.new_config import new_config, start_command, unused_name, write_new
+from gear_kinematics.parameters.new_config import new_config, start_command, write_new
 
 
 def test_file_is_the_default_one_with_the_joint_of_the_driver(tmp_path):
@@ -80,10 +80,3 @@ def test_nothing_is_left_of_a_file_that_does_not_fit(tmp_path):
     with pytest.raises(UnicodeEncodeError):
         write_new(path, 'half \ud800')
     assert not path.exists()
-
-
-def test_name_that_is_taken_gets_a_number(tmp_path):
-    assert unused_name(tmp_path, 'a.yaml') == tmp_path / 'a.yaml'
-    (tmp_path / 'a.yaml').touch()
-    (tmp_path / 'a_2.yaml').symlink_to('nowhere')
-    assert unused_name(tmp_path, 'a.yaml') == tmp_path / 'a_3.yaml'

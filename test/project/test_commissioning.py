@@ -8,6 +8,7 @@ import re
 import shlex
 import subprocess
 import sys
+import time
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,7 +18,6 @@ from live import Peer, stamp_of
 from played_joint import moments
 from simulated_encoders import Drive
 from terminals import Person
-from watching import GEARKIN
 
 from gear_kinematics.ros.live import running_node
 
@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PLAYER = ROOT / 'test/support/played_joint.py'
 PAGE = (ROOT / 'docs/commissioning.md').read_text('utf-8')
 DEGREE = math.pi / 180.0
-SECONDS = 5  # that a person turns the output
+SECONDS = 6.0  # that a person turns the output
 
 
 def command(*words: str) -> list[str]:
@@ -91,42 +91,26 @@ def driven(joint: Joint, folder: Path, lost: float = 0.0):
         process.communicate()
 
 
-def record(folder: Path) -> str:
-    """Record the drivers with the keys of `gearkin watch`; returns the name of the recording."""
-    with Person(folder, *command('watch', '--text')) as person:
-        person.wait_for('/encoder/joint_states')
-        person.type('r')
-        name = person.wait_for(r'gearkin_[\d_-]+')
-        person.wait_for(rf'{name}: {SECONDS}\.\d s, ')
-        person.type('r')
-        person.wait_for(r'Recorded \d+ messages, 0 lost: gearkin commission ')
-        person.type('q')
+def gearkin(folder: Path, *arguments: str) -> str:
+    """Run a command for some seconds, and press Enter; returns what it shows."""
+    with Person(folder, *arguments) as person:
+        person.wait_for('messages, 0 lost; the output turned')
+        time.sleep(SECONDS)
+        person.type('\n')
         assert person.end() == 0
-    return name
-
-
-def gearkin(folder: Path, recording: str, *arguments: str) -> str:
-    """Run a command for a recording; returns what it prints."""
-    words = [recording if word == 'RECORDING' else word for word in arguments]
-    done = subprocess.run(
-        [*GEARKIN, *words], cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, done.stderr) == (0, ''), done.stdout
-    return done.stdout
+    return ' '.join(person.shown().split())
 
 
 def test_an_unknown_joint_is_commissioned(joint, tmp_path):
     file = tmp_path / 'actuator.yaml'
     nameplate = re.findall('`(--ratio) (121)`', PAGE)[0] if joint.ratio == '121' else ()
     with driven(joint, tmp_path):
-        recording = record(tmp_path)
-    said = gearkin(tmp_path, recording, *command('commission', '-o'), *nameplate)
-    assert f'The gear has the ratio {joint.ratio} (' in said.splitlines()[0]
+        said = gearkin(tmp_path, *command('commission', '-o'), *nameplate)
+    assert f'The gear has the ratio {joint.ratio} (' in said
     [setting] = re.findall(r'`(output_encoder_reference: absolute)`', PAGE)
     file.write_text(f'{file.read_text()}    {setting}\n')
     with driven(joint, tmp_path, lost=37.3 if joint.forgets else 0.0) as truth:
-        recording = record(tmp_path) if joint.forgets else recording
-        gearkin(tmp_path, recording, *command('commission', '--check'))
+        gearkin(tmp_path, *command('commission', '--check'))
         [start] = re.findall(r'^#     (.*gear_state_publisher.*)$', file.read_text(), re.MULTILINE)
         _, ros, arguments = start.partition('--ros-args')
         with (

@@ -8,22 +8,14 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from concurrent.futures import Future
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-from steady_driver import MILLISECOND
-
-from gear_kinematics.bag import Bag, DamagedBagError
-from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.ros.live import running_node
-from gear_kinematics.watch.polled import Taken
 from gear_kinematics.watch.view import View
 from gear_kinematics.watch.watcher import Answer
-from gear_kinematics.wire.batches import decode_joint_states
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMESPACE = f'/watched_{os.getpid()}'
@@ -95,62 +87,18 @@ def driving():
         process.wait()
 
 
-def assert_is_whole(path: Path, *, least: int) -> None:
-    """Check that a recording has every message of the driver from first to last, and validates.
-
-    A process that is killed can leave its last record half written.
-    """
-    messages, whole = [], False
-    with Bag(path) as bag, contextlib.suppress(DamagedBagError):
-        for _, _, data in bag.messages([MOTOR]):
-            messages.append(data)
-        whole = True
-    stamps = decode_joint_states(messages, 'm1').stamp
-    assert len(stamps) >= least
-    assert set(np.diff(stamps).tolist()) == {MILLISECOND}
-    assert not whole or main(['validate', str(path)]) == 0
-
-
 class WatcherStandIn:
     """Shows one view, answers every command, and notes what it is asked for."""
 
     def __init__(self, view: View) -> None:
         """Take the view."""
         self.view = view
-        self.drawn = Mechanism(80, 76, 0.0011, (Branch('a'),))
-        self.module = 0.0005
+        self.drawn = Mechanism(80, 76, 0.0011, (Branch('a'),)), 0.0005
         self.asked: list[tuple] = []
 
-    def __getattr__(self, name):
+    def ask(self, *command) -> Future:
         """Answer a command with its name."""
-
-        def ask(*arguments) -> Future:
-            self.asked.append((name, *arguments))
-            answer: Future = Future()
-            answer.set_result(Answer(f'{name}.', done=True))
-            return answer
-
-        return ask
-
-
-class Source:
-    """Stands in for a subscription, with messages that a test puts there."""
-
-    waiting: dict[str, list[Taken]]
-    drivers = 1
-
-    def __init__(self, _node, topic, *_) -> None:
-        """Subscribe."""
-        self.topic = topic
-
-    def take(self) -> Iterator[Taken]:
-        """Give all of them, once."""
-        taken, self.waiting[self.topic] = self.waiting[self.topic], []
-        return iter(taken)
-
-    def publishers(self) -> int:
-        """Count the publishers."""
-        return self.drivers
-
-    def close(self) -> None:
-        """Unsubscribe."""
+        self.asked.append(command)
+        answer: Future = Future()
+        answer.set_result(Answer(f'{command[0]}.', done=True))
+        return answer

@@ -13,16 +13,39 @@ from rclpy.parameter import parameter_value_to_python
 from rclpy.parameter_client import AsyncParameterClient
 from simulated_encoders import Drive, sine_strokes, stamps
 from terminals import Person
-from watching import ENCODER, MOTOR, NAMESPACE, NODE, Source, driving, gearkin, node
+from watching import ENCODER, MOTOR, NAMESPACE, NODE, driving, gearkin, node
 
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.watch import commissioning, recording
+from gear_kinematics.watch import commissioning
 from gear_kinematics.watch.commissioning import GUIDE, LiveCommissioning
-from gear_kinematics.watch.polled import Taken
 
 # Without ROS: messages that a test puts there
+
+
+class Source:
+    """Stands in for a node and for its only subscription."""
+
+    def __init__(self) -> None:
+        self.waiting = []
+        self.handle = self
+
+    def create_subscription(self, kind, *_, raw, **__):
+        self.msg_type, self.raw = kind, raw
+        return self
+
+    def destroy_subscription(self, _):
+        """Unsubscribe."""
+
+    def __enter__(self):
+        """Lock it."""
+
+    def __exit__(self, *_):
+        """Unlock it."""
+
+    def take_message(self, *_):
+        return self.waiting.pop(0) if self.waiting else None
 
 
 def hear(monkeypatch, degrees, ratio='', *, seconds=8.0, lost=0, most=40_000):
@@ -33,21 +56,23 @@ def hear(monkeypatch, degrees, ratio='', *, seconds=8.0, lost=0, most=40_000):
     drive = Drive(play=1e-4, ratio=-121.0, noise=1e-5)
     times, rotor, output = drive.readings(sine_strokes(np.radians(degrees), 2.0), seconds)
     messages = [
-        Taken(rotor_bytes(int(stamp), ('m', 'o'), (one, other)), int(stamp), number)
+        (
+            rotor_bytes(int(stamp), ('m', 'o'), (one, other)),
+            {'received_timestamp': int(stamp), 'publication_sequence_number': number},
+        )
         for number, (stamp, one, other) in enumerate(
             zip(stamps(times), rotor, output, strict=True)
         )
     ]
     del messages[100 : 100 + lost]
-    monkeypatch.setattr(recording, 'PolledSubscription', Source)
-    monkeypatch.setattr(Source, 'waiting', {'/j': []}, raising=False)
     monkeypatch.setattr(commissioning, '_MOST_STATES', most)
     given = GearRatio.parse(ratio) if ratio else None
+    source = Source()
     live = LiveCommissioning(
-        None, Request(rotor=Channel('/j', 'm'), output=Channel('/j', 'o'), ratio=given)
+        source, Request(rotor=Channel('/j', 'm'), output=Channel('/j', 'o'), ratio=given)
     )
     for start in range(0, len(messages), 100):
-        Source.waiting['/j'] = messages[start : start + 100]
+        source.waiting = messages[start : start + 100]
         live.poll()
     live.close()
     live.finish()
@@ -72,11 +97,6 @@ def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice
     assert ('turned' not in shown.heard) == (not degrees) or (
         f'turned {degrees:.0f}° on and {degrees:.0f}° back' in shown.heard
     )
-
-
-def test_too_few_samples_are_no_fault_but_advice(monkeypatch):
-    shown = hear(monkeypatch, 90.0, most=400).shown
-    assert shown.advice == 'Go on turning the output, slowly: there is not enough motion yet.'
 
 
 def test_parameters_are_those_of_the_gear(monkeypatch):
@@ -149,8 +169,8 @@ def test_in_a_pipe_it_ends_by_itself_and_needs_no_extra(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     lines = done.stderr.splitlines()
-    assert re.match(r'100% \| All is known .* \| m1 \(rotor\) .* \d+ messages, 0 lost', lines[-1])
-    assert len([line for line in lines if '% | ' in line]) < 30
+    assert re.search(r' 100% All is known .* \(m1 \(rotor\) .* \d+ messages, 0 lost', lines[-1])
+    assert len([line for line in lines if '% ' in line]) < 30
     found = NodeParameters.load(tmp_path / 'actuator.yaml')
     assert (found.rotor_joint, found.gear_ratio, found.rotor_encoder) == (
         'm1',
@@ -202,8 +222,7 @@ def test_page_guides_writes_and_takes_into_the_node(tmp_path):
         sync_api.expect(guide).to_contain_text('All is known that is needed')
         assert page.locator('#guide progress').evaluate('bar => bar.value') == 1.0
         page.get_by_role('button', name='Write actuator.yaml').click()
-        command = page.locator('#command')
-        sync_api.expect(command).to_contain_text(f'actuator.yaml -r rotor_state:={MOTOR}')
+        sync_api.expect(answer).to_contain_text(f'actuator.yaml -r rotor_state:={MOTOR}')
         page.get_by_role('button', name='Take into the running node').click()
         sync_api.expect(answer).to_have_text(
             'Nothing is changed: gear_ratio 19 needs a restart; write the file, and start it.'

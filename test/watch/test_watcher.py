@@ -14,29 +14,20 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from blocked_bags import wait_until
 from rich.console import Console
 from watching import WatcherStandIn
 
 from gear_kinematics.commands.cli import main
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.parameters.new_config import new_config
 from gear_kinematics.watch import drivers
-from gear_kinematics.watch.drivers import Driver
+from gear_kinematics.watch.drivers import Driver, Graph
 from gear_kinematics.watch.gear import GearNode, Joint, Status
-from gear_kinematics.watch.graph import known_as
 from gear_kinematics.watch.page import drawing
-from gear_kinematics.watch.text import line, list_drivers, table
-from gear_kinematics.watch.view import (
-    Curve,
-    Entry,
-    View,
-    state_of,
-    status_entry,
-    values_of,
-    view_of,
-)
-from gear_kinematics.watch.watcher import Answer
+from gear_kinematics.watch.text import line, list_drivers, rows_of, table
+from gear_kinematics.watch.view import Answer, Entry, View, status_entry, values_of, view_of
+from gear_kinematics.watch.watcher import Watcher
 from gear_kinematics.wire import topics
 
 tornado_websocket = pytest.importorskip('tornado.websocket', reason='no tornado is installed')
@@ -46,31 +37,40 @@ from gear_kinematics.watch.server import Server  # noqa: E402, needs it
 
 ROOT = Path(__file__).resolve().parents[2]
 JOINT_STATE = 'sensor_msgs/msg/JointState'
-POSE_ARRAY = 'geometry_msgs/msg/PoseArray'
 HOSTILE = 'm\x1b[2J<img src=x onerror=alert(1)>'
-DRIVERS = (Driver('/motor/joint_states', ('brake', 'm1'), 999.6, 2), Driver('/odd', (), 0.0, 1))
+DRIVERS = (Driver('/motor/joint_states', ('brake', 'm1'), 999.6), Driver('/odd', (), 0.0))
 
 
 # Which topic is which
 
 
-EXPECTED = {'rotor_state': JOINT_STATE, 'output_encoder': JOINT_STATE, 'poses': POSE_ARRAY}
-
-
 @pytest.mark.parametrize(
-    ('found', 'known'),
+    ('own', 'output'),
     [
-        ('/left/rotor_state /left/output_encoder', '/left/rotor_state /left/output_encoder'),
-        ('/output_encoder /motor/joint_states', '/motor/joint_states /output_encoder'),
-        ('/a /b', ''),  # nothing is guessed
+        ('output_state mechanism_joint_states other', 'output_state'),
+        ('angle mechanism_joint_states', 'angle'),
+        ('angle other mechanism_joint_states', None),  # nothing is guessed
+        ('joint_states', None),  # a driver can have ~/home, too
     ],
 )
-def test_topics_are_known_by_their_names_or_as_the_only_ones_of_a_type(found, known):
-    others = {'/others': POSE_ARRAY, '/x': 'y'}
-    told = known_as(EXPECTED, dict.fromkeys(found.split(), JOINT_STATE) | others)
-    names = dict(zip(('rotor_state', 'output_encoder'), known.split(), strict=False))
-    assert told == names | {'poses': '/others'}
-    assert known_as({'rotor_state': JOINT_STATE}, {'/rotor_state': POSE_ARRAY}) == {}
+def test_node_of_a_gear_is_known_by_its_topics(own, output):
+    def end(name):
+        return SimpleNamespace(node_name=name, node_namespace='/left', endpoint_gid=name.encode())
+
+    published = {f'/left/{name}': [end('gear')] for name in own.split()}
+    published |= {'/left/rotor_state': [end('motor')]}
+    graph = Graph(
+        SimpleNamespace(
+            get_topic_names_and_types=lambda: [(topic, [JOINT_STATE]) for topic in published],
+            get_publishers_info_by_topic=published.get,
+            get_service_names_and_types=lambda: [('/left/gear/home', ['std_srvs/srv/Trigger'])],
+        )
+    )
+    assert graph.gears == (['/left/gear'] if output else [])
+    assert graph.outputs_of('/left/gear').get('output_state') == (output and f'/left/{output}')
+    assert graph.publishers_of('/left/gear') == ({b'gear'} if output else set())
+    assert '/left/rotor_state' in graph.drivers()
+    assert (len(graph.drivers()) == 1) == bool(output)
 
 
 # Words
@@ -84,16 +84,17 @@ def gear_node(**changes):
         topics.CORRECTED_INTERVAL: Joint(math.radians(0.5 / 60.0), None, 0.001),
         topics.TRANSMISSION_ERROR: Joint(math.radians(-1.5 / 60.0), None, 0.001),
     }
-    values = {'peak to peak (rad)': str(math.radians(3.0 / 60.0))}
+    values = {'peak to peak (rad)': '0.0002'}
     kept = {'home file': 'not kept: set home_file'}
     node = {
         'name': '/left/gear_state_publisher',
         'running': True,
         'known': True,
-        'restarts': 0,
+        'seen': True,
+        'rate': 999.6,
         'fault': '',
         'gear': GearRatio(-19),
-        'parameters': replace(NodeParameters.load(), transmission_error_limit=math.radians(0.1)),
+        'parameters': NodeParameters.load(),
         'statuses': {
             'rotor input': Status('rotor input', 0, 'ok', kept, time.monotonic()),
             'transmission error': Status('transmission error', 0, 'ok', values, time.monotonic()),
@@ -105,77 +106,53 @@ def gear_node(**changes):
     return SimpleNamespace(**{**node, **changes})
 
 
-def curve(value, unit):
-    return Curve(unit, pytest.approx(value))
-
-
 def test_values_are_those_of_the_topics():
-    rotor = SimpleNamespace(age=0.0023, rate=999.6)
-    assert list(values_of(gear_node(), rotor)) == [
-        Entry('output angle', '-370.000°', '-6.45772 rad', '', curve(-370.0, '°')),
+    assert list(values_of(gear_node())) == [
+        Entry('output angle', '-370.000°', '-6.45772 rad'),
         Entry('rotor angle', '7030.000°', '19.528 turns'),
-        Entry('output speed', '-9.55 rpm', 'rotor 181.4 rpm', '', curve(-30.0 / math.pi, ' rpm')),
+        Entry('output speed', '-9.55 rpm', 'rotor 181.4 rpm'),
+        Entry('output rate', '1000 Hz'),
         Entry('zero', '0.000 rad', 'not kept: set home_file'),
-        Entry('input', '1000 Hz', 'last message 2 ms ago'),
         Entry('corrected angle', '-370.250°', '± 30.000″ (95 %)'),
-        Entry(
-            'transmission error',
-            '-1′ 30.000″',
-            'peak to peak 3′ 00.000″ in 10 s, limit 6′ 00.000″',
-            '',
-            curve(-90.0, '″'),
-        ),
+        Entry('transmission error', '-1′ 30.000″', 'peak to peak 0.0002 rad'),
     ]
+    assert list(values_of(gear_node(parameters=None))) == []
 
 
-def test_values_that_are_out_of_date_say_so():
-    output = Joint(0.1, None, 90.0)
-    silent = gear_node(joint={topics.OUTPUT_STATE: output}.get)
-    rotor = SimpleNamespace(age=61.0, rate=0.0)
-    found = {entry.name: entry for entry in values_of(silent, rotor)}
-    assert found['output angle'].tone == 'stale'
-    assert found['output angle'].curve == Curve('°', None)
-    assert found['input'] == Entry('input', '0 Hz', 'last message 1 min ago', 'bad')
-    unheard = SimpleNamespace(age=None, rate=0.0)
-    assert Entry('input', '0 Hz', 'no message yet', 'bad') in values_of(silent, unheard)
-
-
-def test_drawing_gets_angles_within_a_turn():
-    view = view_of(gear_node(), None, ())
-    assert view.output == pytest.approx(-10.0)
-    assert view.rotor == pytest.approx(7030.0 - 20 * 360.0)
-    assert view_of(gear_node(joint={}.get), None, ()).rotor is None
-
-
-@pytest.mark.parametrize('text', ['none', 'nan', '9' * 400, '1e200', '0x1'])
-def test_odd_number_in_a_status_is_not_shown(text):
-    odd = Status('transmission error', 0, 'ok', {'peak to peak (rad)': text}, time.monotonic())
-    shown = list(values_of(gear_node(statuses={odd.subject: odd}), None))[-1]
-    assert (shown.name, shown.detail) == ('transmission error', '')
+def test_values_that_are_out_of_date_say_so_and_move_nothing():
+    silent = gear_node(joint={topics.OUTPUT_STATE: Joint(0.1, None, 90.0)}.get)
+    view = view_of(silent)
+    assert [entry.tone for entry in view.values[:2]] == ['stale', 'stale']
+    assert view.rotor is None
+    assert view.question == 'Set the output to 0.0°?'
+    view = view_of(gear_node())
+    assert (view.output, view.rotor) == pytest.approx((-370.0, 7030.0))
+    assert view_of(gear_node(joint={}.get)).rotor is None
 
 
 @pytest.mark.parametrize(
     ('gear', 'state', 'words'),
     [
         (None, 'no node', 'No gear_state_publisher is running'),
-        (gear_node(restarts=-1, running=False), 'no node', 'is not running. Start it'),
+        (gear_node(seen=False, running=False), 'no node', 'is not running. gearkin init'),
         (gear_node(running=False), 'ended', 'has ended. Waiting'),
         (gear_node(fault='module must be'), 'fault', 'cannot be used: module must be'),
         (gear_node(known=False), 'connecting', ''),
-        (gear_node(), 'connected', 'Also running: /right; choose with --node'),
-        (gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 9.0)}.get), 'no output', ''),
+        (gear_node(), 'connected', ''),
+        (gear_node(joint={}.get), 'no output', 'There was none yet.'),
+        (gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 5.74)}.get), 'no output', '5.7 s'),
     ],
 )
 def test_state_of_the_node_is_told(gear, state, words):
-    told = state_of(gear, SimpleNamespace(age=0.001), ['/right'] if gear else [])
-    assert told['state'] == state
-    assert words in told['message']
+    view = view_of(gear)
+    assert view.state == state
+    assert words in view.message
 
 
 def test_parameters_of_an_odd_type_are_a_fault():
     node = object.__new__(GearNode)
-    node._names, node.known = ['module', 'output_joint'], False
-    node._take_parameters(['thick', 'output'])
+    node.known = False
+    node._take_parameters({'module': 'thick', 'output_joint': 'output'})
     assert node.fault == "module must be of type float, not 'thick'"
     assert not node.known
 
@@ -199,12 +176,12 @@ def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     node.known, node.parameters = False, None
     node.homed_zero, node.earlier = None, {}
     for zero in zeros:
-        node._names, node.known = ['rotor_zero'], zero is not None and node.known
+        node.known = zero is not None and node.known
         if zero is not None:
-            node._take_parameters([zero])
+            node._take_parameters({'rotor_zero': zero})
     assert node.earlier == ({} if earlier is None else {'rotor_zero': earlier})
     shown = {'earlier': node.earlier, 'homed_zero': node.homed_zero, 'parameters': node.parameters}
-    view = view_of(gear_node(**shown), None, ())
+    view = view_of(gear_node(**shown))
     [entry] = [entry for entry in view.values if entry.name == 'zero']
     assert view.undo == ('' if earlier is None else f'rotor_zero {earlier:g}')
     words = 'homed before; the zero is lost: it was 28.969 rad; not kept: set home_file'
@@ -214,29 +191,11 @@ def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
 
 def test_question_before_homing_says_where_the_output_is():
     parameters = replace(NodeParameters.load(), home_angle=math.radians(12.25))
-    assert view_of(gear_node(parameters=parameters), None, ()).question == (
-        'The output is at -370.0°. Set it to 12.2°?'
-    )
-    silent = {topics.OUTPUT_STATE: Joint(0.1, None, 90.0)}.get
-    assert view_of(gear_node(joint=silent), None, ()).question == 'Set the output to 0.0°?'
-    assert view_of(gear_node(known=False), None, ()).question == ''
+    question = view_of(gear_node(parameters=parameters)).question
+    assert question == 'The output is at -370.0°. Set it to 12.2°?'
+    assert view_of(gear_node(known=False)).question == ''
     single = replace(parameters, rotor_encoder='single_turn')
-    assert not view_of(gear_node(parameters=single, earlier={'rotor_zero': 0.0}), None, ()).undo
-
-
-@pytest.mark.parametrize(('age', 'duration'), [(0.9, None), (5.74, '5.7 s'), (None, '')])
-def test_driver_that_has_stopped_is_no_connection(age, duration):
-    told = state_of(gear_node(), SimpleNamespace(age=age), [])
-    assert told['state'] == ('connected' if duration is None else 'no input')
-    assert told['tone'] == ('pass' if duration is None else 'fail')
-    assert told['duration'] == (duration or '')
-
-
-def test_driver_whose_topic_is_gone_gives_no_input():
-    told = state_of(gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 9.0)}.get), None, [])
-    assert (told['state'], told['duration']) == ('no input', '9.0 s')
-    told = state_of(gear_node(joint={}.get), None, [])
-    assert (told['state'], told['duration']) == ('no input', '')
+    assert not view_of(gear_node(parameters=single, earlier={'rotor_zero': 0.0})).undo
 
 
 def test_status_is_described_with_what_to_do():
@@ -262,9 +221,8 @@ FULL = View(
     tone='pass',
     values=(Entry('output angle', '12.5°', '0.2 rad'), Entry('input', '0 Hz', '', 'bad')),
     diagnostics=(Entry('rotor input', f'error: {HOSTILE}', HOSTILE, 'bad'),),
-    recording='monday: 3 messages in 1.0 s, 0 lost',
+    message='All is well.',
     drivers=DRIVERS,
-    gear=1,
 )
 
 
@@ -275,63 +233,60 @@ def printed(renderable, width: int = 120) -> str:
 
 
 def test_line_says_all_of_a_moment():
-    assert line(FULL) == (
-        '/left/gear_state_publisher connected | output angle 12.5° (0.2 rad); input 0 Hz | '
-        'rotor input error: m\\x1b[2J<img src=x onerror=alert(1)> '
-        '(m\\x1b[2J<img src=x onerror=alert(1)>) | '
-        'recording monday: 3 messages in 1.0 s, 0 lost'
+    assert line(rows_of(FULL)) == (
+        '/left/gear_state_publisher connected (All is well.); output angle 12.5° (0.2 rad); '
+        'input 0 Hz; rotor input error: m\\x1b[2J<img src=x onerror=alert(1)> '
+        '(m\\x1b[2J<img src=x onerror=alert(1)>)'
     )
-    assert line(View(message='No node.')) == 'no node | No node.'
-
-
-def test_table_shows_values_and_keys_and_without_a_node_the_drivers():
-    text = printed(table(FULL, Answer('Recording to monday.', done=True)))
-    for part in ('output angle', '12.5°', '● recording to monday', 'Recording to monday.'):
-        assert part in text
-    assert 'h home   r stop recording   q end' in text
-    asked = View(question='The output is at 61.5°. Set it to 0.0°?', undo='rotor_zero 0')
-    text = printed(table(asked, asking=True))
-    assert 'The output is at 61.5°. Set it to 0.0°?   y yes   n no' in text
-    assert 'h home   u undo: rotor_zero 0 again   r record   q end' in text
-    assert 'Set it' not in printed(table(asked))
-    ended = View(state='ended', failure='monday: No space left on device')
-    assert 'No space left' in printed(table(ended))
-    alone = printed(table(View(drivers=DRIVERS)))
-    assert re.search(r'/motor/joint_states +brake, m1 +1000 Hz', alone)
-    assert 'gearkin init' in alone
 
 
 def test_narrow_table_cuts_nothing():
-    status = Entry(
-        'transmission error', 'warning: no output_encoder', 'Check that the driver runs.'
-    )
-    value = Entry('transmission error', '-20.105″', 'limit 10′ 18.794″')
-    text = printed(table(View(values=(value,), diagnostics=(status,), drivers=DRIVERS)), width=40)
-    assert '…' not in text
-    for entry in (value, status):
-        assert set(f'{entry.name} {entry.value} {entry.detail}'.split()) <= set(text.split())
+    rows = rows_of(FULL)[:3]
+    said = ''.join(f'{row.name}{row.value}{row.detail}' for row in rows)
+    shown = printed(table(rows), width=30)
+    assert sorted(''.join(shown.split())) == sorted(''.join(said.split()))
 
 
-def test_names_do_not_reach_the_terminal_raw():
-    hostile = Driver('/odd', (HOSTILE,), 1.0, 1)
-    view = View(state='connected', diagnostics=FULL.diagnostics, failure=HOSTILE)
-    shown = printed(table(view, Answer(HOSTILE, done=False)))
-    shown += printed(table(View(drivers=(hostile,)))) + line(view)
-    stream = io.StringIO()
-    list_drivers([hostile], Console(file=stream))
-    assert '\x1b' not in shown.replace('\x1b[0m', '') + stream.getvalue()
+def test_names_do_not_reach_the_terminal_raw(capsys):
+    shown = printed(table(rows_of(FULL))) + line(rows_of(FULL))
+    list_drivers([Driver('/odd', (HOSTILE,), 1.0)], Console())
+    assert '\x1b' not in shown.replace('\x1b[0m', '') + capsys.readouterr().out
 
 
-def test_drivers_are_listed_with_joints_and_rates():
-    stream = io.StringIO()
-    console = Console(file=stream)
-    list_drivers(DRIVERS, console)
-    list_drivers([], console)
-    assert stream.getvalue().splitlines() == [
-        '/motor/joint_states: joints: brake, m1; rate: 1000 Hz; drivers: 2',
-        '/odd: rate: 0 Hz',
-        'There are no topics of type JointState yet.',
-    ]
+# The thread of ROS
+
+
+@pytest.mark.live
+def test_watcher_goes_on_after_what_it_cannot_show(monkeypatch):
+    def broken(*_):
+        raise OverflowError('too odd')
+
+    with Watcher() as going_on:
+        monkeypatch.setattr('gear_kinematics.watch.watcher.view_of', broken)
+        wait_until(lambda: going_on.view.state == 'fault', 'the fault')
+        assert going_on.view.message == 'What came cannot be shown: OverflowError: too odd'
+        monkeypatch.undo()
+        wait_until(lambda: going_on.view.state == 'no node', 'its end')
+
+
+@pytest.mark.live
+def test_watcher_tells_what_has_ended_it(monkeypatch):
+    def broken(_):
+        raise RuntimeError('the middleware is gone')
+
+    monkeypatch.setattr('gear_kinematics.watch.watcher.Graph', broken)
+    ended = Watcher()
+    with pytest.raises(RuntimeError, match='the middleware is gone'), ended:
+        wait_until(lambda: ended.ended, 'the end')
+
+
+def test_watcher_that_cannot_join_says_why(monkeypatch):
+    def broken(_):
+        raise RuntimeError('no shared memory')
+
+    monkeypatch.setattr('gear_kinematics.watch.watcher.replay_node', broken)
+    with pytest.raises(RuntimeError, match='no shared memory'), Watcher():
+        pass
 
 
 # gearkin init
@@ -341,7 +296,7 @@ def test_drivers_are_listed_with_joints_and_rates():
 def listening(monkeypatch, tmp_path):
     """Run in an empty folder, beside two drivers."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(drivers, 'listen', lambda _: list(DRIVERS))
+    monkeypatch.setattr(drivers, 'listen', lambda: list(DRIVERS))
     return tmp_path
 
 
@@ -362,7 +317,7 @@ def test_init_says_why_it_writes_nothing(listening, capsys, arguments, cause):
     assert main(['init', *arguments]) == 2
     told = capsys.readouterr()
     assert told.err == f'gearkin: {cause}\n'
-    assert '/motor/joint_states: joints: brake, m1; ' in told.out
+    assert '/motor/joint_states: brake, m1 at 1000 Hz\n' in told.out
     assert not list(listening.iterdir())
 
 
@@ -373,18 +328,10 @@ def test_init_writes_what_is_named(listening, capsys):
     assert f'{command}/motor/joint_states\n' in capsys.readouterr().out
 
 
-def test_init_writes_to_stdout_and_lists_elsewhere(listening, capsys):
-    assert main(['init', '--joint', 'm1', '-o', '-']) == 0
-    told = capsys.readouterr()
-    assert told.out == new_config('/motor/joint_states', 'm1', 'actuator.yaml')
-    assert '/motor/joint_states: joints: brake, m1; ' in told.err
-    assert not list(listening.iterdir())
-
-
 def test_init_without_a_driver_says_so(listening, monkeypatch, capsys):
-    monkeypatch.setattr(drivers, 'listen', lambda _: [])
-    assert main(['init', '--wait', '0.5']) == 2
-    assert 'no topic of type JointState in 0.5 s' in capsys.readouterr().err
+    monkeypatch.setattr(drivers, 'listen', list)
+    assert main(['init']) == 2
+    assert 'no topic of type JointState: is the driver running' in capsys.readouterr().err
     assert not list(listening.iterdir())
 
 
@@ -517,7 +464,6 @@ async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(addres
         view = json.loads(await connection.read_message())['view']
         assert view['values'][0] == {
             'name': 'output angle', 'value': '12.5°', 'detail': '0.2 rad', 'tone': '',
-            'curve': None,
         }  # fmt: skip
         assert view['drivers'][0]['joints'] == ['brake', 'm1']
         begin, count = time.monotonic(), 0
@@ -531,16 +477,13 @@ def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
     commands = {
         '{"do": "home"}': ('home',),
         '{"do": "undo"}': ('undo',),
-        '{"do": "record"}': ('record',),
-        '{"do": "stop"}': ('stop',),
-        '{"do": "configure", "topic": "/m", "joint": "m1"}': ('configure', '/m', 'm1'),
+        '{"do": "take"}': ('take',),
     }
     unknown = [
         '',
         '[]',
         '{}',
         '{"do": "exit"}',
-        '{"do": "configure"}',
         '{"do": "commission", "rotor": ["/a", "m", "x"], "output": [], "ratio": ""}',
         '"home"',
         b'\xff',
@@ -560,7 +503,6 @@ def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
                 assert await answer_to(command) == {
                     'text': f'{asked[0]}.',
                     'done': True,
-                    'command': '',
                 }
                 assert watcher.asked[-1] == asked
             for command in unknown:
@@ -586,7 +528,7 @@ async def test_large_body_is_refused_before_it_is_read(address):
 
 def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
     pending = Future()
-    watcher.home = lambda: watcher.asked.append('home') or pending
+    watcher.ask = lambda command: watcher.asked.append(command) or pending
 
     async def until(condition):
         while not condition():  # noqa: ASYNC110, the server says nothing
@@ -602,14 +544,6 @@ def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
 
     asyncio.run(run())
     assert not caplog.records
-
-
-def test_port_that_is_taken_is_told(watcher):
-    server = Server(watcher)
-    port = int(origin_of(server.address).rpartition(':')[2])
-    with pytest.raises(OSError, match='in use'):
-        Server(watcher, port)
-    server._socket.close()
 
 
 def test_of_a_ratio_there_is_no_drawing():
