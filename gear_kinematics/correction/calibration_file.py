@@ -61,7 +61,7 @@ class Order:
 
     name: str
     cycles: Fraction
-    """n, greater than 0: cycles per turn of the rotor."""
+    """n: cycles per turn of the rotor."""
     cos: float
     """rad."""
     sin: float
@@ -217,12 +217,6 @@ class Calibration:
         size = 2 * len(self.orders) + len(self.hysteresis) + (self.compliance is not None)
         return {
             'gear_ratio must not be 0': bool(self.gear_ratio),
-            'ring_teeth and satellite_teeth must both be given or both be null': (
-                (self.ring_teeth is None) == (self.satellite_teeth is None)
-            ),
-            'the cycles of an order must be greater than 0': all(
-                order.cycles > 0 for order in self.orders
-            ),
             f'the orders repeat only after {self.period} rotor turns': (
                 self.period <= _LONGEST_PERIOD
             ),
@@ -253,7 +247,9 @@ class Calibration:
         if self.compliance and self.spans.torque:
             least, most = self.spans.torque
             twist = 0.5 * abs(self.compliance.coefficient) * (most - least)
-        orders = [(math.hypot(of.cos, of.sin), float(of.cycles) * ratio) for of in self.orders]
+        orders = [
+            (math.hypot(of.cos, of.sin), abs(float(of.cycles)) * ratio) for of in self.orders
+        ]
         stops = [(stop.radius, abs(stop.coefficient)) for stop in self.hysteresis]
         reach = sum(size for size, _ in orders) + sum(radius * slope for radius, slope in stops)
         slope = sum(size * rate for size, rate in orders) + sum(slope for _, slope in stops)

@@ -19,7 +19,6 @@ MAX_GAP = SECOND
 _SAMPLING = SECOND // 10
 """ns between samples beyond which the motion is not followed, whatever their usual period is; not
 beyond three periods either, since then messages were lost."""
-_SPEED_INTERVAL = SECOND // 10  # ns over which a missing velocity is averaged; begins at multiples
 
 
 class Correction(NamedTuple):
@@ -40,9 +39,10 @@ class Corrector:
     """Computes the correction sample by sample, or for many at once with the same result.
 
     The half width is that of the file, or its `outside_half_width` where speed, torque or output
-    angle are outside of what was calibrated. It grows by what the unknown can contribute: plays
-    before a long enough travel, orders of the output while the rotor's turns are unknown, and
-    wind-up without an effort. In a gap, plays move as far as a reversal could have driven them.
+    angle are outside of what was calibrated; a speed that is not known does not count. It grows by
+    what the unknown can contribute: plays before a long enough travel, orders of the output while
+    the rotor's turns are unknown, and wind-up without an effort. In a gap, plays move as far as a
+    reversal could have driven them.
     """
 
     def __init__(self, calibration: Calibration, max_acceleration: float = math.inf) -> None:
@@ -62,15 +62,13 @@ class Corrector:
         self._within_turn = [order for order in self._orders if order[1] == 1]
         self._beyond_turn = sum(math.hypot(*order[4:]) for order in self._orders if order[1] > 1)
         self._stops = StopOperators(calibration.hysteresis, self._per_rotor)
-        self._mean_speed = _MeanSpeed()
         self._segment, self._referenced = 0, True
         self._stamps = 4 * (-SECOND,)  # of the last samples
-        self._last = RotorPosition(0, 0.0), math.nan  # and velocity
+        self._last = RotorPosition(0, 0.0)
 
     def reset(self) -> None:
         """Forget the motion so far, as after homing: the plays are unknown."""
         self._stops.reset()
-        self._mean_speed = _MeanSpeed()
 
     def correct(
         self, sample: RotorSample, *, segment: int = 0, referenced: bool = True
@@ -84,18 +82,17 @@ class Corrector:
         """
         stamp, (turns, angle), velocity, effort = sample
         first, second, third, last = self._stamps
-        gap, measured = stamp - last, math.nan if velocity is None else velocity
+        gap = stamp - last
         homed = referenced != self._referenced
         if homed or segment != self._segment or not 0 <= gap <= MAX_GAP:
             self.reset()
             self._segment, self._referenced = segment, referenced
         elif gap > _SAMPLING or gap > last - first:
-            self._widen(gap, turns, angle, measured)
+            self._widen(gap, turns, angle)
         self._stamps = second, third, last, stamp
-        self._last = sample.position, measured
+        self._last = sample.position
         hysteresis = self._stops.follow(turns, angle)
-        if velocity is None:
-            velocity = self._mean_speed.update(stamp, turns, angle)
+        velocity = math.nan if velocity is None else velocity
         torque = math.nan if effort is None else self._ratio * effort
         return self._correction(math, turns, angle, velocity, torque, hysteresis, referenced)
 
@@ -125,39 +122,28 @@ class Corrector:
         gap, usual = np.diff(stamps[3:]), np.minimum(stamps[3:-1] - stamps[:-4], _SAMPLING)
         anew = (gap < 0) | (gap > MAX_GAP) | (np.diff(segment, prepend=self._segment) != 0)
         missed = np.flatnonzero(anew | (gap > usual)).tolist()
-        motion = turns, angle, velocity
-        speed, hysteresis = velocity.copy(), np.empty((3, len(stamp)))
+        hysteresis = np.empty((3, len(stamp)))
         for first, end in pairwise(sorted({0, *missed, len(stamp)})):
             if anew[first]:
                 self.reset()
             elif gap[first] > usual[first]:
-                self._widen(int(gap[first]), *(float(column[first]) for column in motion))
+                self._widen(int(gap[first]), float(turns[first]), float(angle[first]))
             hysteresis[:, first:end] = self._stops.follow_all(turns[first:end], angle[first:end])
-            for row in first + np.flatnonzero(np.isnan(velocity[first:end])):
-                speed[row] = self._mean_speed.update(
-                    int(stamp[row]), int(turns[row]), float(angle[row])
-                )
-            *position, measured = (column[end - 1].item() for column in motion)
-            self._last = RotorPosition(*position), measured
+            self._last = RotorPosition(turns[end - 1].item(), angle[end - 1].item())
             self._segment = int(segment[end - 1])
         self._stamps, self._referenced = tuple(stamps[-4:].tolist()), referenced
         torque = self._ratio * effort
-        return self._correction(np, turns, angle, speed, torque, hysteresis, referenced)
+        return self._correction(np, turns, angle, velocity, torque, hysteresis, referenced)
 
-    def _widen(self, gap: int, turns: float, angle: float, velocity: float) -> None:
+    def _widen(self, gap: int, turns: float, angle: float) -> None:
         """Let the plays have moved wherever the rotor could have turned within a gap, ns.
 
-        Args:
-            gap: ns.
-            turns: of the rotor after it.
-            angle: rad.
-            velocity: rad/s; NaN if it is unknown.
+        Its acceleration takes it from the straight way between both samples by a t²/8 at most.
         """
-        (turns_before, angle_before), before = self._last
+        turns_before, angle_before = self._last
         travel = (turns - turns_before) * TURN + angle - angle_before
-        limits = gap / SECOND, self.max_acceleration
-        most = _farthest(travel, before, velocity, *limits)
-        least = -_farthest(-travel, -before, -velocity, *limits)
+        beyond = self.max_acceleration * (gap / SECOND) ** 2 / 8.0
+        least, most = min(travel, 0.0) - beyond, max(travel, 0.0) + beyond
         self._stops.widen(turns_before, angle_before, least, most)
 
     def _correction(
@@ -203,38 +189,15 @@ class Corrector:
             deviation = deviation + where(no_torque, 0.0, twist)
             unknown = unknown + where(no_torque, half, 0.0)
 
-        inside = spans.speed is None or _contains(spans.speed, speed)
+        inside = spans.speed is None or xp.isnan(speed) | _contains(spans.speed, speed)
         if spans.torque is not None:
             inside = inside & (no_torque | _contains(spans.torque, torque))
         if referenced and self._period > 1:
             # How far the output is beyond the begin of its calibrated span, within a period.
             beyond = (TURN * turn + angle) * self._per_rotor - spans.angle[0]
             inside = inside & (beyond % self._period_angle <= spans.angle[1] - spans.angle[0])
-        margin = file.outside_half_width - file.half_width
-        return Correction(
-            deviation,
-            slope,
-            where(inside, file.half_width, file.outside_half_width) + unknown,
-            history + where(xp.isnan(velocity), margin, 0.0),
-        )
-
-
-def _farthest(
-    travel: float, before: float, after: float, time: float, acceleration: float
-) -> float:
-    """How far forward the rotor could have been between two samples, rad from the first.
-
-    That is where acceleration from the speed `before` and braking to the speed `after` meet: -inf
-    if not beyond both samples; inf if the limit of the acceleration does not hold, or a speed is
-    NaN.
-    """
-    faster = before - after + acceleration * time
-    meet = travel - after * time + 0.5 * acceleration * time * time
-    if not 0.0 <= meet <= faster * time < math.inf or not faster:
-        return math.inf
-    meet /= faster
-    farthest = before * meet + 0.5 * acceleration * meet * meet
-    return farthest if farthest > max(0.0, travel) else -math.inf
+        half_width = where(inside, file.half_width, file.outside_half_width) + unknown
+        return Correction(deviation, slope, half_width, history)
 
 
 def _choose(condition: bool, yes: float, no: float) -> float:  # noqa: FBT001, as np.where
@@ -243,28 +206,3 @@ def _choose(condition: bool, yes: float, no: float) -> float:  # noqa: FBT001, a
 
 def _contains(span: tuple[float, float], value: Any) -> Any:
     return (span[0] <= value) & (value <= span[1])
-
-
-class _MeanSpeed:
-    """The rotor's speed where messages have no velocity, from its travel.
-
-    Intervals begin at multiples of their length, so that the speed does not depend on the first
-    sample once it is known.
-    """
-
-    def __init__(self) -> None:
-        self._interval: int | None = None
-        self._begin: tuple[int, int, float] | None = None
-        self._speed = math.nan
-
-    def update(self, stamp: int, turns: int, angle: float) -> float:
-        """Add a position at a stamp, ns; returns rad/s, NaN as long as it is unknown."""
-        interval, before = stamp // _SPEED_INTERVAL, self._interval
-        self._interval = interval
-        if before is not None and interval != before:
-            if self._begin is not None:
-                begin, begin_turns, begin_angle = self._begin
-                travel = (turns - begin_turns) * TURN + angle - begin_angle
-                self._speed = travel / ((stamp - begin) / SECOND)
-            self._begin = stamp, turns, angle
-        return self._speed

@@ -48,10 +48,7 @@ class StopOperators:
         self._reference: int | None = None  # rotor turns
 
     def widen(self, turns: float, angle: float, least: float, most: float) -> None:
-        """Let the plays have followed the rotor unseen, from an angle by `least` and `most`, rad.
-
-        These are inf and -inf where it was not beyond what is seen.
-        """
+        """Let the plays have followed the rotor unseen, from an angle by `least` to `most`."""
         if self._reference is None:
             return
         self._most = self._most.copy()

@@ -73,7 +73,7 @@ def test_file_and_reports_are_written(recording, tmp_path, capsys):
     assert document['left_out']['rms_after'] == calibration.validation.rms_after
     assert {term['name'] for term in document['terms']} >= {'rotor × 1', 'teeth × 1'}
     told = capsys.readouterr().out
-    assert 'likely cause: eccentricity or runout of the cams' in told
+    assert 'likely cause: runout or out-of-roundness of the cams' in told
     assert 'verdict: passed' in told
     assert html.parse(page).xpath('//h1')
 
@@ -82,9 +82,7 @@ def test_nothing_is_written_that_does_not_help(noise, tmp_path, capsys):
     target = tmp_path / 'calibration.yaml'
     assert main(['calibrate', '-v', str(noise), '-o', str(target)]) == 1
     assert not target.exists()
-    told = capsys.readouterr().out
-    assert 'Nothing is written' in told
-    assert 'Time was not recorded' in told
+    assert 'Nothing is written' in capsys.readouterr().out
 
 
 @pytest.mark.slow
@@ -129,13 +127,6 @@ def test_a_calibration_is_replaced(recording, tmp_path):
     assert Calibration.load(target).gear_ratio == -19
 
 
-def test_ratio_can_be_given(recording, tmp_path):
-    target = tmp_path / 'given.yaml'
-    assert main(['calibrate', str(recording), '-o', str(target), '--ratio', '-19']) == 0
-    calibration = Calibration.load(target)
-    assert (calibration.gear_ratio, calibration.ring_teeth) == (-19, None)
-
-
 @pytest.mark.parametrize(('ratio', 'named'), [('7.29', r'-19\.0'), ('19', 'counts backwards')])
 def test_a_wrong_ratio_gets_one_line_with_the_right_one(recording, ratio, named, tmp_path):
     target = tmp_path / 'c.yaml'
@@ -144,25 +135,6 @@ def test_a_wrong_ratio_gets_one_line_with_the_right_one(recording, ratio, named,
     assert '--ratio=-19' in line
     assert ('gearkin commission' in line) == (ratio != '19')
     assert not target.exists()
-
-
-@pytest.mark.slow
-def test_a_late_output_is_told_and_taken_out_of_a_check(simulated, recording, tmp_path):
-    target, report = tmp_path / 'calibration.yaml', tmp_path / 'report.json'
-    late = np.interp(simulated.time - 2e-3, simulated.time, simulated.measured[:, 0])
-    path = csv_of(tmp_path / 'late.csv', simulated, late)
-    assert main(['calibrate', str(path), '-o', str(target)]) == 0
-    found = []
-    for source in (path, recording):
-        assert main(['calibrate', str(source), '--check', str(target), '--json', str(report)]) == 0
-        found += json.loads(report.read_text())['recordings']
-    delays = [judged['delay']['value'] for judged in found]
-    assert delays == pytest.approx([2e-3, 0.0], abs=1.5e-4)
-    assert found[0]['rms_after_with_delay'] > 5.0 * found[0]['rms_after']
-    assert found[1]['rms_after_with_delay'] == pytest.approx(found[1]['rms_after'], rel=0.2)
-    for judged in found:
-        assert judged['within_interval'] == pytest.approx(0.95, abs=0.025)
-        assert 0.0 < judged['within_interval_uncertainty'] < 0.02
 
 
 def test_bag_without_an_output_encoder_is_refused_in_one_line(tmp_path):

@@ -27,6 +27,10 @@ def mechanism(ring: int, satellite: int) -> Mechanism:
     return Mechanism(ring, satellite, 0.0011, (Branch('a'),))
 
 
+def order(**changes):
+    return {'name': 'a', 'cycles': '1', 'cos': 0.0, 'sin': 0.0} | changes
+
+
 @pytest.fixture
 def file(tmp_path):
     """Write a calibration with entries changed, or deleted where they are MISSING."""
@@ -92,16 +96,6 @@ def test_file_says_what_its_numbers_are():
     }
 
 
-def test_numbers_can_be_written_without_a_point(file):
-    path = file()
-    text = path.read_text('utf-8')
-    changed = text.replace("gear_ratio: '-19'", 'gear_ratio: -19')
-    changed = changed.replace('half_width: 0.0001\n', 'half_width: 1e-4\n')
-    assert changed.count('1e-4') == 1
-    path.write_text(changed, 'utf-8')
-    assert Calibration.load(path) == calibration()
-
-
 @pytest.mark.parametrize(
     ('changes', 'fault'),
     [
@@ -109,46 +103,20 @@ def test_numbers_can_be_written_without_a_point(file):
         ({'units': {'angle': 'deg'}}, '`units` must be'),
         ({'half_widht': 1.0}, 'unknown: half_widht'),
         ({'half_width': MISSING, 'spans': MISSING}, 'half_width, spans is missing'),
-        ({'half_width': 'wide'}, "half_width must be a finite number, not 'wide'"),
         ({'half_width': float('nan')}, 'half_width must be a finite number, not nan'),
         ({'half_width': 10**400}, 'half_width must be a finite number, not 1000'),
-        ({'half_width': True}, 'half_width must be a finite number, not True'),
         ({'half_width': 0.0}, 'half_width must be greater than 0'),
-        ({'outside_half_width': 1e-9}, 'at most outside_half_width'),
         ({'constant': None}, 'constant must be a finite number, not None'),
-        ({'gear_ratio': '-19.5'}, "gear_ratio must be an exact ratio such as '-19' or '1457/26'"),
-        ({'gear_ratio': '1/0'}, 'gear_ratio must be an exact ratio'),
-        ({'gear_ratio': '1e999999999'}, 'gear_ratio must be an exact ratio'),
+        ({'gear_ratio': '1/0'}, "gear_ratio must be an exact ratio such as '-19' or '1457/26'"),
         ({'gear_ratio': '0'}, 'gear_ratio must not be 0'),
-        ({'ring_teeth': None}, 'must both be given or both be null'),
-        ({'ring_teeth': 80.5}, 'ring_teeth must be an integer, not 80.5'),
-        ({'orders': {}}, 'orders must be a list of any length, not {}'),
         ({'orders': [3]}, 'orders[0] must have named values, not 3'),
-        ({'orders': [{'name': 'a', 'cycles': '1'}]}, 'orders[0].cos, orders[0].sin is missing'),
-        (
-            {'orders': [{'name': 'a', 'cycles': '-1', 'cos': 0.0, 'sin': 0.0}]},
-            'the cycles of an order must be greater than 0',
-        ),
-        (
-            {'orders': [{'name': 'a', 'cycles': '1/99999989', 'cos': 0.0, 'sin': 0.0}]},
-            'the orders repeat only after 99999989 rotor turns',
-        ),
-        (
-            {'orders': [{'name': 'a', 'cycles': '1', 'cos': 3.0, 'sin': -1.0}]},
-            'an error of the output of 3.16',
-        ),
-        (
-            {'hysteresis': [{'radius': 1e-20, 'coefficient': 1e20}]},
-            "an error of the output with a slope of 1e+20 is no gear's",
-        ),
+        ({'orders': [order(cycles='1/99999989')]}, 'repeat only after 99999989 rotor turns'),
+        ({'orders': [order(cos=3.0, sin=-1.0)]}, 'an error of the output of 3.16'),
+        ({'hysteresis': [{'radius': 1e-20, 'coefficient': 1e20}]}, 'a slope of 1e+20 is no gear'),
         ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),
         (
             {'spans': {'speed': [1.0, -1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
             'a compliance needs the span of the torque; the span of the speed must not end',
-        ),
-        (
-            {'spans': {'speed': [1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
-            'spans.speed must be a list of 2 numbers, not [1.0]',
         ),
         ({'covariance': [[1.0]]}, 'covariance must have 11 rows of 11 numbers'),
     ],
@@ -165,18 +133,11 @@ def test_fault_of_a_file_is_named_with_the_file(file, changes, fault):
     ('content', 'fault'),
     [
         (b'', 'no calibration: its `schema` is not'),
-        (b'- 1\n', 'no calibration: its `schema` is not'),
         (b'schema: [', 'not YAML'),
-        (b'a: &a [1]\nb: *a\n', 'aliases are not supported'),
         (b'\xff\xfe\x00', 'codec'),
         (2**18 * b'#' + b'\n', 'longer than 262144 bytes'),
-        (b'a: ' + 250_000 * b'1' + b'e', 'no calibration: its `schema` is not'),
-        (b''.join(b'%%TAG !%x! !\n' % k for k in range(15_000)) + b'--- a', 'is not supported'),
         (b'a: [' + 10_000 * b'0, ' + b']', 'more than 8192 values'),
-        (b'a: !!bool maybe', 'does not fit its tag'),
         (b'a: !!int ""', 'does not fit its tag'),
-        (b'a: !!float "_"', 'does not fit its tag'),
-        (b'a: !!timestamp foo', 'does not fit its tag'),
     ],
 )
 def test_anything_else_is_no_calibration(tmp_path, content, fault):
@@ -185,12 +146,6 @@ def test_anything_else_is_no_calibration(tmp_path, content, fault):
     with pytest.raises(CalibrationError, match=r'calibration\.yaml: ') as error:
         Calibration.load(path)
     assert fault in str(error.value)
-
-
-def test_long_value_is_not_shown_whole(file):
-    with pytest.raises(CalibrationError, match='constant must be a finite number') as error:
-        Calibration.load(file(constant=100_000 * 'x'))
-    assert len(str(error.value)) < 2000
 
 
 def test_missing_file_is_named(tmp_path):

@@ -111,17 +111,6 @@ def test_errors_are_continuous_at_an_offset_of_half_a_turn():
     assert all(abs(b - a) < 0.02 for a, b in pairwise(errors))
 
 
-def test_nothing_is_known_before_there_are_ideal_samples_on_both_sides():
-    comparison = make()
-    assert comparison.add_measured(START + 4 * MS, 0.1) == []
-    assert comparison.add_ideal(START, 0, 0.0) == []
-    assert comparison.add_ideal(START + 3 * MS, 0, 0.03) == []
-    (sample,) = comparison.add_ideal(START + 5 * MS, 0, 0.05)
-    assert sample == ErrorSample(
-        START + 4 * MS, pytest.approx(0.06), 0, pytest.approx(0.04), 1, pytest.approx(10.0)
-    )
-
-
 def test_correction_is_interpolated_with_the_wider_interval():
     comparison = make()
     comparison.add_ideal(START, 0, 0.0, 1e-3, 2e-4)

@@ -7,31 +7,15 @@ import pytest
 from gear_kinematics.measurement.calibration.selection import (
     NormalEquations,
     block_bounds,
-    is_as_good,
     standard_error,
     widening,
 )
-
-
-def test_standard_error_is_that_of_the_mean_of_independent_blocks():
-    values = np.array([1.0, 3.0] * 12)
-    # Neighbours together are equal, so that single blocks have the greatest error.
-    error = standard_error(values)
-    assert error == (pytest.approx(np.std(values, ddof=1) / 24**0.5), 23)
 
 
 def test_standard_error_of_neighbours_that_are_alike_is_that_of_their_groups():
     groups = np.random.default_rng(0).standard_normal(6)
     error = standard_error(np.repeat(groups, 4))
     assert error == (pytest.approx(np.std(groups, ddof=1) / 6**0.5), 5)
-
-
-def test_a_model_is_as_good_unless_it_is_worse_in_most_blocks():
-    random = np.random.default_rng(2)
-    best = 1.0 + 0.1 * random.standard_normal(24)
-    assert is_as_good(best, best)
-    assert is_as_good(best + 0.1 * random.standard_normal(24), best)
-    assert not is_as_good(best + 0.1, best)
 
 
 def test_intervals_hold_on_other_errors_of_a_random_scale():

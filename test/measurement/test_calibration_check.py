@@ -7,14 +7,12 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from calibrating import COUNTS, LIMITED, MECHANISM, halves, recorded
+from calibrating import LIMITED, MECHANISM, halves, recorded
 from calibrations import calibration
-from gear_recordings import encoders
 from simulated_gear import GearSet, gears, simulate, strokes, wandering
 
 from gear_kinematics.correction.calibration_fit import CalibrationFit
 from gear_kinematics.measurement.calibration import fit, judge
-from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import RecordingError
 
 
@@ -92,34 +90,6 @@ def test_a_wrong_ratio_or_sign_is_named_before_anything_is_fitted(assumed, true)
     assert abs(measured - true) <= 2.0 * uncertainty < 0.01 * abs(true)
     if assumed == Fraction(31, 16):
         assert 'an encoder counts backwards, or --ratio=-31/16 is right' in message
-
-
-def test_a_recording_of_another_gear_is_no_check():
-    recording, _ = two_halves(GearSet(1, ratio=50.0), 1, strokes, 20.0)
-    with pytest.raises(RecordingError, match=r'ratio is .*, not -19; .* give --ratio=50$'):
-        judge(*recording, calibration())
-
-
-@pytest.mark.parametrize('turns', [0.05, 0.3, 0.8, 0.95, 1.1, 1.6])
-@pytest.mark.parametrize('ratio', [Fraction(50), Fraction(-121), Fraction(31, 16)])
-def test_an_eccentricity_of_hardly_a_hundredth_is_no_other_ratio(turns, ratio):
-    random = np.random.default_rng(5)
-    time = np.arange(4000) / 4000
-    for phase in np.linspace(0.0, 2.0 * np.pi, 7):
-        angle = turns * np.pi * np.sin(2.0 * np.pi * 3.0 * time + random.uniform(0.0, 6.0))
-        error = 0.0095 * np.sin(angle + phase) + 3e-5 * np.sin(float(ratio) * angle + 2.0 * phase)
-        error += 1e-4 * random.standard_normal(len(angle))
-        assert (
-            wrong_ratio(encoders(angle * float(ratio), angle + error, counts=COUNTS), ratio) == ''
-        )
-
-
-def test_hardly_any_travel_tells_no_ratio():
-    # Two hundredths of a turn of the rotor: an error twice per turn of 1 arcmin is a slope of 6 %.
-    angle = 6.4e-4 * np.sin(np.linspace(0.0, 40.0, 2000))
-    error = 2.9e-4 * np.sin(2.0 * 121.0 * angle)
-    both = encoders(121.0 * angle, angle + error, counts=COUNTS)
-    assert wrong_ratio(both, Fraction(121)) == ''
 
 
 def checks(half_width, time, runs=100):

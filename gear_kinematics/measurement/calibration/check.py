@@ -2,7 +2,7 @@
 """Checks a calibration by recordings that it was not made from."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from gear_kinematics.measurement.ratio import wrong_ratio
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
 from gear_kinematics.wire.cdr import SECOND
 
+_STEP = 0.01  # s before and after a sample, for its speed
 _ROUNDS = 4  # estimates of the delay, each of what the ones before left
 _PER_TURN = 'once', 'twice', '3 times', '4 times'  # the orders of output and rotor that are told
 _MOST = 0.5  # share of the variance that makes an order what is left of the error
@@ -75,14 +76,15 @@ def judge(recording: Recording, encoders: Encoders, calibration: Calibration) ->
     rotor, ratio = encoders.rotor, calibration.gear_ratio
     if wrong := wrong_ratio(encoders, ratio):
         raise RecordingError(f'{recording.name}: {wrong}')
-    if not encoders.timed:
-        calibration = replace(calibration, spans=replace(calibration.spans, speed=None))
-    unknown = np.full(len(rotor.turns), np.nan)
-    effort = unknown if rotor.effort is None else rotor.effort
-    segment = np.zeros(len(unknown), np.int64) if rotor.segment is None else rotor.segment
+    effort = np.full(len(rotor.turns), np.nan) if rotor.effort is None else rotor.effort
+    segment = np.zeros(len(effort), np.int64) if rotor.segment is None else rotor.segment
+    seconds, velocity = rotor.seconds, np.full(len(effort), np.nan)
+    if encoders.timed:
+        before, after = (np.interp(seconds + t, seconds, rotor.turned) for t in (-_STEP, _STEP))
+        velocity = (after - before) / (2.0 * _STEP)
     stamp = rotor.stamp if encoders.timed else rotor.stamp // SECOND  # no row is a gap
     correction = Corrector(calibration).correct_batch(
-        stamp, rotor.turns, rotor.angle, unknown, effort, segment
+        stamp, rotor.turns, rotor.angle, velocity, effort, segment
     )
 
     def errors(of: Encoders) -> tuple[Samples, Array, Array]:

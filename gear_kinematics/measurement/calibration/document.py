@@ -92,15 +92,8 @@ def _remarks(fit: Fit) -> Iterator[str]:
         yield from (f'{r.used.name}: {text}' for text in r.remarks)
         if r.delay and r.delay.clear:
             yield f'{r.used.name}: {_late(r.delay)}'
-        elif r.delay is None:
-            yield (
-                f'{r.used.name}: a delay of the output angles is not told from hysteresis; this '
-                'takes times, and three strokes or more.'
-            )
     for name, cause in fit.refused.items():
         yield f'{name} is not fitted: {cause}.'
-    if fit.calibration.spans.speed is None:
-        yield 'Time was not recorded: the interval does not depend on the speed.'
 
 
 def _late(delay: Estimate) -> str:
@@ -171,7 +164,6 @@ def _section(half_width: float, judged: Judgement) -> Section:
         )
     delay = plus_minus(judged.delay, _MILLI)
     values = (
-        ('within the interval', f'{inside:.1f} ± {spread:.1f} %', ''),
         ('delay of the output', delay, 'ms'),
         ('wider for what was not calibrated', number(100.0 * judged.uncalibrated), '% of samples'),
     )

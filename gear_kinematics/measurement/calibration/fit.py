@@ -4,7 +4,7 @@
 deviation = constant + Σ orders of the rotor's angle + Σ stop operators + wind-up by the torque.
 
 It is linear in its coefficients. Terms stay that improve the prediction of blocks left out, and
-the interval is that of the errors in halves left out; the coefficients' uncertainties are those of
+the interval is that of the errors in parts left out; the coefficients' uncertainties are those of
 the jackknife over the blocks. Neither needs white noise.
 """
 
@@ -44,8 +44,7 @@ from gear_kinematics.share import version
 
 _FEWEST = 100  # samples of a recording
 _SHIFTS = 4  # corrections of the delays, each for what the ones before left
-_DELAY_TOLERANCE = 0.2  # share of its uncertainty to which a delay is corrected
-_COVERED = 0.5  # share of a half at angles that the other half contains, to be judged by it
+_SETTLED = 1e-5  # s to which a delay is corrected
 _MARGIN = 0.1  # share of the span of speed and torque beyond which they are not calibrated
 
 
@@ -91,7 +90,7 @@ class Fit:
     before: Array
     """Error less zero and delay, without the correction."""
     after: Array
-    """The same with the correction that was fitted without the half that holds the sample."""
+    """The same with the correction that was fitted without the part that holds the sample."""
 
 
 def fit(
@@ -122,19 +121,17 @@ def fit(
         raise RecordingError('the output angles are exactly those of the ratio: nothing to do')
     refused: dict[str, str] = {}
     orders = candidates.known_orders(samples, ratio, mechanism, refused)
-    model = _Model(samples, orders, refused)
-    shifts = [0.0] * len(recordings)
+    model, shifts = _Model(samples, orders, refused), [0.0] * len(recordings)
     for _ in range(_SHIFTS):
-        before = shifts.copy()
         delays = [model.delay(k, shift) for k, shift in enumerate(shifts)]
-        for k, delay in enumerate(delays):
-            shift = delay.value if delay and delay.clear else 0.0
-            if delay and abs(shift - shifts[k]) > _DELAY_TOLERANCE * (delay.uncertainty or 0.0):
-                shifts[k] = shift
-                recording, encoders = recordings[k]
-                samples[k] = Samples(recording, encoders.earlier(shift), ratio)
-        if shifts == before:
+        late = [delay.value if delay and delay.clear else 0.0 for delay in delays]
+        if np.allclose(late, shifts, rtol=0.0, atol=_SETTLED):
             break
+        shifts = late
+        samples = [
+            Samples(recording, encoders.earlier(shift) if shift else encoders, ratio)
+            for (recording, encoders), shift in zip(recordings, shifts, strict=True)
+        ]
         model = _Model(samples, orders, refused)
     return _result(model, ratio, mechanism, delays, refused)
 
@@ -167,7 +164,6 @@ class _Model:
         fits = self._equations.solve(range(self._common + len(own)))
         self.coefficients, self._own = np.split(fits, [self._common], axis=1)
         """Of the terms' columns, of all blocks and without each, (fits, columns)."""
-        self.output = np.concatenate([s.output[s.used] for s in samples])
         self._of = np.array([recording for recording, _, _ in blocks])
         self._counts = np.array([end - begin for _, begin, end in blocks])
 
@@ -195,58 +191,38 @@ class _Model:
         without, best = map(self._equations.errors, (everything[self._common :], everything))
         return bool(self.terms) and not is_as_good(without, best)
 
-    def at_samples(self) -> tuple[Array, Array]:
-        """Columns of the terms, and of zero and delay, at the used samples of all recordings."""
-        parts = (
-            [np.zeros((len(s.used), 0)), *(term.values(s, s.used) for term in self.terms)]
-            for s in self.samples
-        )
-        terms = np.concatenate([np.concatenate(part, axis=1) for part in parts])
-        return terms, np.concatenate([s.own_values(s.used) for s in self.samples])
+    def deviation(self) -> Array:
+        """What the terms add at the used samples of all recordings, rad."""
+        return np.concatenate([self._terms_at(s) @ self.coefficients[0] for s in self.samples])
 
-    def checked(self, terms: Array, own: Array) -> tuple[Array, Array, float, float]:
+    def _terms_at(self, samples: Samples) -> Array:
+        parts = [term.values(samples, samples.used) for term in self.terms]
+        return np.concatenate([np.zeros((len(samples.used), 0)), *parts], axis=1)
+
+    def checked(self) -> tuple[Array, Array, float, float]:
         """Predict parts of the samples as a check does, with a zero and a delay of their own.
 
-        The parts are recordings or, of a single one, halves; where those cover other angles, on
-        which a trend is not known, every other block.
-
-        Args:
-            terms: columns at the samples, as of `at_samples`.
-            own: columns of zero and delay.
+        The parts are recordings or, of a single one, every other block, so that both have the
+        same angles: a trend is not known at others.
 
         Returns:
             The errors without and with the correction of all used samples, rad; the half width of
             the interval, rad; and its coverage, each part judged by the width of the others.
         """
-        number = np.arange(len(self._of))
-        whole = self._of if len(self.samples) > 1 else 2 * number // len(number)
-        for parts in (whole, number % 2):
-            fold = np.repeat(parts, self._counts)
-            covered = self._covered(fold)
-            if np.mean(covered) >= _COVERED:
-                break
-        equations = NormalEquations(self._products, parts)
+        parts = self._of if len(self.samples) > 1 else np.arange(len(self._of)) % 2
+        equations, fold = NormalEquations(self._products, parts), np.repeat(parts, self._counts)
         fits = equations.solve(range(self._products.shape[-1] - 1))[1:, : self._common]
+        own = np.concatenate([s.own_values(s.used) for s in self.samples])
+        terms = np.concatenate([self._terms_at(s) for s in self.samples])
         before = np.concatenate([s.error[s.used] for s in self.samples])
         after = before - np.einsum('nc,nc->n', terms, fits[fold])
-        recording = np.repeat(self._of, self._counts)
-        for part, of in {*zip(parts.tolist(), self._of.tolist(), strict=True)}:
-            rows = (fold == part) & (recording == of)
+        for rows in (fold == part for part in set(parts)):
             for errors in (before, after):
                 errors[rows] -= own[rows] @ np.linalg.lstsq(own[rows], errors[rows], rcond=None)[0]
         squares = np.add.reduceat(after**2, np.cumsum([0, *self._counts[:-1]]))
-        half_width = widening(squares) * _half_width(after[covered])
+        half_width = widening(squares) * _half_width(after)
         inside = [np.abs(after[fold == k]) <= _half_width(after[fold != k]) for k in set(parts)]
         return before, after, half_width, float(np.mean(np.concatenate(inside)))
-
-    def _covered(self, fold: Array) -> Array:
-        """Whether all other folds contain the output angle of each sample."""
-        covered = np.ones(len(fold), bool)
-        for left in np.unique(fold):
-            known = self.output[fold != left]
-            inside = (known.min() <= self.output) & (self.output <= known.max())
-            covered &= (fold != left) | inside
-        return covered
 
 
 def _result(
@@ -256,10 +232,9 @@ def _result(
     delays: Sequence[Estimate | None],
     refused: Mapping[str, str],
 ) -> Fit:
-    samples, columns = model.samples, model.at_samples()
-    deviation = columns[0] @ model.coefficients[0]
+    samples, deviation = model.samples, model.deviation()
     constant = -float(deviation.mean())
-    before, after, half_width, coverage = model.checked(*columns)
+    before, after, half_width, coverage = model.checked()
     entries, terms, trends, place = [], [], 0.0, 0
     for term in model.terms:
         fits = model.coefficients[:, place : place + len(term.coefficients)]
@@ -321,7 +296,7 @@ def _result(
         tuple(terms),
         tuple(recordings),
         refused,
-        model.output,
+        np.concatenate([s.output[s.used] for s in samples]),
         before,
         after,
     )

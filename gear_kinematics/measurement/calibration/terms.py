@@ -26,22 +26,13 @@ _MOST = 400_000  # measured angles that are used, of all recordings; more would 
 _MOVING = 0.05  # share of the greatest speed above which the output moves
 _STROKES = 3  # strokes that tell a delay from hysteresis
 _SAME = 1e-9  # share of the radius by which states differ in rounding alone
-_BODIES: Mapping[str, tuple[int, tuple[str, str]]] = {
-    'teeth': (2, ('tooth spacing and tooth form', 'tooth form')),
-    'rotor': (4, (
-        'eccentricity or runout of the cams, of the rotor or of its encoder',
-        'out-of-roundness or tilt of the rotor or its encoder, or errors within its pole pairs',
-    )),
-    'output': (4, (
-        'eccentricity or runout of the output shaft or of its encoder',
-        'tilt or out-of-roundness of the output shaft, or of its encoder',
-    )),
-    'satellite': (2, (
-        'eccentricity or runout of a satellite, or an Oldham coupling out of square',
-        'out-of-roundness of a satellite, or an Oldham coupling out of square',
-    )),
-}  # fmt: skip
-"""Multiples that are tried, and likely causes of the first and of the higher ones."""
+_BODIES: Mapping[str, tuple[int, str]] = {
+    'teeth': (2, 'tooth spacing and tooth form'),
+    'rotor': (4, 'runout or out-of-roundness of the cams, of the rotor or of its encoder'),
+    'output': (4, 'runout or out-of-roundness of the output shaft or of its encoder'),
+    'satellite': (2, 'runout of a satellite, or an Oldham coupling out of square'),
+}
+"""Multiples that are tried, and their likely cause."""
 _HYSTERESIS = 'play, or friction that winds up the gear'
 _TREND = 'not told by so short a travel; known over the calibrated output angles only'
 _CYCLES = 2.0  # cycles of an order that a recording must contain
@@ -186,13 +177,13 @@ def known_orders(
     travel = max(float(np.ptp(s.rotor_turns)) for s in samples)
     found: dict[Fraction, Term] = {}
     for body, unit in bodies(output_cycles(ratio), mechanism).items():
-        most, causes = _BODIES[body]
+        most, cause = _BODIES[body]
         for multiple in range(1, most + 1):
             name, cycles = f'{body} × {multiple}', multiple * unit
             held = travel * float(cycles)
             if held >= _CYCLES:
                 order = Order(name, cycles, 0.0, 0.0)
-                found.setdefault(cycles, Term(name, causes[multiple > 1], order))
+                found.setdefault(cycles, Term(name, cause, order))
                 continue
             refused[name] = f'the longest travel holds {held:.2g} cycles, less than 2'
             # Higher multiples do not differ from the first over a part of its cycle, and a whole
