@@ -13,8 +13,7 @@ from gear_kinematics.bag.reading import (
     TopicMessages,
     by_topic,
 )
-from gear_kinematics.bag.storage import Message, in_batches
-from gear_kinematics.bag.topics import Topic
+from gear_kinematics.bag.storage import Message, Topic, in_batches
 
 __all__ = [
     'Bag',

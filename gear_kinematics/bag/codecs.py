@@ -1,5 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Decompression within limits. Its libraries are imported where a bag needs them."""
+"""Decompression within limits, so that a crafted bag is refused before it fills the memory.
+
+Its libraries are imported where a bag needs them.
+"""
 
 import os
 import sys
@@ -9,7 +12,6 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple, Self
 
 from gear_kinematics.bag.errors import cause
-from gear_kinematics.bag.limits import Limits
 
 Decompressor = Callable[[bytes, int], tuple[bytes, bool]]
 """From a frame and a limit to at most that many bytes, and whether they are all of it."""
@@ -47,6 +49,11 @@ class _Zstandard:
         return content
 
 
+def _decompress_zstd(data: bytes, limit: int) -> tuple[bytes, bool]:
+    decompressor = _zstd().ZstdDecompressor()
+    return decompressor.decompress(data, limit), decompressor.eof
+
+
 @cache
 def _lz4() -> Any:
     import lz4.frame  # type: ignore[import-untyped]  # noqa: PLC0415
@@ -54,15 +61,69 @@ def _lz4() -> Any:
     return lz4.frame
 
 
-def _decompress_zstd(data: bytes, limit: int) -> tuple[bytes, bool]:
-    decompressor = _zstd().ZstdDecompressor()
-    return decompressor.decompress(data, limit), decompressor.eof
-
-
 def _decompress_lz4(data: bytes, limit: int) -> tuple[bytes, bool]:
     # The format expands to 255 times the size at most, and lz4 allocates the limit at once.
     decompressor = _lz4().LZ4FrameDecompressor()
     return decompressor.decompress(data, min(limit, 256 * len(data))), decompressor.eof
+
+
+class Limits:
+    """The bytes and descriptions that may still be read from the files of a bag.
+
+    Chunks of a recording expand to up to 20 times their size, and a message takes at least a byte
+    of a compressed file. Only blank images and maps expand further: they are few, or small.
+    """
+
+    max_record = 2**30
+    """Largest record on disk, bytes."""
+    max_descriptions = 2**25
+    """Largest descriptions of topics and types together, bytes; all are kept in memory."""
+    chunk_expansion, file_expansion = 20, 100
+    """Greatest expansion of a chunk or message, and of a file."""
+    spare_size, spare_total = 2**25, 2**30
+    """What small bags may have in addition: bytes of a chunk or file, bytes of all."""
+    _description = 256  # bytes that a description counts for in addition to its texts
+
+    def __init__(self, size: int) -> None:
+        """Start with the size of the files on disk, bytes."""
+        self._expanded = self.spare_total + self.file_expansion * size
+        self._known: set[int] = set()
+        self._described = 0
+
+    @classmethod
+    def expanded_chunk(cls, size: int) -> int:
+        """The size, bytes, to which a compressed chunk or message may expand."""
+        return cls.spare_size + cls.chunk_expansion * size
+
+    @classmethod
+    def expanded_file(cls, size: int) -> int:
+        """The size, bytes, to which a compressed file may expand."""
+        return cls.spare_size + cls.file_expansion * size
+
+    def count(self, expanded: int) -> None:
+        """Count decompressed bytes.
+
+        Raises:
+            ValueError: if there are too many.
+        """
+        self._expanded -= expanded
+        if self._expanded < 0:
+            raise ValueError('its compressed data expand to more than a bag of this size can hold')
+
+    def describe(self, *texts: str | bytes) -> None:
+        """Count the description of a topic or type, with its number: once for several files.
+
+        Raises:
+            ValueError: if they are larger than any recorder writes.
+        """
+        if (key := hash(texts)) in self._known:
+            return
+        self._known.add(key)
+        self._described += self._description + sum(map(len, texts))
+        if self._described > self.max_descriptions:
+            raise ValueError(
+                f'the descriptions of its topics exceed {self.max_descriptions} bytes'
+            )
 
 
 class Codec(NamedTuple):
@@ -77,7 +138,7 @@ class Codec(NamedTuple):
 
 CODECS: Mapping[str, Codec] = {
     'zstd': Codec(b'\x28\xb5\x2f\xfd', _decompress_zstd, lambda file: _zstd().ZstdFile(file)),
-    'lz4': Codec(b'\x04\x22\x4d\x18', _decompress_lz4, lambda file: _lz4().LZ4FrameFile(file)),
+    'lz4': Codec(b'\x04\x22\x4d\x18', _decompress_lz4, lambda file: _lz4().open(file)),
 }
 """Kinds by their names in bags."""
 
@@ -94,7 +155,7 @@ def decompressed(data: bytes, decompress: Decompressor, limits: Limits, what: st
         ValueError: if it is cut off, or expands too far; `what` it is begins the text.
     """
     content, whole = decompress(data, limits.expanded_chunk(len(data)))
-    limits.count(expanded=len(content))
+    limits.count(len(content))
     if not whole:
         raise ValueError(f'{what} is cut off or too large')
     return content

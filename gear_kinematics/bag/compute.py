@@ -22,7 +22,6 @@ from gear_kinematics.wire.topics import (
     BODY_POSES,
     JOINT_STATE,
     OUTPUT_STATE,
-    ROTOR_STATE,
     TOPICS,
 )
 
@@ -48,12 +47,10 @@ def compute(
     target: Path,
     parameters: NodeParameters,
     *,
-    rotor_topic: str = _TOPICS.rotor,
-    output_topic: str = _TOPICS.output,
-    poses_topic: str = _TOPICS.poses,
+    topics: Topics = _TOPICS,
     encoder_topic: str = '',
     calibration: Calibration | None = None,
-    topics: Collection[str] | None = None,
+    others: Collection[str] | None = None,
     files: Mapping[str, bytes] = MappingProxyType({}),
     storage: Literal['mcap', 'sqlite3'] = 'mcap',
     compression: Literal['none', 'zstd'] = 'none',
@@ -71,12 +68,11 @@ def compute(
         source: an open bag.
         target: the folder to create.
         parameters: of the node.
-        rotor_topic: name of the input in the bag.
-        output_topic: name of the node's output_state in the bag.
-        poses_topic: name of the node's body_poses in the bag.
-        encoder_topic: name of the output encoder in the bag if there is one, which is copied too.
+        topics: names of the input and the node's outputs in the bag.
+        encoder_topic: name of the output encoder in the bag, if it references the rotor; it is
+            copied too.
         calibration: of the gear, to compute CORRECTED_TOPICS beside the topic of the output.
-        topics: other topics to copy; None copies all.
+        others: other topics to copy; None copies all.
         files: contents of further files of the target, by name.
         storage: of the target, see `BagWriter`.
         compression: of the target, see `BagWriter`.
@@ -91,20 +87,21 @@ def compute(
 
     messages_of = state_messages(parameters)
     referenced = None
-    if parameters.absolute and encoder_topic:
+    if encoder_topic:
         referenced = ReferencedInput(parameters, calibration)
     rotor_input = referenced.rotor if referenced else RotorInput(parameters)
-    topic_of = {OUTPUT_STATE: output_topic, BODY_POSES: poses_topic}
+    rotor_topic = topics.rotor
+    topic_of = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
     topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
     corrector = None
     if calibration:
         corrector = Corrector(calibration, parameters.max_rotor_acceleration)
-        topic_of |= corrected_beside(output_topic)
+        topic_of |= corrected_beside(topics.output)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
     inputs = {rotor_topic, encoder_topic} if referenced else {rotor_topic}
-    chosen = {*inputs, *(source.topics if topics is None else topics)}
+    chosen = {*inputs, *(source.topics if others is None else others)}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
     with BagWriter(target, storage=storage, compression=compression) as writer:
@@ -122,8 +119,6 @@ def compute(
                 kept.append(topic)
         for topic, message_type in outputs.items():
             writer.add_topic(topic, message_type)
-        for name, topic in {ROTOR_STATE: rotor_topic, **topic_of}.items():
-            writer.name_topic(name, topic)
         for batch in source.batches({*kept, *outputs}, progress):
             messages, correction = [each for each in batch if each[0] not in outputs], None
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]

@@ -11,6 +11,8 @@ _REMEDIES = {
     'lz4': 'apt install python3-lz4, or pip install lz4',
 }
 """How to install libraries that only some recordings need."""
+_MEANINGS = {'interrupted': 'there are more rows than a file of this size can hold'}
+"""What else texts of sqlite mean: it is interrupted only then."""
 
 
 class BagError(ValueError):
@@ -35,6 +37,7 @@ def cause(error: BaseException) -> str:
             return f'needs {library}: {_REMEDIES[library]}'
     # Some OSErrors are raised by libraries, without this text.
     text = str(getattr(error, 'strerror', None) or error)
+    text = _MEANINGS.get(text, text)
     return ' '.join(text.split()) or type(error).__name__
 
 

@@ -1,15 +1,19 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Finds the bags that files, directories and globs name."""
+"""Finds bags by files, directories and globs, and the files of each."""
 
 import glob
 import re
 from collections.abc import Iterable, Iterator
-from pathlib import Path
-from typing import NamedTuple
+from pathlib import Path, PurePath
+from typing import Any, NamedTuple
 
-from gear_kinematics.bag.contents import BAG_NAME, bags_beside
-from gear_kinematics.bag.errors import BagError, cause
-from gear_kinematics.bag.reading import is_bag_file
+from gear_kinematics.bag.codecs import CODECS
+from gear_kinematics.bag.errors import BagError, bag_errors, cause
+from gear_kinematics.bag.storage import Topic
+from gear_kinematics.parameters.yaml_file import Loader, load_yaml, read_yaml
+
+BAG_NAME = re.compile(r'\.(mcap|db3|bag)(\.(zstd|zst|lz4))?$')
+_STORAGE_NAME = re.compile(r'(_\d+)?\.(mcap|db3)(\.(zstd|zst|lz4))?$')
 
 _NUMBER = re.compile(r'_\d+(?=\.(mcap|db3))')
 """Number of a file of a split recording."""
@@ -26,12 +30,8 @@ class Found(NamedTuple):
     folder."""
 
 
-def find_bags(patterns: Iterable[str], *, least: int = 1) -> Found:
-    """Find the bags that files, directories and globs name; a directory can hold many.
-
-    Raises:
-        BagError: naming each pattern without a match, if there are fewer bags than `least`.
-    """
+def find_bags(patterns: Iterable[str]) -> Found:
+    """Find the bags that files, directories and globs name; a directory can hold many."""
     bags: dict[Path, None] = {}
     faults: dict[Path, str] = {}
     for pattern in patterns:
@@ -42,23 +42,15 @@ def find_bags(patterns: Iterable[str], *, least: int = 1) -> Found:
         except OSError as error:  # of a folder above
             faults[path] = f'{path}: {cause(error)}'
         if not found and len(faults) == known:
-            hint = '' if path.exists() or glob.has_magic(pattern) else bags_beside(path)
-            faults[path] = f'{pattern}: no bag there{hint}'
+            faults[path] = f'{pattern}: no bag there'
         bags |= dict.fromkeys(found)
-    if len(bags) < least:
-        raise BagError('; '.join(faults.values()))
     return Found(list(bags), faults)
 
 
 def is_recording(path: Path) -> bool:
-    """Return whether a file is a recording or its metadata, or has the name of one.
-
-    Raises:
-        OSError: if it cannot be read.
-    """
-    if BAG_NAME.search(path.name) or path.suffix.lower() in _TABLES:
-        return True
-    return path.name == _METADATA or (path.is_file() and is_bag_file(path))
+    """Return whether a file has the name of a recording or its metadata."""
+    name = path.name
+    return bool(BAG_NAME.search(name)) or path.suffix.lower() in _TABLES or name == _METADATA
 
 
 def _glob(pattern: str, faults: dict[Path, str]) -> Iterator[Path]:
@@ -98,3 +90,83 @@ def _leads_astray(path: Path) -> bool:
 
 def _may_hold(path: Path) -> bool:
     return path.is_dir() or bool(BAG_NAME.search(path.name))
+
+
+class Contents(NamedTuple):
+    """The files of a recording, and what is known without opening them."""
+
+    files: list[Path]
+    """In the order of recording."""
+    topics: dict[str, Topic]
+    """Topics by name; empty without metadata.yaml."""
+    message_count: int | None
+    """None without metadata.yaml."""
+
+
+def find_contents(path: Path) -> Contents:
+    """Find the files of a recording, a rosbag2 folder or a file, and read its metadata.
+
+    Raises:
+        ValueError: or other exceptions, if this is not a recording.
+    """
+    if path.is_file():
+        return Contents([path], {}, None)
+    if not path.is_dir():
+        raise ValueError('no such file or folder')
+    metadata = path / 'metadata.yaml'
+    if metadata.exists():
+        with bag_errors(metadata):
+            return _listed_contents(path, read_yaml(metadata, BagError, _Loader))
+    # A recorder that is killed writes no metadata.
+    files = [file for file in path.iterdir() if _STORAGE_NAME.search(file.name)]
+    if not files:
+        raise ValueError('the folder holds neither metadata.yaml nor a .mcap or .db3 file')
+    if len({_STORAGE_NAME.sub('', file.name) for file in files}) > 1:
+        raise ValueError('several recordings without a metadata.yaml; name one of its files')
+    return Contents(sorted(files, key=lambda file: (len(file.name), file.name)), {}, None)
+
+
+class _Loader(Loader):
+    """Reads what recorders write of ten thousand topics or files."""
+
+    max_bytes = 2**22
+    max_events = 400_000
+    aliases = True
+
+
+def parse_yaml(text: str) -> Any:
+    """Parse YAML of a bag; raises any exception if it is none, or larger than recorders write."""
+    return load_yaml(text, _Loader)
+
+
+def _listed_contents(path: Path, metadata: Any) -> Contents:
+    if not isinstance(metadata, dict):
+        raise ValueError('no metadata in it')  # noqa: TRY004, about data on disk
+    information = metadata['rosbag2_bagfile_information']
+    if information.get('compression_mode', '').lower() == 'message' and (
+        information['compression_format'] not in CODECS
+    ):
+        raise ValueError(f'unsupported compression {information["compression_format"]!r}')
+    topics: dict[str, Topic] = {}
+    for entry in information['topics_with_message_count']:
+        topic = Topic.of(entry['topic_metadata'])
+        topics.setdefault(topic.name, topic)
+    names = information['relative_file_paths']
+    if not names:
+        raise ValueError('no files are listed')
+    files = [_listed_file(path, name) for name in names]
+    if len(set(files)) < len(files):
+        raise ValueError('a file is listed more than once')
+    message_count = int(information['message_count'])
+    if not 0 <= message_count < 2**63:
+        raise ValueError('the message count is out of range')
+    return Contents(files, topics, message_count)
+
+
+def _listed_file(path: Path, name: str) -> Path:
+    folder = path.absolute()
+    file = folder / name
+    if '..' in PurePath(name).parts or not file.is_relative_to(folder):
+        raise ValueError(f'{name!r} leads outside the folder')
+    # Before version 4, names began with that of the folder, which may have been renamed.
+    return path / (name if file.exists() else file.name)

@@ -83,7 +83,7 @@ def _started(run: Callable[[Task], Report]) -> _Worker:
     connection, other_side = context.Pipe()
     with other_side:
         process = context.Process(target=_answer, args=(other_side, run), daemon=True)
-        with _without_current_folder(), _interrupts_blocked():
+        with _guarded():
             process.start()
     return _Worker(process, connection)
 
@@ -103,22 +103,17 @@ def _end_after(process: BaseProcess) -> None:
 
 
 @contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Start processes that ignore Ctrl-C, on which their owner ends them."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+def _guarded() -> Iterator[None]:
+    """Start processes that ignore Ctrl-C, on which their owner ends them.
 
-
-@contextmanager
-def _without_current_folder() -> Iterator[None]:
-    """Start processes, run with `python -c`, that import nothing from the current folder."""
+    They are run with `python -c`, and import nothing from the current folder.
+    """
     name = 'PYTHONSAFEPATH'
-    before = os.environ.get(name, '')  # an empty value means unset
+    safe = os.environ.get(name, '')
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     os.environ[name] = '1'
     try:
         yield
     finally:
-        os.environ[name] = before
+        os.environ[name] = safe  # an empty value means unset
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)

@@ -10,20 +10,15 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import IO, Self
 
-from gear_kinematics.bag.codecs import codec_of, decompress_file, decompressed
-from gear_kinematics.bag.contents import find_contents
+from gear_kinematics.bag.codecs import Limits, codec_of, decompress_file, decompressed
 from gear_kinematics.bag.errors import BagError, DamagedBagError, bag_errors, cause
-from gear_kinematics.bag.limits import Limits
+from gear_kinematics.bag.finding import find_contents
 from gear_kinematics.bag.mcap import MCAP_MAGIC, Mcap
 from gear_kinematics.bag.sqlite import Sqlite
-from gear_kinematics.bag.storage import Message, Storage, in_batches
-from gear_kinematics.bag.topics import Topic, missing_topic
+from gear_kinematics.bag.storage import Message, Storage, Topic, in_batches, missing_topic
 
 ReportProgress = Callable[[int, int | None], None]
 """Called repeatedly with the number of messages done, and the total if known."""
-
-_BATCH = 8192  # messages
-_BATCH_SIZE = 2**24  # bytes
 
 
 def _ros1(path: Path, limits: Limits) -> Storage:
@@ -58,12 +53,10 @@ class Bag:
     topics: Mapping[str, str]
     """Types by name, such as sensor_msgs/msg/JointState."""
     message_count: int | None
-    """On all topics; None if unknown without reading all of them."""
-    named: Mapping[str, str]
-    """Its topics by the names that the recorder gave them, see `BagWriter.name_topic`."""
+    """On all topics; None without metadata.yaml."""
 
     def __init__(self, path: Path | str) -> None:
-        """Read the topics and the number of messages.
+        """Read the topics.
 
         Raises:
             BagError: if there is no readable bag.
@@ -72,12 +65,11 @@ class Bag:
         self._readings = ExitStack()
         self._described: dict[str, Topic] = {}
         with bag_errors(self.path):
-            self._files, self._listed, self.message_count, custom = find_contents(self.path)
+            self._files, self._listed, self.message_count = find_contents(self.path)
         if not self._listed:
             self._describe()
         known = self._listed or self._described
         self.topics = MappingProxyType({topic.name: topic.type for topic in known.values()})
-        self.named = {name: topic for name, topic in custom.items() if topic in self.topics}
 
     def __enter__(self) -> Self:
         return self
@@ -99,12 +91,12 @@ class Bag:
     def batches(
         self, topics: Collection[str], progress: ReportProgress | None = None
     ) -> Iterator[list[Message]]:
-        """Read raw messages as `messages` does, up to 8192 or 16 MiB at a time, which is faster.
+        """Read raw messages as `messages` does, many at a time, which is faster.
 
         The total that `progress` is told after each batch counts all topics of the bag.
         """
         done = 0
-        for batch in _joined(self._pieces(topics)):
+        for batch in self._pieces(topics):
             yield batch
             done += len(batch)
             if progress:
@@ -142,24 +134,18 @@ class Bag:
         return Limits(sum(file.stat().st_size for file in self._files if file.exists()))
 
     def _describe(self) -> None:
-        """Collect the descriptions of the topics, and count messages if metadata did not."""
-        counts: list[int | None] = []
+        """Collect the descriptions of the topics."""
         limits = self._limits()
         for file in self._files:
             try:
                 with _opened(file, limits) as storage:
                     for topic in storage.topics():
                         self._described.setdefault(topic.name, topic)
-                    counts.append(storage.count())
             except BagError:
-                if not counts:
-                    raise
-                counts.append(None)  # reading the messages will raise it
+                if not self._described:
+                    raise  # otherwise, reading the messages will raise it
             if self._listed and self._listed.keys() <= self._described.keys():
                 return
-        if not self._listed:
-            known = [count for count in counts if count is not None]
-            self.message_count = sum(known) if len(known) == len(counts) else None
 
     def _pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         reading = self._read(frozenset(topics))
@@ -196,35 +182,6 @@ def _plain(pieces: Iterator[list[Message]], limits: Limits) -> Iterator[list[Mes
         (topic, received, decompressed(data, codec.decompress, limits, 'a compressed message'))
         for topic, received, data in chain.from_iterable(pieces)
     )
-
-
-def _joined(pieces: Iterable[list[Message]]) -> Iterator[list[Message]]:
-    """Join pieces to batches; those before an exception are yielded before it is raised."""
-    batch, size = list[Message](), 0
-    try:
-        for piece in pieces:
-            batch += piece
-            size += sum(len(data) for _, _, data in piece)
-            while len(batch) >= _BATCH or size >= _BATCH_SIZE:
-                yield batch[:_BATCH]
-                batch, size = batch[_BATCH:], 0
-    except Exception:
-        if batch:
-            yield batch
-        raise
-    if batch:
-        yield batch
-
-
-def is_bag_file(path: Path) -> bool:
-    """Return whether a file is one of a bag, or compressed as such are, by its content.
-
-    Raises:
-        OSError: if it cannot be read.
-    """
-    with path.open('rb') as file:
-        start = _start(file, 16)
-    return bool(start.startswith(tuple(_KINDS)) or codec_of(start))
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from typing import NamedTuple, Self
 
 from gear_kinematics.bag.errors import BagError
 from gear_kinematics.bag.reading import Bag
-from gear_kinematics.bag.topics import missing_topic
+from gear_kinematics.bag.storage import missing_topic
 from gear_kinematics.wire.cdr import MalformedMessageError
 from gear_kinematics.wire.joint_reader import joints_of
 from gear_kinematics.wire.nearest import among, listed
@@ -24,8 +24,8 @@ from gear_kinematics.wire.topics import (
     base_name,
 )
 
-_PARTS = {'output': OUTPUT_STATE, 'poses': BODY_POSES, 'rotor': ROTOR_STATE}
-"""Topics by their parts in a validation; the rotor is found last, among the remaining topics."""
+_PARTS = {'rotor': ROTOR_STATE, 'output': OUTPUT_STATE, 'poses': BODY_POSES}
+"""Topics by their parts in a validation."""
 _OPTIONS = {topic: part for part, topic in _PARTS.items()} | {OUTPUT_ENCODER: 'encoder'}
 _PEEKED = 20  # topics of which the joints are looked up
 _JUDGED = 1000  # messages that show whether there is only one joint
@@ -55,8 +55,6 @@ def find_topics(
 ) -> Topics:
     """Find the topics by type and name, in any namespace; that of the rotor's topic comes first.
 
-    Those that `gearkin compute` has named in the recording are taken, unless the rotor's is given.
-
     Args:
         bag: an open bag.
         given: names of known topics by their parts.
@@ -74,20 +72,20 @@ def find_topics(
         poses = TOPICS[BODY_POSES].type in bag.topics.values()
     left_out = {'output': not outputs, 'poses': not (outputs and poses)}
     parts = [part for part in _PARTS if not left_out.get(part)]
-    named = {} if given.get('rotor') else {part: bag.named.get(_PARTS[part]) for part in parts}
-    found = {part: topic for part in parts if (topic := given.get(part) or named.get(part))}
+    found = {part: topic for part in parts if (topic := given.get(part))}
     left = dict(bag.topics)
-    if 'rotor' in found:
-        for part, topic in Topics.beside(found['rotor'])._asdict().items():
-            if part in parts and bag.topics.get(topic) == TOPICS[_PARTS[part]].type:
-                found.setdefault(part, topic)
     for part, topic in found.items():
         if left.get(topic) != (wanted := TOPICS[_PARTS[part]].type):
             raise missing_topic(bag.path, left, topic, wanted)
         del left[topic]
+    if 'rotor' not in found:
+        found['rotor'] = _find_topic(bag, left, ROTOR_STATE, joint)
+        del left[found['rotor']]
+    beside = Topics.beside(found['rotor'])._asdict()
     for part in parts:
         if part not in found:
-            found[part] = _find_topic(bag, left, _PARTS[part], joint if part == 'rotor' else '')
+            same_node = left.get(beside[part]) == TOPICS[_PARTS[part]].type
+            found[part] = beside[part] if same_node else _find_topic(bag, left, _PARTS[part])
             del left[found[part]]
     if outputs:
         found.setdefault('poses', '')
@@ -145,18 +143,23 @@ def joints_on(bag: Bag, topics: Sequence[str]) -> dict[str, list[str]]:
     return joints
 
 
-def find_encoder_topic(bag: Bag, given: str | None = None) -> str | None:
-    """Return the topic of the output encoder: the given one, or else by name; None without one.
+def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
+    """Return the topic of the output encoder: the given one, or else by name; empty without one.
+
+    That in the namespace of the rotor's topic comes first.
 
     Raises:
-        BagError: if the given one is missing, or several have the name.
+        BagError: if the given one is missing, or several elsewhere have the name.
     """
     wanted = TOPICS[OUTPUT_ENCODER].type
     if given:
         bag.type_of(given, wanted)
         return given
     named = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) == OUTPUT_ENCODER]
-    return _only(bag.path, named, OUTPUT_ENCODER) if named else None
+    beside = f'{rotor.rpartition("/")[0]}/{OUTPUT_ENCODER}'
+    if beside in named:
+        return beside
+    return _only(bag.path, named, OUTPUT_ENCODER) if named else ''
 
 
 def other_topic(bag: Bag, rotor: str, joint: str = '') -> str:
@@ -172,17 +175,6 @@ def other_topic(bag: Bag, rotor: str, joint: str = '') -> str:
     found = [t for t, heard in joints_on(bag, topics).items() if joint in heard] if joint else []
     found = found or [topic for topic in topics if topic != rotor]
     return found[0] if len(found) == 1 else ''
-
-
-def encoder_beside(bag: Bag, rotor: str) -> str:
-    """Return the output encoder's topic in the namespace of the rotor's, or else the only one.
-
-    An empty text if there is none, or several are elsewhere.
-    """
-    kind = TOPICS[OUTPUT_ENCODER].type
-    named = [topic for topic in _of_type(bag.topics, kind) if base_name(topic) == OUTPUT_ENCODER]
-    beside = f'{rotor.rpartition("/")[0]}/{OUTPUT_ENCODER}'
-    return beside if beside in named else named[0] if len(named) == 1 else ''
 
 
 def missing_encoder(bag: Bag) -> str:
@@ -207,7 +199,7 @@ def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
     }
 
 
-def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str) -> str:
+def _find_topic(bag: Bag, available: Mapping[str, str], name: str, joint: str = '') -> str:
     of_type = _of_type(available, TOPICS[name].type)
     candidates = [topic for topic in of_type if base_name(topic) == name] or [
         topic for topic in of_type if base_name(topic) not in TOPICS

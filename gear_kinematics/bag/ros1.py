@@ -5,18 +5,13 @@ import bz2
 from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO, cast
 
 import lz4.frame  # type: ignore[import-untyped]
 from rosbags import rosbag1
-from rosbags.interfaces import Connection
-from rosbags.rosbag1.reader import IndexData
 from rosbags.typesys import Stores, get_typestore
 
-from gear_kinematics.bag.codecs import CODECS, Decompressor, decompressed
-from gear_kinematics.bag.limits import Limits
-from gear_kinematics.bag.storage import Message, Storage, in_batches
-from gear_kinematics.bag.topics import Topic
+from gear_kinematics.bag.codecs import CODECS, Decompressor, Limits, decompressed
+from gear_kinematics.bag.storage import Message, Storage, Topic, in_batches
 from gear_kinematics.wire.topics import JOINT_STATE, POSE_ARRAY
 
 
@@ -34,34 +29,12 @@ _CONVERTED = {JOINT_STATE, POSE_ARRAY}
 """Types whose messages are converted to CDR; they have the same fields in ROS 2."""
 
 
-class _Reader(rosbag1.Reader):
-    """Bounds the index, because a file can refer to the same part of it repeatedly."""
-
-    def __init__(self, path: Path, limits: Limits) -> None:
-        super().__init__(path)
-        self._limits = limits
-        self._left = path.stat().st_size
-
-    def read_connection(self) -> Connection:
-        connection = super().read_connection()
-        self._limits.describe(str(connection.id), connection.topic, connection.msgdef.data)
-        return connection
-
-    def read_index_data(self, pos: int, indexes: dict[int, list[IndexData]]) -> None:
-        stream = cast('BinaryIO', self.bio)
-        start = stream.tell()
-        super().read_index_data(pos, indexes)
-        self._left -= stream.tell() - start
-        if self._left < 0:
-            raise ValueError('the index is longer than the file')
-
-
 class Ros1(Storage):
     """A ROS 1 bag, of which joint states and poses are converted to CDR."""
 
     def __init__(self, path: Path, limits: Limits) -> None:
         super().__init__(limits)
-        self._reader = _Reader(path, limits)
+        self._reader = rosbag1.Reader(path)
         self._reader.open()
         chunks = self._reader.chunks
         for place, chunk in chunks.items():
@@ -78,10 +51,6 @@ class Ros1(Storage):
             Topic(found.topic, found.msgtype, 'cdr' if found.msgtype in _CONVERTED else 'ros1')
             for found in self._reader.connections
         ]
-
-    def count(self) -> int | None:
-        """Return the number in the index."""
-        return sum(connection.msgcount for connection in self._reader.connections)
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
         """Read messages in the order of reception."""

@@ -1,13 +1,53 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The interface of a file of a bag."""
+"""The interface of a file of a bag, and the description of its topics."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple, Self
 
-from gear_kinematics.bag.limits import Limits
-from gear_kinematics.bag.topics import Topic
+from gear_kinematics.bag.codecs import Limits
+from gear_kinematics.bag.errors import BagError
+from gear_kinematics.wire.nearest import listed, nearest
 
 Message = tuple[str, int, bytes]
 """Topic, time of reception in ns, CDR. A named tuple would take 15 times as long to make."""
+
+
+class Topic(NamedTuple):
+    """The description of a topic in a bag; a missing text is empty."""
+
+    name: str
+    type: str
+    """As in ROS 2: sensor_msgs/msg/JointState."""
+    encoding: str
+    """Encoding of the messages: cdr, or an unsupported one."""
+    syntax: str = ''
+    """Syntax of the type definition: ros2msg, ros2idl, ros1msg or an unknown one."""
+    definition: str = ''
+    type_hash: str = ''
+    qos: Any = ''
+    """The offered QoS profiles, as a list or as YAML."""
+
+    @classmethod
+    def of(cls, known: Mapping[str, Any]) -> Self:
+        """Take a description as rosbag2 writes it, in its metadata or database.
+
+        Raises:
+            KeyError: if something is missing.
+            ValueError: if something is not text.
+        """
+        topic = cls(
+            known['name'],
+            known['type'],
+            known['serialization_format'],
+            known.get('encoding', ''),
+            known.get('encoded_message_definition', ''),
+            known.get('type_description_hash', ''),
+            known.get('offered_qos_profiles', ''),
+        )
+        if not all(isinstance(text, str) for text in topic[:-1]):
+            raise ValueError('the description of a topic is not text')
+        return topic
 
 
 class Storage:
@@ -21,10 +61,6 @@ class Storage:
 
     def topics(self) -> list[Topic]:
         """Return the topics of the file."""
-        raise NotImplementedError
-
-    def count(self) -> int | None:
-        """Return the number of messages; None if unknown without reading all of them."""
         raise NotImplementedError
 
     def pieces(self, topics: Collection[str]) -> Iterator[list[Message]]:
@@ -74,3 +110,20 @@ def check_encoding(topic: Topic) -> None:
     """
     if topic.encoding != 'cdr':
         raise ValueError(f'messages on {topic.name} are {topic.encoding!r}, not CDR')
+
+
+def missing_topic(
+    path: Path, topics: Mapping[str, str], name: str, wanted: str, *, suggest: bool = True
+) -> BagError:
+    """Return the error for a topic that is not in a bag, or not of the wanted type ('': any).
+
+    It names what is there, and if that is to be suggested the topic whose name is nearest.
+    """
+    of_type = {topic for topic, kind in topics.items() if kind == wanted}
+    text = f'{path}: no topic {name}' + (f' of type {wanted}' if wanted else '') + ' in it'
+    if name in topics:
+        text += f', it is of type {topics[name]}'
+    elif suggest:
+        text += nearest(name, sorted(of_type or topics))
+    there = f'there are: {listed(topics, of_type)}' if topics else 'there are no topics'
+    return BagError(f'{text}{"" if text.endswith("?") else ";"} {there}')

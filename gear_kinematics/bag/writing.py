@@ -3,7 +3,6 @@
 
 import secrets
 import shutil
-import weakref
 from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -17,11 +16,6 @@ from rosbags.interfaces import (
     MessageDefinition,
     MessageDefinitionFormat,
     Qos,
-    QosDurability,
-    QosHistory,
-    QosLiveliness,
-    QosReliability,
-    QosTime,
 )
 from rosbags.rosbag2 import CompressionFormat, CompressionMode, StoragePlugin, Writer
 from rosbags.rosbag2.metadata import dump_qos_v9, parse_qos
@@ -29,11 +23,10 @@ from rosbags.rosbag2.storage_mcap import McapWriter, Schema, write_schema
 from rosbags.rosbag2.storage_sqlite3 import Sqlite3Writer
 from rosbags.typesys import Stores, get_typestore
 
-from gear_kinematics.bag.contents import parse_yaml
 from gear_kinematics.bag.errors import BagError, TopicError, bag_errors
+from gear_kinematics.bag.finding import parse_yaml
 from gear_kinematics.bag.reading import Bag
-from gear_kinematics.bag.storage import Message
-from gear_kinematics.bag.topics import Topic
+from gear_kinematics.bag.storage import Message, Topic
 
 _MAX_ENTRIES = 4000  # of topics and QoS in the metadata; rosbags takes 3 ms to write one
 _FORMATS = {
@@ -41,25 +34,14 @@ _FORMATS = {
     'ros2idl': MessageDefinitionFormat.IDL,
     '': MessageDefinitionFormat.NONE,
 }
-_FOREVER = QosTime(9223372036, 854775807)
-_RELIABLE = Qos(
-    QosHistory.KEEP_LAST,
-    2000,
-    QosReliability.RELIABLE,
-    QosDurability.VOLATILE,
-    _FOREVER,
-    _FOREVER,
-    QosLiveliness.AUTOMATIC,
-    _FOREVER,
-    avoid_ros_namespace_conventions=False,
-)
 
 
 class BagWriter:
     """Writes a rosbag2 folder, version 9; the same messages always give the same bytes.
 
     A context manager. The folder is renamed to `path` when it is complete; after an exception or
-    an interruption, nothing is left.
+    an interruption, nothing is left. That of a `live` recording is at `path` from the start, so
+    that its messages up to the last `flush` can be read whatever ends it.
     """
 
     def __init__(
@@ -67,6 +49,8 @@ class BagWriter:
         path: Path | str,
         storage: Literal['mcap', 'sqlite3'] = 'mcap',
         compression: Literal['none', 'zstd'] = 'none',
+        *,
+        live: bool = False,
     ) -> None:
         """Define the recording; `__enter__` opens it.
 
@@ -74,30 +58,41 @@ class BagWriter:
             path: the folder to create, in an existing one.
             storage: format of the files.
             compression: zstd compresses the chunks of an mcap file, or a whole sqlite3 file.
+            live: whether it is written while it happens, which needs mcap.
         """
         self.path = Path(path)
         self._storage = StoragePlugin[storage.upper()]
         modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}
         self._compression = modes[storage] if compression == 'zstd' else CompressionMode.NONE
+        self._live = live
         self._topics: dict[str, Connection] = {}
         self._entries = 0
 
     def __enter__(self) -> Self:
-        """Open a temporary folder.
+        """Create a folder.
 
         Raises:
             BagError: if the path exists already or cannot be written.
         """
         with bag_errors(self.path), ExitStack() as stack:
-            self._check_new()
-            folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
-            # Before there is a folder, so that no interruption leaves it behind.
-            stack.callback(weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True))
-            folder.mkdir(mode=0o700)
+            if self.path.exists() or self.path.is_symlink():
+                raise ValueError('exists already')
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
             # reindexes a bag.
-            self._partial = folder / f'{self.path.name}_0'
-            self._open(self._partial)
+            self._partial = self.path
+            if not self._live:
+                folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
+                # Before there is a folder, so that no interruption leaves it behind.
+                stack.callback(shutil.rmtree, folder, ignore_errors=True)
+                folder.mkdir(mode=0o700)
+                self._partial = folder / f'{self.path.name}_0'
+            self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)
+            self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
+            self._writer.open()
+            self._file = cast('McapWriter | Sqlite3Writer', self._writer.storage)
+            if self._live:
+                path = self._file.path
+                self._file.path = path.rename(path.with_stem(f'{path.stem}_0'))
             self._folder = stack.pop_all()
         return self
 
@@ -134,16 +129,13 @@ class BagWriter:
         """
         with bag_errors(self.path):
             definition = _jazzy_definition(message_type)
-            self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [_RELIABLE])
+            self._add(Topic(name, message_type, 'cdr', 'ros2msg', *definition), [])
 
-    def copy_topic(self, bag: Bag, name: str) -> Topic:
+    def copy_topic(self, bag: Bag, name: str) -> None:
         """Add a topic of another bag, with its type definition, hash and QoS.
 
         A type that neither the bag nor ROS 2 Jazzy defines is written without a definition, as
         rosbag2 does.
-
-        Returns:
-            The description of the topic as it is written.
 
         Raises:
             TopicError: if it cannot be copied.
@@ -156,11 +148,6 @@ class BagWriter:
             topic = _as_ros2(topic)
             qos = parse_yaml(topic.qos) if isinstance(topic.qos, str) else topic.qos
             self._add(topic, parse_qos(qos))
-        return topic
-
-    def name_topic(self, name: str, topic: str) -> None:
-        """Name a topic in the metadata, by which it is found again: `Bag.named`."""
-        self._writer.set_custom_data(name, topic)
 
     def write(self, topic: str, received: int, data: bytes) -> None:
         """Write a message.
@@ -185,22 +172,25 @@ class BagWriter:
             for topic, received, data in messages:
                 self._writer.write(self._topics[topic], received, data)
 
-    def _check_new(self) -> None:
-        if self.path.exists() or self.path.is_symlink():
-            raise ValueError('exists already')
+    def flush(self) -> None:
+        """Write all messages of a live recording so far to its file.
 
-    def _open(self, folder: Path) -> None:
-        self._writer = Writer(folder, version=9, storage_plugin=self._storage)
-        self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
-        self._writer.open()
-        self._file = cast('McapWriter | Sqlite3Writer', self._writer.storage)
+        Raises:
+            BagError: if they cannot be written.
+        """
+        file = cast('McapWriter', self._file)
+        with bag_errors(self.path):
+            if file.chunk.msgs:
+                file.close_chunk()
+            file.bio.flush()
 
     def _add(self, topic: Topic, qos: Sequence[Qos]) -> None:
         if topic.name in self._topics:
             raise BagError(f'{self.path}: topic {topic.name} has been added already')
         self._entries += 1 + len(qos)
         if self._entries > _MAX_ENTRIES:
-            raise ValueError(f'there are more than {_MAX_ENTRIES} topics and QoS profiles')
+            many = f'more than {_MAX_ENTRIES} topics and QoS profiles'
+            raise BagError(f'{self.path}: {many}; --topics says which to copy')
         writer = self._writer
         # By `Writer.add_connection`, every type would need a definition and a hash.
         connection = Connection(
@@ -224,45 +214,6 @@ class BagWriter:
         writer.connections.append(connection)
         writer.counts[connection.id] = 0
         self._topics[topic.name] = connection
-
-
-class LiveBagWriter(BagWriter):
-    """Writes a recording while it happens: whatever ends it, the messages so far can be read.
-
-    The folder is at `path` from the start; after an exception it stays, unfinished.
-    """
-
-    def __init__(self, path: Path | str) -> None:
-        """Define the recording, in mcap; `__enter__` opens it."""
-        super().__init__(path)
-
-    def __enter__(self) -> Self:
-        """Create the folder.
-
-        Raises:
-            BagError: if the path exists already or cannot be written.
-        """
-        with bag_errors(self.path):
-            self._check_new()
-            # It is in its place already, and nothing removes it.
-            self._partial, self._folder = self.path, ExitStack()
-            self._open(self.path)
-            # rosbag2 finds only numbered files when it reindexes a bag.
-            path = self._file.path
-            self._file.path = path.rename(path.with_stem(f'{path.stem}_0'))
-        return self
-
-    def flush(self) -> None:
-        """Write all messages so far to the file.
-
-        Raises:
-            BagError: if they cannot be written.
-        """
-        file = cast('McapWriter', self._file)
-        with bag_errors(self.path):
-            if file.chunk.msgs:
-                file.close_chunk()
-            file.bio.flush()
 
 
 def _jazzy_definition(message_type: str) -> tuple[str, str]:

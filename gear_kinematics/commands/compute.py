@@ -7,7 +7,12 @@ from pathlib import Path
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.compute import ComputeResult, compute
-from gear_kinematics.bag.roles import encoder_beside, find_rotor_topic, only_joint, outputs_of
+from gear_kinematics.bag.roles import (
+    find_encoder_topic,
+    find_rotor_topic,
+    only_joint,
+    outputs_of,
+)
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.parameters import NodeParameters, default_config
@@ -20,7 +25,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('out', type=Path, metavar='OUT', help='folder to create')
     bags.add_rotor(parser)
-    bags.add_outputs(parser)
     arguments.add_config(parser)
     bags.add_calibration(parser)
     output = arguments.group(parser, 'output')
@@ -45,18 +49,15 @@ def run(options: argparse.Namespace) -> ExitCode:
         taken = config.rotor_joint
         if options.joint is None and taken:
             taken = only_joint(bag, rotor, taken)
-        outputs = outputs_of(bag, rotor)
         used = replace(config, rotor_joint=taken)
         result = compute(
             bag,
             options.out,
             used,
-            rotor_topic=rotor,
-            output_topic=options.output_topic or outputs.output,
-            poses_topic=options.poses_topic or outputs.poses,
-            encoder_topic=encoder_beside(bag, rotor),
+            topics=outputs_of(bag, rotor),
+            encoder_topic=find_encoder_topic(bag, rotor) if config.absolute else '',
             calibration=calibration,
-            topics=options.topics,
+            others=options.topics,
             files=_files(options, used),
             storage=options.storage,
             compression=options.compression,

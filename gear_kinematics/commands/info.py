@@ -2,27 +2,17 @@
 """`gearkin info`: what is in recordings."""
 
 import argparse
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 
 from rich.text import Text
 
 from gear_kinematics.bag import Bag
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.bag.roles import described
-from gear_kinematics.bag.summary import Summary, TopicSummary, summarise
+from gear_kinematics.bag.summary import Summary, summarise
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import Console, complain, message_progress
-from gear_kinematics.report.document import (
-    Cell,
-    Document,
-    Section,
-    Table,
-    counted,
-    number,
-    printable,
-)
-from gear_kinematics.report.text import render
-from gear_kinematics.wire.nearest import listed
+from gear_kinematics.report.document import counted, number, printable
 
 _DIGITS = 4
 _JOINTS = 4  # in the line
@@ -58,44 +48,30 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _print_summary(name: str, summary: Summary, *, verbose: bool) -> None:
     console = Console()
-    line = Text(printable(f'{name}: {"; ".join(_parts_of_line(summary))}'))
-    console.print(line, soft_wrap=not console.is_terminal)
-    if verbose:
-        table = Table.of_items(_TOPIC, summary.topics, words=('', 'part', 'joints', 'type'))
-        render(Document('gearkin info', (Section(printable(name), (table,)),)), console)
+    parts = [printable(part) for part in _parts(summary, verbose=verbose)]
+    text = ('\n  ' if verbose else '; ').join(parts)
+    console.print(Text(f'{printable(name)}: {text}'), soft_wrap=not console.is_terminal)
 
 
-def _parts_of_line(summary: Summary) -> Iterator[str]:
-    yield f'{summary.duration:.2f} s, {summary.messages} messages'
-    known = [topic for topic in summary.topics if topic.part not in {'', 'node'}]
-    for topic in known:
+def _parts(summary: Summary, *, verbose: bool) -> Iterator[str]:
+    messages = sum(topic.messages for topic in summary.topics)
+    yield f'{summary.duration:.2f} s, {messages} messages'
+    known = [topic for topic in summary.topics if topic.part]
+    shown = summary.topics if verbose else known
+    for topic in shown:
+        often = counted(topic.messages, 'message')
+        if topic.rate:
+            rate = f'{number(topic.rate, _DIGITS)} Hz'
+            often = f'{rate}, {often}' if verbose else rate
         joints = described(topic.joints, most=_JOINTS)
-        yield f'{topic.part} {topic.name}{joints} {_rate(topic)}'
+        kind = f' {topic.type},' if verbose else ''
+        yield f'{topic.part} {topic.name}{joints}{kind} {often}'.lstrip()
     if summary.unclear:
         yield summary.unclear
-    if others := len(summary.topics) - len(known):
+    if others := len(summary.topics) - len(shown):
         yield counted(others, 'other topic')
     gaps = [topic for topic in known if topic.gaps]
     for topic in gaps:
         yield f'{counted(topic.gaps, "gap")} on {topic.name}, up to {topic.longest_gap:.3g} s'
     if known and not gaps:
         yield 'no gaps'
-
-
-def _rate(topic: TopicSummary) -> str:
-    if topic.rate is None:
-        return counted(topic.messages, 'message')
-    return f'{number(topic.rate, _DIGITS)} Hz'
-
-
-_TOPIC: Mapping[str, Callable[[TopicSummary], str | Cell]] = {
-    'topic': lambda topic: printable(topic.name),
-    'part': lambda topic: topic.part,
-    'messages': lambda topic: str(topic.messages),
-    'rate': lambda topic: Cell(number(topic.rate, _DIGITS) if topic.rate else '', unit='Hz'),
-    'gaps': lambda topic: str(topic.gaps),
-    'longest': lambda topic: Cell(number(topic.longest_gap) if topic.gaps else '', unit='s'),
-    'joints': lambda topic: listed(topic.joints),
-    'type': lambda topic: printable(topic.type.rpartition('/')[2]),
-}
-"""Columns of the table of topics."""

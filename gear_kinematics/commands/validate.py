@@ -59,7 +59,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     tolerances = Tolerances(
         **{name: getattr(options, f'tolerance_{name}') for name in Tolerances._fields}
     )
-    found = find_bags(options.bags, least=0)
+    found = find_bags(options.bags)
     faults = dict(found.faults)
     reporter = Reporter(options, len(found.bags) + len(faults), brief=not options.verbose)
     tasks: list[Task] = []

@@ -76,7 +76,8 @@ def read_encoders(
     sources = sources or Sources()
     if not is_csv(path):
         with Bag(path) as bag:
-            if not find_encoder_topic(bag, sources.encoder_topic):
+            rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
+            if not find_encoder_topic(bag, rotor, sources.encoder_topic):
                 raise RecordingError(f'{path}: {missing_encoder(bag)}')
     recording = read(path, parameters, sources, progress)
     if recording.encoders is None:
@@ -95,8 +96,8 @@ def _read_bag(
 ) -> Recording:
     damage = None
     with Bag(path) as bag:
-        encoder = find_encoder_topic(bag, sources.encoder_topic)
         rotor = find_rotor_topic(bag, sources.rotor_topic, parameters.rotor_joint)
+        encoder = find_encoder_topic(bag, rotor, sources.encoder_topic)
         states = States(rotor, encoder, parameters, _MOST_STATES)
         topics = [topic for topic in (rotor, encoder) if topic]
         try:

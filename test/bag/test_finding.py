@@ -1,12 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finding bags by files, directories and globs."""
 
-import re
 from pathlib import Path
 
 import pytest
 
-from gear_kinematics.bag import BagError
 from gear_kinematics.bag.finding import find_bags
 
 
@@ -48,7 +46,6 @@ DEEP = [
         (['fleet/deep/three.mcap'], ['fleet/deep/three.mcap']),
         (['fleet/deep/notes.txt'], ['fleet/deep/notes.txt']),  # was named, and will be refused
         (['fleet/one'], ['fleet/one']),
-        (['fleet/one/'], ['fleet/one']),
         (['fleet/one/one_1.mcap'], ['fleet/one/one_1.mcap']),
         (['fleet/deep'], DEEP),
         (['fleet'], [*DEEP, 'fleet/one']),
@@ -60,7 +57,6 @@ DEEP = [
             ['fleet/**/*.mcap'],
             ['fleet/deep/three.mcap', *(f'fleet/one/one_{k}.mcap' for k in '01')],
         ),
-        (['fleet/d*/*.db3', 'fleet/**/two.db3'], None),
         (['logs/seven[1].mcap'], ['logs/seven[1].mcap']),  # as it is, before it is a pattern
         (['fleet/one', 'fleet', './fleet/one'], ['fleet/one', *DEEP]),  # each once, in this order
     ],
@@ -69,10 +65,6 @@ DEEP = [
 def test_bags_are_found_once_and_in_order(absolute, patterns, found, tree):
     start = f'{tree}/' if absolute else ''
     given = [start + pattern for pattern in patterns]
-    if found is None:
-        with pytest.raises(BagError, match=f'^{re.escape(given[0])}: no bag there$'):
-            find_bags(given[:1])
-        return
     assert find_bags(given) == ([Path(start + name) for name in found], {})
 
 
@@ -82,22 +74,9 @@ def test_a_pattern_that_nothing_fits_is_named_and_does_not_stop_the_others(patte
     bags, faults = find_bags([pattern, 'fleet/one'])
     assert bags == [Path('fleet/one')]
     assert faults == {Path(pattern): f'{pattern}: no bag there'}
-    with pytest.raises(BagError, match=f'^{re.escape(pattern)}: no bag there$'):
-        find_bags([pattern])
 
 
-@pytest.mark.usefixtures('tree')
-def test_a_misspelt_bag_is_told_with_those_beside_it():
-    for name, hint in (
-        ('fleet/deep/tree.mcap', 'did you mean `fleet/deep/three.mcap`? there are: '),
-        ('fleet/twelve', 'there are: fleet/deep, fleet/one'),
-    ):
-        with pytest.raises(BagError, match=f'^{re.escape(name)}: no bag there; ') as caught:
-            find_bags([name])
-        assert hint in str(caught.value)
-
-
-@pytest.mark.parametrize('patterns', [['fleet'], ['fleet/*'], ['fleet/deep', 'fleet/one']])
+@pytest.mark.parametrize('patterns', [['fleet/*'], ['fleet/deep', 'fleet/one']])
 @pytest.mark.usefixtures('tree')
 def test_an_unreadable_folder_does_not_stop_the_others(patterns, monkeypatch):
     """Tests may run as root, who may read everything."""

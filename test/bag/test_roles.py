@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finding the topics of a recording by their names and types."""
 
-import time
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
@@ -16,7 +15,7 @@ JOINT_STATE, POSE_ARRAY = 'sensor_msgs/msg/JointState', 'geometry_msgs/msg/PoseA
 
 def described(topics: dict[str, str]) -> SimpleNamespace:
     """What a bag says about its topics, which have no messages."""
-    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics, named={})
+    bag = SimpleNamespace(path=Path('some.mcap'), topics=topics)
     bag.messages = lambda _: iter(())
     bag.type_of = partial(Bag.type_of, bag)
     return bag
@@ -90,7 +89,7 @@ LEFT = '/output_state, /rotor_state, /body_poses, /rosout'
         ('/rotor_state', '/p', {}, f'{NO_OUTPUT}/rotor_state, /p, /rosout'),
         ('/output_state', '/p', {}, f'{NO_ROTOR}/output_state, /p, /rosout'),
         ('/left/rotor_state /right/rotor_state /o', '/p', {}, f'{WHICH_ROTOR}--rotor-topic'),
-        ('/b /a', '/p', {}, 'which topic is output_state? /a, /b; name it with --output-topic'),
+        ('/b /a', '/p', {}, 'which topic is rotor_state? /a, /b; name it with --rotor-topic'),
         (BOTH, '/body_poses', {'rotor': '/motor'}, NO_MOTOR + LEFT),
         (BOTH, '/body_poses', {'rotor': '/rotor_stat'}, NEARLY + LEFT),
         (
@@ -122,14 +121,6 @@ def test_poses_are_not_looked_for_where_there_are_none():
     [
         ([], '/a', '', 'no topic /a in it; there are no topics'),
         (['/ab', '/c'], '/a', '', 'no topic /a in it; did you mean `/ab`? there are: /ab, /c'),
-        (['/grip', '/nod'], '/motor', '', 'no topic /motor in it; there are: /grip, /nod'),
-        # Without the slash, and with another letter.
-        (
-            ['/motor', '/moto/r'],
-            'motor',
-            '',
-            'no topic motor in it; did you mean `/motor`? there are: /moto/r, /motor',
-        ),
         (
             [f'/{k:02}' for k in range(12)],
             '/motor',
@@ -154,27 +145,20 @@ def test_topics_of_the_wanted_type_are_named_first():
     assert bag.type_of('/wheel', JOINT_STATE) == bag.type_of('/wheel') == JOINT_STATE
 
 
-def test_many_long_names_take_no_time():
-    bag = described(dict.fromkeys((f'/{"motor" * 50}{k}' for k in range(100_000)), 'x/msg/X'))
-    started = time.process_time()
-    with pytest.raises(BagError, match=r'and 99990 more$'):
-        bag.type_of('/' + 'motor' * 50)
-    assert time.process_time() - started < 5.0
-
-
 @pytest.mark.parametrize(
     ('joint_states', 'given', 'found'),
     [
-        ('/rotor_state', None, None),
-        ('/rotor_state /arm/output_encoder', None, '/arm/output_encoder'),
-        ('/rotor_state /shaft', '/shaft', '/shaft'),
+        ('/arm/rotor_state', None, ''),
+        ('/arm/rotor_state /output_encoder', None, '/output_encoder'),
+        ('/arm/rotor_state /output_encoder /arm/output_encoder', None, '/arm/output_encoder'),
+        ('/arm/rotor_state /shaft', '/shaft', '/shaft'),
     ],
 )
 def test_the_encoder_at_the_output_is_found_by_name(joint_states, given, found):
-    assert find_encoder_topic(bag_with(joint_states), given) == found
+    assert find_encoder_topic(bag_with(joint_states), '/arm/rotor_state', given) == found
 
 
 def test_which_encoder_is_meant_is_asked():
     bag = bag_with('/b/output_encoder /a/output_encoder')
     with pytest.raises(BagError, match='which topic is output_encoder'):
-        find_encoder_topic(bag)
+        find_encoder_topic(bag, '/rotor_state')

@@ -65,5 +65,5 @@ def test_what_is_before_the_damage_is_summarised(tmp_path):
     path = tmp_path / 'cut.mcap'
     path.write_bytes(data[: len(data) // 2])
     found = summary(path)
-    assert 0 < found.messages < 9000
+    assert 0 < found.topics[0].messages < 3000
     assert found.damage.startswith(str(path))

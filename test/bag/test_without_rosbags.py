@@ -35,7 +35,6 @@ for module in pkgutil.walk_packages(gear_kinematics.__path__, 'gear_kinematics.'
 """
 NEED_ROSBAGS = (
     'bag.ros1',
-    'bag.storage_writers',
     'bag.writing',
 )
 GEARKIN = """

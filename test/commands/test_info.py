@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """gearkin info as a user runs it."""
 
-import re
 import shutil
 
 import pytest
@@ -47,7 +46,7 @@ def test_every_bag_is_a_line_even_if_others_are_unreadable(tmp_path, monkeypatch
     ]
     assert '2 gaps on /rotor_state, up to 0.302 s' in told.out
     nowhere, garbage = told.err.splitlines()
-    assert nowhere.startswith('gearkin: nowhere: no bag there; there are: ')
+    assert nowhere == 'gearkin: nowhere: no bag there'
     assert garbage == 'gearkin: garbage.mcap: not a bag of a known kind'
     assert f'gearkin: {refusal("info", "-q", ".")}' == garbage
 
@@ -56,12 +55,9 @@ def test_every_topic_is_listed_on_demand(capsys):
     assert main(['info', '-v', str(CONSTANT)]) == 0
     line, *facts = capsys.readouterr().out.splitlines()
     assert line.startswith(f'{CONSTANT}: 3.00 s')
-    row = 'part: output; messages: 3000; rate: 1000 Hz; gaps: 0; joints: output_shaft; type: '
-    assert f'{CONSTANT}: /output_state: {row}JointState' in facts
-    with Terminal() as terminal:
-        gearkin('info', '-v', CONSTANT, stdout=terminal.other, env=ENVIRONMENT)
-        shown = re.sub(r'\x1b\[[\d;]*m', '', terminal.text())
-    assert re.search(r'^/body_poses +poses +3000 +1000 Hz', shown, re.MULTILINE)
+    kind = 'sensor_msgs/msg/JointState'
+    row = f'output /output_state (joint output_shaft) {kind}, 1000 Hz, 3000 messages'
+    assert row in map(str.strip, facts)
 
 
 @pytest.mark.slow

@@ -2,6 +2,7 @@
 """Bags one by one, and in processes that are killed."""
 
 import json
+import multiprocessing
 import os
 import re
 import shutil
@@ -23,7 +24,7 @@ from blocked_bags import (
 from shipped_bags import ROTOR, TYPES, write_bag
 
 from gear_kinematics.bag import Bag, BagError
-from gear_kinematics.bag.fleet import on_this_machine
+from gear_kinematics.bag.fleet import Work, on_this_machine
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.task import Task
@@ -220,3 +221,12 @@ def test_a_bag_whose_process_dies_again_and_again_is_lost_and_no_other(place, tm
     assert errors == f'gearkin: {lost}: its worker died repeatedly\n'
     assert killed == 3
     check_reports(report, bags, lost)
+
+
+def test_processes_end_even_within_a_report():
+    """One whose report is not taken is in the midst of sending it."""
+    others = multiprocessing.active_children()
+    reports = on_this_machine(Work(bytes, None), [2**24] * 3, 2)
+    assert next(reports) == (2**24, bytes(2**24))
+    reports.close()
+    wait_until(lambda: multiprocessing.active_children() == others, 'the end of the processes')

@@ -47,7 +47,7 @@ def read_positions(
     if not is_csv(path):
         with Bag(path) as bag:
             topics = [find_rotor_topic(bag, sources.rotor_topic, joints[0] or '')]
-            encoder = find_encoder_topic(bag, sources.encoder_topic)
+            encoder = find_encoder_topic(bag, topics[0], sources.encoder_topic)
             encoder = encoder or other_topic(bag, topics[0], joints[1] or '')
             if not encoder:
                 raise RecordingError(f'{path}: {missing_encoder(bag)}')
