@@ -1,7 +1,6 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The inputs of the node: subscriptions to drivers, and the messages lost on the way."""
 
-import time
 from collections.abc import Callable
 from typing import Any
 
@@ -35,7 +34,6 @@ class DriverInput:
         self._topic = topic
         self._on_message = on_message
         self._monitor = monitor
-        self._silent = False
         self._subscribe()
 
     def _subscribe(self) -> None:
@@ -81,21 +79,10 @@ class DriverInput:
         monitor.drivers = self.subscription.get_publisher_count()
         several = max(before, monitor.drivers) > 1
         # The first number of a driver in place of one that has ended says nothing.
-        replaced = not before and self._heard
+        replaced = before == 0 < monitor.drivers and self._heard
         if several:
-            losses.next.clear()
+            losses.next = None
         elif not replaced:
             monitor.lost += losses.missing
-        losses.missing, self._heard = 0, bool(losses.next)
+        losses.missing, self._heard = 0, losses.next is not None
         monitor.losses_known = losses.numbered and not several and not replaced
-
-    def log_silence(self) -> None:
-        """Log if the driver is silent or back since the report before the last one."""
-        if self._monitor.silent == self._silent:
-            return
-        self._silent = self._monitor.silent
-        if self._silent and self._monitor.last_input is not None:
-            age = time.monotonic() - self._monitor.last_input
-            self._node.get_logger().warning(f'no {self._topic} for {age:.1f} s')
-        else:
-            self._node.get_logger().info(f'{self._topic} is back')

@@ -111,7 +111,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             ),
         )
         self._missing_publisher = MissingPublisher(self)
-        known = f'bodies unknown: no {", ".join(topics.BODY_TOPICS)}'
+        known = 'bodies unknown'
         if isinstance(self._gear, Mechanism):
             known = f'ring {self._gear.ring_teeth}, satellite {self._gear.satellite_teeth} teeth'
         joint = parameters.rotor_joint
@@ -172,17 +172,13 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _configure(self, changed: Collection[Parameter] = ()) -> None:
         """Apply what was prepared, at the start and after every change."""
-        before = self._corrector
         self._settings, self._messages, self._corrector = self._prepared
         self._input.parameters = self._settings
-        if not self._encoder.fits(self._settings):
+        if changed:
             # Discards earlier errors.
             self._encoder = OutputEncoder(self._settings, self._reference)
-            if self._corrector:
-                self._corrector.reset()
-        elif self._corrector is not before:
-            self._encoder.window.clear()
         if self._corrector:
+            self._corrector.reset()
             self._corrector.max_acceleration = self._settings.max_rotor_acceleration
         if self._display:
             self._display.update(self._settings)
@@ -252,8 +248,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._monitor.encoder_heard = bool(errors) and not self._encoder_monitor.silent
         rotor = self._monitor.report(self._input, now, self._reference)
         reports = {'rotor input': rotor, 'transmission error': errors}
-        for driver in self._drivers:
-            driver.log_silence()
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 

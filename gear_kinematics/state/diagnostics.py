@@ -72,8 +72,6 @@ class DriverMonitor:
     """Whether they could be counted since the last report."""
     last_input: float | None = None
     """Time of the last message, valid or not."""
-    silent: bool = False
-    """Whether there was none for too long before the last report, after the first."""
     _lost: int = 0
     _rejected: Counter[str] = field(default_factory=Counter)
 
@@ -134,7 +132,6 @@ class InputMonitor(DriverMonitor):
 
         age = now - (self.started if self.last_input is None else self.last_input)
         overdue = age > rotor_input.parameters.input_timeout
-        self.silent = overdue and self.last_input is not None
         errors: list[Fault] = []
         if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
@@ -182,6 +179,8 @@ class InputMonitor(DriverMonitor):
 class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
 
+    silent: bool = False
+    """Whether no message came for too long before the last report."""
     _compared: int = 0
 
     def report(

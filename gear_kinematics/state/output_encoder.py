@@ -15,18 +15,6 @@ from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
 
-_UNRELATED = dict.fromkeys(
-    [
-        'input_timeout',
-        'transmission_error_limit',
-        'output_joint',
-        'frame_prefix',
-        'home_angle',
-        'calibration',
-    ]
-)
-"""The parameters that can change without any effect on the measured errors."""
-
 
 def measured_angle(parameters: NodeParameters, position: Any) -> Any:
     """The measured output angle at a position of its encoder, rad; floats or arrays."""
@@ -53,10 +41,6 @@ class OutputEncoder:
         """Counts the measured angles that were compared, and those that were not by cause."""
         self._reference = reference if parameters.absolute else None
         self._segment: int | None = None
-
-    def fits(self, parameters: NodeParameters) -> bool:
-        """Whether the errors so far are also those with other parameters."""
-        return parameters.values() | _UNRELATED == self._parameters.values() | _UNRELATED
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
         """Process the next message; returns the errors that are known now, in order.

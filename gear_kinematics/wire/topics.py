@@ -54,9 +54,6 @@ STATE_TOPICS: Mapping[str, str] = {
 }
 """The topics of the state and their types."""
 
-BODY_TOPICS = BODY_POSES, JOINT_STATES, ROBOT_DESCRIPTION, MARKERS
-"""The topics about the bodies of a mechanism, which need more than its ratio."""
-
 CORRECTED_TOPICS: Mapping[str, str] = {
     name: topic.type for name, topic in TOPICS.items() if topic.part == 'correction'
 }

@@ -31,8 +31,8 @@ FOREIGN = [
     serialize_message(message)
     for message in (String(data='rotor'), PoseArray(poses=[Pose()] * 4), Imu())
 ]
-MUTATIONS, BATCH = 15_000, 20  # hostile payloads
-COUNT = 100_000  # of them into the node
+MUTATIONS, BATCH = 6_000, 20  # hostile payloads
+COUNT = 40_000  # of them into the node
 VALID_EVERY, WAIT_EVERY = 20, 500  # of them; the node's queue holds four times as many
 STEP = SECOND // 1000
 PROBES = START // 2  # ns

@@ -8,7 +8,6 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import (
     DurabilityPolicy,
-    HistoryPolicy,
     LivelinessPolicy,
     QoSProfile,
     ReliabilityPolicy,
@@ -53,10 +52,7 @@ def subscription(node, topic='in', **policies):
     [
         ({}, {}, []),
         ({}, BEST_EFFORT, []),
-        ({}, {'history': HistoryPolicy.KEEP_ALL}, []),
         (LATCHED, LATCHED, []),
-        ({}, LATCHED, ['DURABILITY']),
-        (BEST_EFFORT, {}, ['RELIABILITY']),
         (BEST_EFFORT, LATCHED, ['RELIABILITY', 'DURABILITY']),
         ({}, {'deadline': SECOND}, ['DEADLINE']),
         ({}, {'liveliness': LivelinessPolicy.MANUAL_BY_TOPIC}, ['LIVELINESS']),

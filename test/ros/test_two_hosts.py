@@ -37,7 +37,7 @@ LINES = {
 # The other one goes on with the driver's next heartbeat, whose period in Fast DDS is 3 s.
 PROMPT = ('best_effort', 'reliable')
 LOSS = 2  # % of the packets, in each direction
-CUTS = (10, 20, 40, 80, 160)  # messages that are sent while the cable is out
+CUTS = (20, 160)  # messages that are sent while the cable is out
 # rad/s. Half a turn takes 8 messages: so many are not lost in a row but by a pulled cable.
 MAX_ROTOR_SPEED = 40.0
 

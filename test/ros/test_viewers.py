@@ -168,8 +168,8 @@ def described(context, file: str, function: str) -> list:
     return runpy.run_path(str(ROOT / 'launch' / file))[function](context)
 
 
-def parameters_of(context, node) -> tuple[dict | Path, ...]:
-    """The parameters and parameter files that a node is started with."""
+def parameters_of(context, node) -> tuple[dict, ...]:
+    """The parameters that a node is started with."""
     launch_ros = pytest.importorskip('launch_ros')
     return launch_ros.utilities.evaluate_parameters(context, node._Node__parameters)
 
@@ -192,35 +192,3 @@ def test_viewers_show_the_node_of_their_namespace(launched, side):
     assert (frequency, type(frequency)) == (100.0, float)  # it refuses an integer
     assert fixed_frame(launched, rviz) == f'{side}_stator'
     assert not rviz.condition.evaluate(launched)
-
-
-@pytest.mark.parametrize(
-    ('there', 'missing'), [([], 'robot_state_publisher'), (['robot_state_publisher'], 'rviz2')]
-)
-def test_missing_viewer_ends_the_launch_before_the_node_starts(
-    launched, there, missing, tmp_path, monkeypatch
-):
-    index = tmp_path / 'share/ament_index/resource_index/packages'
-    index.mkdir(parents=True)
-    for package in there:
-        (index / package).touch()
-    monkeypatch.setenv('AMENT_PREFIX_PATH', str(tmp_path))
-    launched.launch_configurations['rviz'] = 'true'
-    with pytest.raises(LookupError, match=missing):
-        described(launched, 'view.launch.py', 'check')
-    entities = runpy.run_path(str(ROOT / 'launch/view.launch.py'))['generate_launch_description']()
-    kinds = [type(entity).__name__ for entity in entities.entities]
-    assert kinds.index('OpaqueFunction') < kinds.index('IncludeLaunchDescription')
-
-
-def test_prefix_that_was_given_prevails_over_that_of_the_file(launched):
-    launched.launch_configurations['frame_prefix'] = 'my_'
-    _, rviz = described(launched, 'view.launch.py', 'start_viewers')
-    assert fixed_frame(launched, rviz) == 'my_stator'
-    [node] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
-    _, given = parameters_of(launched, node)
-    assert given == {'frame_prefix': 'my_'}
-    # launch writes it to a block of the node's full name, or to /** if it does not know that.
-    node._perform_substitutions(launched)
-    assert node.is_node_name_fully_specified()
-    assert node.node_name == '/left/gear_state_publisher'

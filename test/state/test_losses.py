@@ -12,8 +12,6 @@ from gear_kinematics.state.losses import Losses
         ((1, 2, 3), 0),
         ((5, 6, 9, 10), 2),
         ((5, 6, 1, 2, 4), 1),  # another driver in its place
-        ((900, 1, 901, 2, 902), 0),  # another driver for a short time
-        ((900, 1, 903, 4), 4),
         ((7, None, 9), 1),
     ],
 )

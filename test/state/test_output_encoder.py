@@ -89,20 +89,6 @@ def test_nothing_is_compared_across_a_gap(bench):
     assert bench.encoder.comparison.unmatched['gap of the ideal angle'] == 1
 
 
-@pytest.mark.parametrize(
-    ('change', 'fits'),
-    [
-        ({'transmission_error_limit': 1.0, 'frame_prefix': 'left_', 'home_angle': 2.0}, True),
-        ({'rotor_zero': 0.5}, False),
-        ({'max_rotor_speed': 1.0}, False),
-        ({'output_encoder_direction': -1}, False),
-        ({'transmission_error_window': 1.0}, False),
-    ],
-)
-def test_errors_fit_parameters_that_measure_the_same(bench, change, fits):
-    assert bench.encoder.fits(replace(SETTINGS, **change)) is fits
-
-
 def test_joint_is_looked_up_by_its_name():
     bench = Bench(replace(SETTINGS, output_encoder_joint='shaft'))
     with pytest.raises(RejectedInputError, match='joint missing'):
@@ -112,15 +98,6 @@ def test_joint_is_looked_up_by_its_name():
     assert sample.error == pytest.approx(0.25)
     assert bench.encoder.received == 2
     assert bench.encoder.rejected == {'joint missing': 1}
-
-
-def test_window_is_reset_when_the_clock_is_set_back(bench):
-    for start in (START, START - 50 * SECOND):
-        for k in range(5):
-            bench.measure(start + k * MS, 0.125 if start == START else 0.375)
-            bench.turn(start + k * MS, 0.0)
-    found = bench.encoder.window.statistics()
-    assert (found.mean, found.peak_to_peak) == (pytest.approx(0.375), 0.0)
 
 
 # Diagnostics.
@@ -177,23 +154,6 @@ def test_encoder_whose_stamps_are_not_the_rotors_is_a_warning(bench):
     report = bench.report()
     assert (report.level, report.message) == (WARN, 'no rotor angle of the same time')
     assert report.values['not compared: no ideal angle before'] == '3'
-
-
-def test_rejects_and_losses_are_a_warning_in_the_next_report_alone(bench):
-    swing(bench, 0.001)
-    with pytest.raises(RejectedInputError):
-        bench.measure(START + 500 * MS, math.nan)
-    bench.monitor.lost += 2
-    report = bench.report()
-    assert report.level == WARN
-    assert report.message == 'rejected: position not finite 1; lost 2'
-    assert report.values['rejected: position not finite'] == '1'
-    assert report.values['lost messages'] == '2'
-    bench.measure(START + 450 * MS, 0.0)
-    bench.turn(START + 450 * MS, 0.0)
-    report = bench.report()
-    assert (report.level, report.message) == (OK, 'ok')
-    assert report.values['rejected: position not finite'] == '1'
 
 
 @pytest.mark.parametrize(('explained', 'fits'), [(0.4, False), (0.999, True)])

@@ -57,23 +57,13 @@ def rotor_input() -> RotorInput:
     return RotorInput(SETTINGS)
 
 
-@pytest.mark.parametrize(
-    ('cause', 'data'),
-    [
-        ('not a JointState', rotor_bytes(1, position=[1.0])[:-1]),
-        ('joint missing', rotor_bytes(1, ['Rotor', 'rotor ', 'wheel'], [1.0] * 3)),
-        ('position missing', rotor_bytes(1, ['a', 'rotor'], [1.0])),
-        ('position not finite', rotor_bytes(1, position=[math.nan])),
-        ('position too large', rotor_bytes(1, position=[math.nextafter(LARGEST, math.inf)])),
-    ],
-)
-def test_message_without_position_is_rejected_and_counted(rotor_input, cause, data):
+def test_message_without_position_is_rejected_and_counted(rotor_input):
     """`test_joint_reader.py` tests what has which cause."""
     first = accept(rotor_input, START, 1.0)
     for count in (1, 2):
-        with pytest.raises(RejectedInputError, match=rf'^{cause}$'):
-            rotor_input.accept(data, no_clock)
-        assert rotor_input.rejected == {cause: count}
+        with pytest.raises(RejectedInputError, match=r'^position not finite$'):
+            accept(rotor_input, START + 5, math.nan)
+        assert rotor_input.rejected == {'position not finite': count}
         assert rotor_input.mostly_rejected is (count == 2)
     assert rotor_input.received == 3
     assert rotor_input.last is first

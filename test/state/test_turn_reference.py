@@ -43,8 +43,7 @@ class Bench:
     def set(self, **changes) -> None:
         """Change parameters as the node does."""
         self.settings = self.rotor.parameters = replace(self.settings, **changes)
-        if not self.encoder.fits(self.settings):
-            self.encoder = OutputEncoder(self.settings, self.reference)
+        self.encoder = OutputEncoder(self.settings, self.reference)
 
     def turn(self, *outputs, error=0.0, step=MS, correction=None, measured=True):
         """Send the messages at output angles, rad, and return the last one of the node."""
