@@ -11,8 +11,8 @@ from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, i
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
     corrected_beside,
-    find_encoder_topic,
     find_corrected_topics,
+    find_encoder_topic,
     find_topics,
     only_joint,
 )

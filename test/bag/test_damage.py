@@ -204,16 +204,6 @@ def test_a_row_of_another_type_is_damage(recorded, tmp_path, change):
     assert str(error) == f'{path}: {cause}'
 
 
-@pytest.mark.parametrize('storage', ['mcap', 'sqlite3'])
-def test_a_message_that_grows_is_damage(recorded, tmp_path, storage, monkeypatch):
-    monkeypatch.setattr(Limits, 'spare_size', 2**20)
-    packed = [(topic, received, zstandard.compress(data)) for topic, received, data in recorded]
-    packed[700] = (*packed[700][:2], zstandard.compress(bytes(2**21)))
-    messages, error = read_up_to_damage(folder(tmp_path / 'bag', packed, storage))
-    assert messages == recorded[:700]
-    assert 'a compressed message is cut off or too large' in str(error)
-
-
 @pytest.mark.parametrize(
     ('topic', 'text', 'offset'),
     [

@@ -273,18 +273,3 @@ def test_a_crafted_bag_is_refused_before_it_takes_much(crafted, measure, name, c
     assert measured.memory <= MAX_MEMORY + EXPANSION * size_of(bag)
     assert measured.seconds <= MAX_TIME
     assert {path.name for path in tmp_path.iterdir()} == {'measured'}
-
-
-def test_of_very_many_topics_some_can_be_chosen(measure, tmp_path):
-    bag = wide_mcap(tmp_path / 'b.mcap')
-    given = ('compute', bag, tmp_path / 'out', '--rotor-topic', '/rotor_state')
-    refused = measure(tmp_path, *given)
-    assert refused.code == 2
-    assert 'more than 4000 topics and QoS profiles; --topics says' in refused.text
-    done = measure(tmp_path, *given, '--topics', '/7/rotor_state')
-    assert done.code == 0, done.text
-    assert '3 outputs for 3 rotor states' in done.text
-    assert 'and 65521 more' in done.text
-    for measured in (refused, done):
-        assert measured.memory <= MAX_MEMORY
-        assert measured.seconds <= MAX_TIME

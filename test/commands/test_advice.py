@@ -140,8 +140,6 @@ def test_the_joint_chooses_among_topics(tmp_path, capsys):
         ('replay a b', 'unrecognized arguments: b; see gearkin replay --help'),
         ('urdf --config my.yaml', 'did you mean `module`?; there are: ring_teeth, '),
         ('urdf --config two.yaml --node /lift/x', 'only of /left/x, /right/x; did '),
-        ('compute moto out', 'moto: no such file or folder; did you mean `motor`? there '),
-        ('validate moto', 'moto: no bag there; did you mean `motor`? there are: motor'),
         ('plot scheme a.png --joint m', '--joint needs --bag'),
     ],
 )

@@ -127,11 +127,11 @@ def test_a_calibration_is_replaced(recording, tmp_path):
     assert Calibration.load(target).gear_ratio == -19
 
 
-@pytest.mark.parametrize(('ratio', 'named'), [('7.29', r'-19\.0'), ('19', 'counts backwards')])
+@pytest.mark.parametrize(('ratio', 'named'), [('7.29', 'is -19 ±'), ('19', 'counts backwards')])
 def test_a_wrong_ratio_gets_one_line_with_the_right_one(recording, ratio, named, tmp_path):
     target = tmp_path / 'c.yaml'
     line = refusal('calibrate', recording, '-o', target, '--ratio', ratio)
-    assert re.search(rf'the recorded ratio is -1.* ± .*{named}|{named}', line)
+    assert named in line
     assert '--ratio=-19' in line
     assert ('gearkin commission' in line) == (ratio != '19')
     assert not target.exists()

@@ -23,11 +23,9 @@ def work(tmp_path, monkeypatch):
     """A folder with recordings, in which gearkin runs."""
     shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'k1.mcap')
     shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'k2.mcap')
-    shutil.copy(SERVO / 'servo_point_to_point_0.mcap', tmp_path / 'unnamed')
     shutil.copytree(BAGS / 'driver_faults', tmp_path / 'bag')
     shutil.copy(RAMPS, tmp_path / 'before.csv')
     shutil.copy(RAMPS, tmp_path / 'samples.txt')
-    (tmp_path / 'packed').write_bytes(b'\x28\xb5\x2f\xfd' + bytes(20))  # zstd
     (tmp_path / 'link').symlink_to('k1.mcap')
     (tmp_path / 'my.yaml').write_text('/**: {ros__parameters: {module: 0.0005}}\n')
     (tmp_path / 'notes.md').write_text(NOTES)
@@ -41,8 +39,6 @@ def contents(folder: Path) -> dict[Path, bytes]:
 
 RECORDINGS = {
     'validate --junit k1.mcap k2.mcap': 'a recording',
-    'validate --json unnamed k2.mcap': 'a recording',
-    'validate --json packed k2.mcap': 'a recording',
     'validate --json link k2.mcap': 'a recording',
     'validate --json ./bag/metadata.yaml k2.mcap': 'a recording',
     'validate --json k2.mcap k2.mcap': 'what is read',
