@@ -40,8 +40,7 @@ class BagWriter:
     """Writes a rosbag2 folder, version 9; the same messages always give the same bytes.
 
     A context manager. The folder is renamed to `path` when it is complete; after an exception or
-    an interruption, nothing is left. That of a `live` recording is at `path` from the start, so
-    that its messages up to the last `flush` can be read whatever ends it.
+    an interruption, nothing is left.
     """
 
     def __init__(
@@ -49,8 +48,6 @@ class BagWriter:
         path: Path | str,
         storage: Literal['mcap', 'sqlite3'] = 'mcap',
         compression: Literal['none', 'zstd'] = 'none',
-        *,
-        live: bool = False,
     ) -> None:
         """Define the recording; `__enter__` opens it.
 
@@ -58,13 +55,11 @@ class BagWriter:
             path: the folder to create, in an existing one.
             storage: format of the files.
             compression: zstd compresses the chunks of an mcap file, or a whole sqlite3 file.
-            live: whether it is written while it happens, which needs mcap.
         """
         self.path = Path(path)
         self._storage = StoragePlugin[storage.upper()]
         modes = {'mcap': CompressionMode.STORAGE, 'sqlite3': CompressionMode.FILE}
         self._compression = modes[storage] if compression == 'zstd' else CompressionMode.NONE
-        self._live = live
         self._topics: dict[str, Connection] = {}
         self._entries = 0
 
@@ -79,20 +74,15 @@ class BagWriter:
                 raise ValueError('exists already')
             # rosbags names the file after its folder; rosbag2 finds only numbered files when it
             # reindexes a bag.
-            self._partial = self.path
-            if not self._live:
-                folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
-                # Before there is a folder, so that no interruption leaves it behind.
-                stack.callback(shutil.rmtree, folder, ignore_errors=True)
-                folder.mkdir(mode=0o700)
-                self._partial = folder / f'{self.path.name}_0'
+            folder = self.path.parent / f'.{self.path.name}.{secrets.token_hex(4)}'
+            # Before there is a folder, so that no interruption leaves it behind.
+            stack.callback(shutil.rmtree, folder, ignore_errors=True)
+            folder.mkdir(mode=0o700)
+            self._partial = folder / f'{self.path.name}_0'
             self._writer = Writer(self._partial, version=9, storage_plugin=self._storage)
             self._writer.set_compression(self._compression, CompressionFormat.ZSTD)
             self._writer.open()
             self._file = cast('McapWriter | Sqlite3Writer', self._writer.storage)
-            if self._live:
-                path = self._file.path
-                self._file.path = path.rename(path.with_stem(f'{path.stem}_0'))
             self._folder = stack.pop_all()
         return self
 
@@ -171,18 +161,6 @@ class BagWriter:
         with bag_errors(self.path):
             for topic, received, data in messages:
                 self._writer.write(self._topics[topic], received, data)
-
-    def flush(self) -> None:
-        """Write all messages of a live recording so far to its file.
-
-        Raises:
-            BagError: if they cannot be written.
-        """
-        file = cast('McapWriter', self._file)
-        with bag_errors(self.path):
-            if file.chunk.msgs:
-                file.close_chunk()
-            file.bio.flush()
 
     def _add(self, topic: Topic, qos: Sequence[Qos]) -> None:
         if topic.name in self._topics:

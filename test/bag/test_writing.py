@@ -2,8 +2,6 @@
 """Written bags: complete or nothing, read by others, with the descriptions of copied topics."""
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import mcap.reader
@@ -13,7 +11,7 @@ from gear_recordings import old_recording
 from made_bags import JAZZY, definition_of, read, ros1_bag
 from rosbags import rosbag2
 from rosbags.rosbag2.metadata import parse_qos
-from shipped_bags import BAGS, TYPES, read_bag, write_bag
+from shipped_bags import TYPES, read_bag, write_bag
 
 from gear_kinematics.bag import Bag, BagError, TopicError
 from gear_kinematics.bag.writing import BagWriter
@@ -90,14 +88,13 @@ def test_a_bag_that_cannot_be_finished_leaves_nothing(tmp_path, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize('live', [False, True])
-def test_an_existing_target_is_left_alone(tmp_path, live):
+def test_an_existing_target_is_left_alone(tmp_path):
     (tmp_path / 'folder').mkdir()
     (tmp_path / 'file').write_text('kept')
     (tmp_path / 'link').symlink_to('nowhere')
     for name in ('folder', 'file', 'link'):
         with pytest.raises(BagError, match=f'{name}: exists already'):
-            BagWriter(tmp_path / name, live=live).__enter__()
+            BagWriter(tmp_path / name).__enter__()
     assert {path.name for path in tmp_path.iterdir()} == {'folder', 'file', 'link'}
     assert (tmp_path / 'file').read_text() == 'kept'
 
@@ -239,62 +236,3 @@ def test_topics_of_ros1_are_copied_as_ros2(recorded, tmp_path):
         assert {c.topic: c.digest for c in reader.connections} == hashes
         assert all('uint32 seq' not in c.msgdef.data for c in reader.connections)
     assert read_bag(tmp_path / 'copy') == recorded
-
-
-# Recordings that are written while they happen.
-
-RECORD_AND_DIE = """
-import os, sys
-from gear_kinematics.bag import Bag
-from gear_kinematics.bag.writing import BagWriter
-with Bag(sys.argv[1]) as source, BagWriter(sys.argv[2], live=True) as bag:
-    messages = [m for m in source.messages(list(source.topics))]
-    for topic in source.topics:
-        bag.add_topic(topic, source.type_of(topic))
-    for start in range(0, 900, 30):
-        bag.write_all(messages[start:start + 30])
-        if start % 300 == 0:
-            bag.flush()
-    os.kill(os.getpid(), 9)
-"""
-
-
-def write(bag: BagWriter, messages) -> None:
-    for topic, kind in TYPES.items():
-        bag.add_topic(topic, kind)
-    bag.write_all(messages)
-
-
-def test_what_was_flushed_is_read_after_the_process_was_killed(recorded, tmp_path):
-    path = tmp_path / 'killed'
-    command = [sys.executable, '-c', RECORD_AND_DIE, BAGS / 'servo_point_to_point', path]
-    assert subprocess.run(command, check=False).returncode == -9
-    assert not (path / 'metadata.yaml').exists()
-    assert read(path) == recorded[:630]
-
-
-def test_a_finished_live_recording_is_read_by_others(recorded, tmp_path):
-    path = tmp_path / 'live'
-    with BagWriter(path, live=True) as bag:
-        write(bag, recorded[:500])
-        bag.flush()
-        bag.flush()  # nothing new
-        bag.write_all(recorded[500:])
-    assert contents(path).keys() == {'live_0.mcap', 'metadata.yaml'}
-    assert read(path) == read_bag(path) == recorded
-    with (path / 'live_0.mcap').open('rb') as file:
-        summary = mcap.reader.make_reader(file).get_summary()
-    assert summary.statistics.message_count == len(recorded)
-    assert {channel.topic for channel in summary.channels.values()} == set(TYPES)
-
-
-def test_a_full_disk_is_reported(recorded, tmp_path, monkeypatch):
-    def full():
-        raise OSError(28, 'No space left on device')
-
-    with BagWriter(tmp_path / 'live', live=True) as bag:
-        write(bag, recorded)
-        with monkeypatch.context() as changed:
-            changed.setattr(bag._file, 'close_chunk', full)
-            with pytest.raises(BagError, match='live: No space left on device'):
-                bag.flush()
