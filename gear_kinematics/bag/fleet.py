@@ -9,6 +9,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -81,6 +82,7 @@ def _started(run: Callable[[Task], Report]) -> _Worker:
     # Forking would copy the threads of a progress bar in an arbitrary state.
     context = multiprocessing.get_context('spawn')
     connection, other_side = context.Pipe()
+    resource_tracker.ensure_running()  # which unblocks SIGINT when it starts
     with other_side:
         process = context.Process(target=_answer, args=(other_side, run), daemon=True)
         with _guarded():

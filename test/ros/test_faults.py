@@ -295,10 +295,11 @@ def test_what_was_received_before_the_signal_is_answered(tmp_path):
         until = time.monotonic() + PATIENCE
         peer.wait_until(lambda: heard(peer) >= received or time.monotonic() > until, 'the last')
         # Whatever else the node has sent is here already.
-        before, taken = -1, 0
-        while taken > before:
-            before = taken
+        before, total = -1, 0
+        while total > before:
+            before = total
             for _ in range(20):
                 peer.receive()
-            taken = max(len(peer.received[name]) for name in STATES)
+            total = sum(len(peer.received[name]) for name in STATES)
+        taken = max(len(peer.received[name]) for name in STATES)
         assert_answered(peer.received, sent[: max(taken, received)])
