@@ -82,7 +82,6 @@ def _started(run: Callable[[Task], Report]) -> _Worker:
     # Forking would copy the threads of a progress bar in an arbitrary state.
     context = multiprocessing.get_context('spawn')
     connection, other_side = context.Pipe()
-    resource_tracker.ensure_running()  # which unblocks SIGINT when it starts
     with other_side:
         process = context.Process(target=_answer, args=(other_side, run), daemon=True)
         with _guarded():
@@ -111,10 +110,11 @@ def _guarded() -> Iterator[None]:
     They are run with `python -c`, and import nothing from the current folder.
     """
     name = 'PYTHONSAFEPATH'
-    safe = os.environ.get(name, '')
-    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    safe, blocked = os.environ.get(name, ''), signal.pthread_sigmask(signal.SIG_BLOCK, ())
     os.environ[name] = '1'
     try:
+        resource_tracker.ensure_running()  # a process too, which unblocks SIGINT when it starts
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         yield
     finally:
         os.environ[name] = safe  # an empty value means unset
