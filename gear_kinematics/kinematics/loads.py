@@ -195,12 +195,8 @@ class LoadEquations:
 
     def rotor_torque(self, branches: Sequence[BranchLoads], output_acceleration: Any = 0.0) -> Any:
         """τ2, N·m: of the rotor's inertia and the branches."""
-        torque: Any = 0.0
-        if not self._massless:
-            torque = self._bodies.rotor_inertia * self._ratio * output_acceleration
-        for branch in branches:
-            torque = torque + branch.rotor_torque
-        return torque
+        inertial = self._bodies.rotor_inertia * self._ratio * output_acceleration
+        return sum((branch.rotor_torque for branch in branches), inertial)
 
 
 @np.errstate(invalid='ignore')  # values that are not finite give NaN
@@ -228,16 +224,13 @@ def solve(
         given = state.satellite_slide.shape[-1]
         raise ValueError(f'the state is of {given} branches, the mechanism has {count}')
     if torques.shape[-1:] != (count,):
-        raise ValueError(
-            f'branch_torques must have {count} torques, one of each branch, on their last axis, '
-            f'not the shape {torques.shape}'
-        )
+        fault = f'branch_torques must have {count} torques, one of each branch, on their last axis'
+        raise ValueError(f'{fault}, not the shape {torques.shape}')
     try:
         shape = np.broadcast_shapes(shape, torques.shape[:-1])
     except ValueError:
-        raise ValueError(
-            f'branch_torques of shape {torques.shape} do not fit a state of shape {shape}'
-        ) from None
+        fault = f'branch_torques of shape {torques.shape} do not fit a state of shape {shape}'
+        raise ValueError(fault) from None
     equations = LoadEquations(mechanism, bodies)
     arm = -np.sin(state.output_turn_angle), np.cos(state.output_turn_angle)
     branches = [
@@ -286,8 +279,7 @@ def share_torque(
 
     Args:
         mechanism: for the number of branches.
-        output_torque: Σ T, N·m, of all branches on the output shaft; any shape (...). At rest
-            it is i × rotor torque.
+        output_torque: Σ T, N·m, of all branches on the output shaft, (...); i × τ2 at rest.
         preload: of two branches.
         direction: 1 if ring gear A is turned against ring gear B in the positive direction, so
             that branch A pushes the output in the positive direction; -1 if in the negative one.
@@ -330,6 +322,15 @@ class TorqueSharing:
         torque_b, stand_off_b = side_b.contact(-load, xp)
         # No -0.0.
         return [(sign * torque_a + 0.0, stand_off_a), (0.0 - sign * torque_b, stand_off_b)]
+
+    def margin(self, torque: Any) -> Any:
+        """What the load leaves of T0 in one branch, N·m: below 0 out of mesh, NaN without T0."""
+        if self._sides is None:
+            return torque * math.nan
+        side_a, side_b = self._sides
+        load = -self._direction * torque
+        larger: Any = np.maximum if isinstance(torque, np.ndarray) else max
+        return side_a.preload - larger(side_a.share * load, -side_b.share * load)
 
 
 def _pair(points: Array, branch: int) -> Pair:

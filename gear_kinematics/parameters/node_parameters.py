@@ -6,15 +6,18 @@ The default values are in config/actuator.yaml alone.
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
+from operator import attrgetter
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Self, get_origin
 
 import yaml
 
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
+from gear_kinematics.kinematics.loads import Bodies
+from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
 from gear_kinematics.parameters.parameter import Parameter
@@ -27,6 +30,12 @@ NODE = 'gear_state_publisher'
 
 _EVERY_NODE = re.compile(r'use_sim_time|start_type_description_service|qos_overrides\..*')
 """Parameters that every node has and that are ignored here."""
+
+
+def _check_stiffness(values: Sequence[float]) -> None:
+    """Refuse a list of stiffnesses that are not one or two, or not finite or negative."""
+    if len(values) not in {1, 2} or not all(0.0 <= each < math.inf for each in values):
+        raise ValueError(f'one or two values of at least 0, not {[*values]}')
 
 
 def _parameter(*arguments: Any, **named: Any) -> Any:
@@ -110,6 +119,24 @@ class NodeParameters:
         "it is restored at the start; '': none",
         read_only=True,
     )
+    preload: float = _parameter(
+        'Torque T0 by which two branches are braced against each other, N·m at the output; '
+        'negative if branch A pushes the output in the negative direction; 0: unknown',
+        *(-1e6, 1e6),
+        read_only=True,
+    )
+    branch_stiffness: tuple[float, ...] = _parameter(
+        'Torsional stiffness of the branches, of both or of each, N·m/rad at the output; 0: rigid',
+        read_only=True,
+        items=float,
+        check=_check_stiffness,
+    )
+    shaft_stiffness: float = _parameter(
+        'Torsional stiffness of the shaft between both arms, N·m/rad; 0: rigid', 0.0, 1e12,
+        read_only=True,
+    )  # fmt: skip
+    loads: Bodies
+    """In ROS, each of its values is a parameter, such as `loads.rotor_inertia`."""
     frame_prefix: str = _parameter('Prefix of every frame id and joint name')
     markers_rate: float = _parameter(
         'Highest rate of markers, Hz; 0: none', 0.0, 1000.0, read_only=True
@@ -160,7 +187,9 @@ class NodeParameters:
         def value(name: str) -> Any:
             return values[name] if name in values else default_value(name)
 
-        given = {name: value(name) for name in PARAMETERS}
+        given = {name: value(name) for name in PARAMETERS if name not in LOADS_PARAMETERS}
+        loads = {name.removeprefix('loads.'): value(name) for name in LOADS_PARAMETERS}
+        given |= {'loads': Bodies(**loads), 'branch_stiffness': tuple(given['branch_stiffness'])}
         given['branches'] = tuple(
             Branch(name, value(f'{name}.cam_phase'), value(f'{name}.axial_position'))
             for name in given['branches']
@@ -169,8 +198,9 @@ class NodeParameters:
 
     def values(self) -> dict[str, Any]:
         """The values by their names in ROS."""
-        values = {name: getattr(self, name) for name in PARAMETERS}
+        values = {name: attrgetter(name)(self) for name in PARAMETERS}
         values['branches'] = [branch.name for branch in self.branches]
+        values['branch_stiffness'] = [*self.branch_stiffness]
         for branch in self.branches:
             values |= {f'{branch.name}.{key}': getattr(branch, key) for key in BRANCH_PARAMETERS}
         return values
@@ -201,6 +231,22 @@ class NodeParameters:
             raise MechanismError([f'{known}, not its bodies'])
         return Mechanism(self.ring_teeth, self.satellite_teeth, self.eccentricity, self.branches)
 
+    @property
+    def brace(self) -> Preload | None:
+        """How two branches are braced against each other; None if `preload` is 0.
+
+        Raises:
+            MechanismError: if there are not two branches, or all parts are rigid.
+        """
+        if not self.preload:
+            return None
+        braced(self.mechanism)
+        if not (any(self.branch_stiffness) or self.shaft_stiffness):
+            raise MechanismError(['a preload needs branch_stiffness or shaft_stiffness, N·m/rad'])
+        given = *(self.branch_stiffness * 2)[:2], self.shaft_stiffness
+        stiffness = Stiffness(*(each or math.inf for each in given))
+        return Preload.from_torque(stiffness, abs(self.preload))
+
     def urdf(self) -> str:
         """Write the URDF of the mechanism.
 
@@ -229,13 +275,25 @@ class NodeParameters:
         return self.output_encoder_reference == 'absolute'
 
 
+LOADS_PARAMETERS: dict[str, Parameter] = {
+    f'loads.{name}': Parameter(f'{what}; 0: none', 0.0, maximum, read_only=True)
+    for name, what, maximum in (
+        ('satellite_mass', 'Mass of each satellite, kg', 1e6),
+        ('satellite_inertia', 'Inertia of each satellite about its axis, kg·m²', 1e6),
+        ('coupling_mass', 'Mass of each Oldham coupling, kg', 1e6),
+        ('coupling_inertia', 'Inertia of each Oldham coupling about its axis, kg·m²', 1e6),
+        ('rotor_inertia', 'Inertia of the rotor about its axis, kg·m²', 1e6),
+        ('pressure_angle', 'Working pressure angle of the teeth, rad', 1.5),
+    )
+}
 PARAMETERS: Mapping[str, Parameter] = {
     each.name: replace(
         each.metadata['parameter'],
-        kind=list if each.name == 'branches' else each.type,  # of their names
+        kind=list if get_origin(each.type) is tuple else each.type,
     )
     for each in fields(NodeParameters)
-}
+    if 'parameter' in each.metadata
+} | LOADS_PARAMETERS
 """All parameters but those of the branches, by name."""
 BRANCH_PARAMETERS: Mapping[str, Parameter] = {
     'cam_phase': Parameter(

@@ -19,14 +19,17 @@ class Parameter:
     check: Callable[[Any], object] = bool
     """Raises ValueError for other faults."""
     kind: type = float
+    items: type = str
+    """Type of the items of a list."""
 
     def fault(self, name: str, value: Any) -> str | None:
         """Return the fault of a value, or None."""
         kind = type(value)
         if kind is not self.kind:
             return f'{name} must be of type {self.kind.__name__}, not {value!r}'
-        if isinstance(value, list) and not all(isinstance(item, str) for item in value):
-            return f'{name} must be a list of strings, not {value!r}'
+        if isinstance(value, list) and not all(isinstance(item, self.items) for item in value):
+            what = 'strings' if self.items is str else 'numbers with a decimal point'
+            return f'{name} must be a list of {what}, not {value!r}'
         if self.minimum is not None and self.maximum is not None:
             inside = self.minimum <= value <= self.maximum  # NaN is not
             if not inside or (self.step and (value - self.minimum) % self.step):

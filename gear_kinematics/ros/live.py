@@ -28,7 +28,7 @@ from rclpy.signals import SignalHandlerOptions
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.bag import Bag, DamagedBagError, Message, ReportProgress
-from gear_kinematics.bag.roles import Topics, corrected_beside
+from gear_kinematics.bag.roles import Topics, beside
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NodeParameters
@@ -38,7 +38,7 @@ from gear_kinematics.ros.workarounds.shutdown import shut_down
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire.cdr import SECOND, STAMP_BYTES, JointStateTemplate
 from gear_kinematics.wire.joint_reader import RejectedInputError
-from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_ENCODER
+from gear_kinematics.wire.topics import CORRECTED_TOPICS, JOINT_STATE, OUTPUT_ENCODER
 
 POLL = 0.1
 """Greatest delay of the response to a signal, s."""
@@ -316,7 +316,7 @@ def outputs_of(parameters: NodeParameters) -> Collection[str]:
     if isinstance(parameters.gear, Mechanism):
         outputs.append(_TOPICS.poses)
     if parameters.calibration:
-        outputs += corrected_beside().values()
+        outputs += beside(CORRECTED_TOPICS).values()
     return outputs
 
 

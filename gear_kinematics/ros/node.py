@@ -17,12 +17,12 @@ from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.serialization import serialize_message
-from sensor_msgs.msg import JointState
+from sensor_msgs.msg import JointState, MultiDOFJointState
 
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
-from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics import Mechanism, RotorSample
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
@@ -34,14 +34,20 @@ from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
+from gear_kinematics.state.loads import Loads
 from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.preload_monitor import PreloadMonitor
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire import topics
 from gear_kinematics.wire.joint_reader import RejectedInputError
 
-_MESSAGE_TYPES = {topics.JOINT_STATE: JointState, topics.POSE_ARRAY: PoseArray}
+_MESSAGE_TYPES = {
+    topics.JOINT_STATE: JointState,
+    topics.POSE_ARRAY: PoseArray,
+    topics.WRENCHES: MultiDOFJointState,
+}
 _WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
 
@@ -79,6 +85,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._encoder = OutputEncoder(parameters, self._reference)
         self._corrector: Corrector | None = None
         self._display: Display | None = None
+        brace = parameters.brace
+        self._loads = Loads(parameters) if isinstance(self._gear, Mechanism) else None
+        self._preload = None
+        if self._loads and brace:
+            self._preload = PreloadMonitor(self._loads, brace.torque)
         self._prepare([('calibration', parameters.calibration)])
         self._configure()
         self._monitor = InputMonitor(started=time.monotonic())
@@ -90,6 +101,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             *self._messages.topics,
             *topics.CORRECTED_TOPICS,
             topics.TRANSMISSION_ERROR,
+            *(topics.LOAD_TOPICS if self._loads else ()),
         ):
             message_type = _MESSAGE_TYPES[topics.TOPICS[topic].type]
             self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
@@ -135,6 +147,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._subscribed_states = subscribed(self._messages.topics)
         self._subscribed_corrections = subscribed(topics.CORRECTED_TOPICS)
         self._subscribed_errors = subscribed([topics.TRANSMISSION_ERROR])
+        self._subscribed_loads = subscribed(topics.LOAD_TOPICS if self._loads else ())
 
     def _check_parameters(self, changed: list[Parameter]) -> SetParametersResult:
         """Refuse values that are invalid beyond type and range, which rclpy checks."""
@@ -174,6 +187,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         """Apply what was prepared, at the start and after every change."""
         self._settings, self._messages, self._corrector = self._prepared
         self._input.parameters = self._settings
+        if self._loads:
+            self._loads = Loads(self._settings)
         if changed:
             # Discards earlier errors.
             self._encoder = OutputEncoder(self._settings, self._reference)
@@ -201,6 +216,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             )
             wanted = self._subscribed_corrections
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
+        if self._preload or self._subscribed_loads:
+            self._follow_loads(sample)
         self._monitor.published += 1
         if self._encoder.received and (self._input.referenced or self._settings.absolute):
             self._publish_errors(self._encoder.follow(sample, correction))
@@ -212,7 +229,18 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         except RejectedInputError as rejection:
             self._warn_of(topics.OUTPUT_ENCODER, rejection)
 
+    def _follow_loads(self, sample: RotorSample) -> None:
+        if not self._loads:
+            return
+        wanted = self._subscribed_loads
+        loads = self._loads.follow(sample, self._input.segment, whole=bool(wanted))
+        if self._preload:
+            self._preload.follow(sample, loads)
+        self._outputs.send(self._loads.encode(sample.stamp, loads, wanted))
+
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
+        if self._preload:
+            self._preload.compare(samples)
         for topic in self._subscribed_errors:
             self._outputs.send((topic, self._messages.transmission_error(s)) for s in samples)
 
@@ -247,7 +275,8 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         errors = self._encoder_monitor.report(self._encoder, self._settings, now)
         self._monitor.encoder_heard = bool(errors) and not self._encoder_monitor.silent
         rotor = self._monitor.report(self._input, now, self._reference)
-        reports = {'rotor input': rotor, 'transmission error': errors}
+        preload = self._preload.report() if self._preload else None
+        reports = {'rotor input': rotor, 'transmission error': errors, 'preload': preload}
         message = serialize_message(diagnostic_array(self, reports))
         self._outputs.send([(topics.DIAGNOSTICS, message)])
 

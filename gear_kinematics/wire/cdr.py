@@ -1,7 +1,8 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The wire format (CDR) of sensor_msgs/JointState and geometry_msgs/PoseArray, without ROS.
+"""The wire format (CDR) of the messages with numbers, without ROS.
 
-Both start with a std_msgs/Header. CDR (XCDR version 1, as ROS 2 writes it): four bytes of
+sensor_msgs/JointState, geometry_msgs/PoseArray, sensor_msgs/MultiDOFJointState: each starts with a
+std_msgs/Header. CDR (XCDR version 1, as ROS 2 writes it): four bytes of
 encapsulation, the second of which gives the byte order; then the fields, each aligned to its size,
 counted from the end of the encapsulation.
 
@@ -103,6 +104,21 @@ def pose_array_layout(data: bytes) -> Layout:
     reader = _Reader(data)
     reader.string()  # frame_id
     reader.doubles(7 * reader.count(56))
+    return reader.layout()
+
+
+def wrenches_layout(data: bytes) -> Layout:
+    """Find the layout of a sensor_msgs/MultiDOFJointState; its arrays are those of the wrenches.
+
+    Raises:
+        MalformedMessageError: if the bytes are anything else.
+    """
+    reader = _Reader(data)
+    reader.string()  # frame_id
+    for _ in range(reader.count(4)):
+        reader.string()
+    for numbers in (7, 6, 6):  # transforms, twists, wrenches
+        reader.doubles(numbers * reader.count(8 * numbers))
     return reader.layout()
 
 
@@ -222,4 +238,22 @@ class PoseArrayTemplate(Template):
         super().__init__(frame_id)
         self._count(poses)
         self._doubles(7 * poses)
+        self._finish()
+
+
+class WrenchesTemplate(Template):
+    """A sensor_msgs/MultiDOFJointState with a wrench for each joint, and nothing else.
+
+    encode(stamp, numbers): per joint the force x y z, N, and the torque x y z, N·m.
+    """
+
+    def __init__(self, frame_id: str, names: Sequence[str]) -> None:
+        """Lay the message out for the joints of these names."""
+        super().__init__(frame_id)
+        self._count(len(names))
+        for name in names:
+            self._string(name)
+        for count in (0, 0, len(names)):  # transforms, twists, wrenches
+            self._count(count)
+        self._doubles(6 * len(names))
         self._finish()

@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple
 
 JOINT_STATE = 'sensor_msgs/msg/JointState'
 POSE_ARRAY = 'geometry_msgs/msg/PoseArray'
+WRENCHES = 'sensor_msgs/msg/MultiDOFJointState'
 
 ROTOR_STATE = 'rotor_state'
 OUTPUT_ENCODER = 'output_encoder'
@@ -18,6 +19,8 @@ JOINT_STATES = 'mechanism_joint_states'
 CORRECTED_STATE = 'corrected_state'
 CORRECTED_INTERVAL = 'corrected_interval'
 TRANSMISSION_ERROR = 'transmission_error'
+BRANCH_LOADS = 'branch_loads'
+JOINT_LOADS = 'joint_loads'
 ROBOT_DESCRIPTION = 'robot_description'
 MARKERS = 'markers'
 DIAGNOSTICS = '/diagnostics'
@@ -27,10 +30,10 @@ class NodeTopic(NamedTuple):
     """Type, part and publisher of a topic."""
 
     type: str
-    part: Literal['input', 'state', 'correction', 'comparison', 'display', 'health']
+    part: Literal['input', 'state', 'correction', 'load', 'comparison', 'display', 'health']
     """A `state` is published for every valid rotor_state, a `correction` too if there is a
-    calibration, a `comparison` if there is an output_encoder, and a `display` only for
-    subscribers."""
+    calibration, a `load` if it has an effort, a `comparison` if there is an output_encoder, and
+    a `display` only for subscribers."""
     publisher: Literal['driver', 'node']
 
 
@@ -43,6 +46,8 @@ TOPICS: Mapping[str, NodeTopic] = {
     CORRECTED_STATE: NodeTopic(JOINT_STATE, 'correction', 'node'),
     CORRECTED_INTERVAL: NodeTopic(JOINT_STATE, 'correction', 'node'),
     TRANSMISSION_ERROR: NodeTopic(JOINT_STATE, 'comparison', 'node'),
+    BRANCH_LOADS: NodeTopic(JOINT_STATE, 'load', 'node'),
+    JOINT_LOADS: NodeTopic(WRENCHES, 'load', 'node'),
     ROBOT_DESCRIPTION: NodeTopic('std_msgs/msg/String', 'display', 'node'),
     MARKERS: NodeTopic('visualization_msgs/msg/MarkerArray', 'display', 'node'),
     DIAGNOSTICS: NodeTopic('diagnostic_msgs/msg/DiagnosticArray', 'health', 'node'),
@@ -53,6 +58,11 @@ STATE_TOPICS: Mapping[str, str] = {
     name: topic.type for name, topic in TOPICS.items() if topic.part == 'state'
 }
 """The topics of the state and their types."""
+
+LOAD_TOPICS: Mapping[str, str] = {
+    name: topic.type for name, topic in TOPICS.items() if topic.part == 'load'
+}
+"""The topics of the loads and their types."""
 
 CORRECTED_TOPICS: Mapping[str, str] = {
     name: topic.type for name, topic in TOPICS.items() if topic.part == 'correction'

@@ -42,6 +42,15 @@ CONTRACT = {
     'max_rotor_speed': 650.0,
     'input_timeout': 1.0,
     'frame_prefix': '',
+    'preload': 0.0,
+    'branch_stiffness': [0.0],
+    'shaft_stiffness': 0.0,
+    'loads.satellite_mass': 0.0,
+    'loads.satellite_inertia': 0.0,
+    'loads.coupling_mass': 0.0,
+    'loads.coupling_inertia': 0.0,
+    'loads.rotor_inertia': 0.0,
+    'loads.pressure_angle': 0.0,
 }
 OUR_OWN = {
     'calibration': '',

@@ -42,7 +42,9 @@ TYPES = dict(zip(STATES, (JointState, PoseArray, JointState), strict=True))
 READ_ONLY = {
     'ring_teeth', 'satellite_teeth', 'eccentricity', 'module', 'branches', 'gear_ratio',
     'a.cam_phase', 'a.axial_position', 'b.cam_phase', 'b.axial_position', 'markers_rate',
-    'meshes', 'executor', 'home_file',
+    'meshes', 'executor', 'home_file', 'preload', 'branch_stiffness', 'shaft_stiffness',
+    'loads.satellite_mass', 'loads.satellite_inertia', 'loads.coupling_mass',
+    'loads.coupling_inertia', 'loads.rotor_inertia', 'loads.pressure_angle',
 }  # fmt: skip
 
 
@@ -56,8 +58,8 @@ def node(context):
 
 def test_declared_parameters_are_those_of_the_shipped_file(node):
     shipped = yaml.safe_load(default_config().read_text())['/**']['ros__parameters']
-    for branch in shipped['branches']:
-        shipped |= {f'{branch}.{name}': value for name, value in shipped.pop(branch).items()}
+    for group in (*shipped['branches'], 'loads'):
+        shipped |= {f'{group}.{name}': value for name, value in shipped.pop(group).items()}
     of_ros = 'qos_overrides', 'use_sim_time', 'start_type_description'
     own = {
         name: parameter.value

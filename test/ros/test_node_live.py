@@ -77,6 +77,8 @@ def test_topics_services_and_types_are_those_of_the_contract(shared):
         f'{namespace}/corrected_state': joint_state,
         f'{namespace}/corrected_interval': joint_state,
         f'{namespace}/transmission_error': joint_state,
+        f'{namespace}/branch_loads': joint_state,
+        f'{namespace}/joint_loads': ['sensor_msgs/msg/MultiDOFJointState'],
         '/diagnostics': ['diagnostic_msgs/msg/DiagnosticArray'],
     }
     subscribed = {

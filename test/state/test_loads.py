@@ -1,0 +1,137 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The loads at the node's samples: torque of the output, acceleration, messages, batches."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rclpy.serialization import deserialize_message
+from sensor_msgs.msg import JointState, MultiDOFJointState
+
+from gear_kinematics.kinematics import MechanismError, RotorSample, loads, solve, split_turns
+from gear_kinematics.kinematics.loads import Bodies
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.loads import Acceleration, Loads
+from gear_kinematics.state.rotor_input import RotorSamples
+
+DEFAULT = NodeParameters.load()
+BRACED = replace(DEFAULT, preload=3.0, branch_stiffness=(2000.0, 1000.0), shaft_stiffness=5000.0)
+HEAVY = replace(BRACED, loads=Bodies(0.05, 2e-5, 0.02, 3e-6, 4e-5, 0.4))
+MILLISECOND = 1_000_000
+
+
+def accelerated(count: int = 60, rate: float = 700.0) -> list[RotorSample]:
+    """A rotor that has 40 rad/s at first, and `rate` rad/s² from then on."""
+    time = np.arange(count) * 1e-3
+    angle = 40.0 * time + 0.5 * rate * time**2
+    return [
+        RotorSample(k * MILLISECOND, split_turns(angle[k]), 40.0 + rate * time[k], 0.2)
+        for k in range(count)
+    ]
+
+
+def as_batch(samples: list[RotorSample], segment: int = 0) -> RotorSamples:
+    rows = [
+        (s.stamp, *s.position, s.velocity, s.effort, k, s.stamp, segment)
+        for k, s in enumerate(samples)
+    ]
+    return RotorSamples.of(rows, np.zeros(0, np.int64))
+
+
+def test_output_torque_is_what_the_inertias_leave_of_the_rotors():
+    """The torques that `kinematics.loads` needs for the rotor's effort, at the true motion."""
+    followed, last = Loads(HEAVY), None
+    for last in accelerated():
+        found = followed.follow(last, 0)
+    rotor = TURN * last.position.turns + last.position.angle
+    mechanism = HEAVY.mechanism
+    state = solve(mechanism, rotor, last.velocity, 700.0)
+    torques = [torque for torque, _ in found.shares]
+    expected = loads.solve(mechanism, state, torques, HEAVY.loads)
+    assert expected.rotor_torque == pytest.approx(last.effort, rel=1e-9)
+    for k, branch in enumerate(found.branches):
+        assert branch.cam_force == pytest.approx(expected.cam_force[k], rel=1e-6)
+        assert branch.mesh_force == pytest.approx(expected.mesh_force[k], rel=1e-6)
+
+
+@pytest.mark.parametrize('parameters', [DEFAULT, BRACED, HEAVY], ids=['plain', 'braced', 'heavy'])
+@given(split=st.integers(0, 60), missing=st.integers(0, 59))
+def test_batches_give_the_same_messages_as_samples(parameters, split, missing):
+    samples = accelerated()
+    samples[missing] = samples[missing]._replace(velocity=None, effort=None)
+    single, many = Loads(parameters), Loads(parameters)
+    one_by_one = [dict(single.encode(s.stamp, single.follow(s, 0))) for s in samples]
+    for part in (slice(0, split), slice(split, 60)):
+        batch = as_batch(samples[part])
+        encoded = many.encode_batch(batch.stamp, many.follow_batch(batch))
+        for topic, messages in encoded.items():
+            assert messages == [each.get(topic, b'') for each in one_by_one[part]]
+
+
+def test_messages_are_those_of_the_contract():
+    parameters = replace(BRACED, frame_prefix='left_')
+    followed = Loads(parameters)
+    sample = RotorSample(5, split_turns(0.3), 10.0, 0.5)
+    encoded = dict(followed.encode(5, followed.follow(sample, 0)))
+    branches = deserialize_message(encoded['branch_loads'], JointState)
+    assert branches.name == ['left_branch_a', 'left_branch_b']
+    # i τ2 = -9.5 N·m is beyond the threshold of A, -3 (1 + kB/kAe) = -5.1: B carries all of it.
+    assert list(branches.effort) == [0.0, -9.5]
+    # cB M - (cA + cB) T0 with cA = 1/2000 + 1/5000 and cB = 1/1000.
+    assert branches.position[0] == pytest.approx(9.5e-3 - 1.7e-3 * 3.0)
+    assert branches.position[1] == 0.0
+    joints = deserialize_message(encoded['joint_loads'], MultiDOFJointState)
+    assert joints.header.frame_id == 'left_stator'
+    kinds = 'mesh', 'cam', 'slot_satellite', 'slot_arm'
+    assert joints.joint_names == [f'left_{kind}_{branch}' for kind in kinds for branch in 'ab']
+    assert not joints.transforms
+    assert not joints.twist
+    mesh, cam = joints.wrench[1].force, joints.wrench[3].force
+    assert math.hypot(mesh.x, mesh.y) == pytest.approx(
+        9.5 / parameters.mechanism.satellite_rolling_radius
+    )
+    assert (cam.x, cam.y) == pytest.approx((-mesh.x, -mesh.y))
+    assert [w.torque.z for w in joints.wrench] == [0.0, 0.0, 0.0, 0.0, 0.0, -9.5, 0.0, 9.5]
+
+
+def test_without_effort_there_are_no_messages():
+    followed = Loads(BRACED)
+    found = followed.follow(RotorSample(5, split_turns(0.3), 10.0, None), 0)
+    assert not list(followed.encode(5, found))
+
+
+def test_acceleration_lags_by_half_of_its_window():
+    """Of a velocity that grows with the square of time, whose acceleration is 2 t."""
+    estimate = Acceleration()
+    for k in range(100):
+        time = k * 1e-3
+        found = estimate.follow(k * MILLISECOND, time**2, 0)
+        expected = 2.0 * (time - 0.010) if k >= 20 else math.nan
+        assert found == pytest.approx(expected, nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ('stamp', 'segment'), [(300 * MILLISECOND, 0), (21 * MILLISECOND, 1)], ids=['gap', 'segment']
+)
+def test_acceleration_is_unknown_across_a_break(stamp, segment):
+    estimate = Acceleration()
+    for k in range(21):
+        estimate.follow(k * MILLISECOND, 1.0, 0)
+    assert math.isnan(estimate.follow(stamp, 1.0, segment))
+
+
+@pytest.mark.parametrize(
+    ('changes', 'cause'),
+    [
+        ({'branch_stiffness': (0.0,), 'shaft_stiffness': 0.0}, 'a preload needs branch_stiffness'),
+        ({'branches': DEFAULT.branches[:1]}, 'exactly two branches'),
+        ({'gear_ratio': '100'}, 'only the ratio of this gear is known'),
+    ],
+)
+def test_preload_that_cannot_be_is_refused(changes, cause):
+    with pytest.raises(MechanismError, match=cause):
+        Loads(replace(BRACED, **changes))
