@@ -3,7 +3,6 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from itertools import repeat
 from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
@@ -11,16 +10,19 @@ from typing import Literal
 import numpy as np
 
 from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicError
-from gear_kinematics.bag.roles import Topics, corrected_beside
+from gear_kinematics.bag.roles import Topics, beside
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.loads import Loads
 from gear_kinematics.state.referenced_input import ReferencedInput
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import (
     BODY_POSES,
+    CORRECTED_TOPICS,
     JOINT_STATE,
+    LOAD_TOPICS,
     OUTPUT_STATE,
     TOPICS,
 )
@@ -57,6 +59,8 @@ def compute(
     progress: ReportProgress | None = None,
 ) -> ComputeResult:
     """Copy a bag and add or replace the output topics: `output_state` alone with `gear_ratio`.
+
+    With a preload, the loads are outputs too.
 
     Each output directly follows its rotor message and has its time of reception. The same input
     gives the same bytes. If this fails or is interrupted, no target is left.
@@ -96,7 +100,10 @@ def compute(
     corrector = None
     if calibration:
         corrector = Corrector(calibration, parameters.max_rotor_acceleration)
-        topic_of |= corrected_beside(topics.output)
+        topic_of |= beside(CORRECTED_TOPICS, topics.output)
+    loads = Loads(parameters) if parameters.preload else None
+    if loads:
+        topic_of |= beside(LOAD_TOPICS, topics.output)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
@@ -142,11 +149,14 @@ def compute(
                     *samples[:5], samples.segment, referenced=rotor_input.referenced
                 )
                 encoded_outputs |= messages_of.encode_corrections(samples, correction)
+            if loads:
+                encoded_outputs |= loads.encode_batch(samples.stamp, loads.follow_batch(samples))
             # A stable sort by these puts each output directly after its rotor message.
-            places = [*range(len(messages)), *(len(encoded_outputs) * answered)]
-            received = [messages[place][1] for place in answered]
+            places, received = [*range(len(messages))], [messages[place][1] for place in answered]
             for state, encoded in encoded_outputs.items():
-                messages += zip(repeat(topic_of[state]), received, encoded)
+                known = [k for k, data in enumerate(encoded) if data]
+                places += [answered[k] for k in known]
+                messages += [(topic_of[state], received[k], encoded[k]) for k in known]
             writer.write_all([messages[k] for k in np.argsort(places, kind='stable').tolist()])
         if not computed:
             raise BagError(_nothing_computed(source, rotor_topic, rotor_input))

@@ -1,7 +1,7 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Finds the topics of the rotor, the outputs and the encoder in a recording."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from itertools import islice
 from pathlib import Path
@@ -16,7 +16,6 @@ from gear_kinematics.wire.joint_reader import joints_of
 from gear_kinematics.wire.nearest import among, listed
 from gear_kinematics.wire.topics import (
     BODY_POSES,
-    CORRECTED_TOPICS,
     OUTPUT_ENCODER,
     OUTPUT_STATE,
     ROTOR_STATE,
@@ -184,18 +183,18 @@ def missing_encoder(bag: Bag) -> str:
     return f'no {OUTPUT_ENCODER}; name its topic with --encoder-topic{hint}'
 
 
-def corrected_beside(output: str = Topics().output) -> dict[str, str]:
-    """Return the names of CORRECTED_TOPICS in the namespace of the topic of output_state."""
+def beside(names: Iterable[str], output: str = Topics().output) -> dict[str, str]:
+    """Return the names of the node's topics in the namespace of the topic of output_state."""
     namespace, _, _ = output.rpartition('/')
-    return {name: f'{namespace}/{name}' for name in CORRECTED_TOPICS}
+    return {name: f'{namespace}/{name}' for name in names}
 
 
-def find_corrected_topics(bag: Bag, output: str) -> dict[str, str]:
-    """Return those of `corrected_beside` that a bag has."""
+def find_beside(bag: Bag, names: Iterable[str], output: str) -> dict[str, str]:
+    """Return those of `beside` that a bag has."""
     return {
         name: topic
-        for name, topic in corrected_beside(output).items()
-        if bag.topics.get(topic) == CORRECTED_TOPICS[name]
+        for name, topic in beside(names, output).items()
+        if bag.topics.get(topic) == TOPICS[name].type
     }
 
 

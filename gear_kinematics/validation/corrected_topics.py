@@ -18,16 +18,15 @@ from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
 
 
-class RecomputedCorrection:
-    """The correction at the samples of a recording; after a hole, the history is unknown."""
+class Unbroken:
+    """Numbers the segments of a recording, which end at holes too, as history is unknown then."""
 
-    def __init__(self, calibration: Calibration, max_acceleration: float) -> None:
-        self._corrector = Corrector(calibration, max_acceleration)
+    def __init__(self) -> None:
         self._last: int | None = None
         self._holes = 0
 
-    def at(self, samples: RotorSamples) -> Correction:
-        """Compute the correction at the next samples, (n,)."""
+    def segments(self, samples: RotorSamples) -> Array:
+        """The segments of the next samples, (n,)."""
         stamp = samples.stamp
         first = stamp[:1] if self._last is None else self._last
         period = np.diff(stamp, prepend=first)
@@ -35,7 +34,19 @@ class RecomputedCorrection:
         holes = self._holes + np.cumsum(after_hole)
         if len(stamp):
             self._last, self._holes = int(stamp[-1]), int(holes[-1])
-        return self._corrector.correct_batch(*samples[:5], samples.segment + holes)
+        return np.asarray(samples.segment + holes)
+
+
+class RecomputedCorrection:
+    """The correction at the samples of a recording."""
+
+    def __init__(self, calibration: Calibration, max_acceleration: float) -> None:
+        self._corrector = Corrector(calibration, max_acceleration)
+        self._unbroken = Unbroken()
+
+    def at(self, samples: RotorSamples) -> Correction:
+        """Compute the correction at the next samples, (n,)."""
+        return self._corrector.correct_batch(*samples[:5], self._unbroken.segments(samples))
 
 
 class CorrectedState(JointStateTopic):

@@ -179,6 +179,10 @@ class OutputTopic:
             errors.update(field, samples['stamp'], angle)
         self.series.update(samples['stamp'], angle, *fields)
 
+    def answered(self, samples: Array) -> Array:
+        """Whether each of the oldest samples of the window has its message, or needs none."""
+        return self.matcher.matched[: len(samples)]
+
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
         """Decode messages for `_compare`; return their stamps and which ones are malformed."""
         raise NotImplementedError

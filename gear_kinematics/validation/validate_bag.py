@@ -10,8 +10,8 @@ from typing import Any
 from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, fleet, in_batches
 from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.bag.roles import (
-    corrected_beside,
-    find_corrected_topics,
+    beside,
+    find_beside,
     find_encoder_topic,
     find_topics,
     only_joint,
@@ -23,7 +23,7 @@ from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.validator import Validator
-from gear_kinematics.wire.topics import OUTPUT_ENCODER
+from gear_kinematics.wire.topics import CORRECTED_TOPICS, LOAD_TOPICS, OUTPUT_ENCODER
 
 _BATCH = 8192  # messages of a live node that are validated together
 
@@ -105,14 +105,16 @@ def _judged(
             progress=lambda sent, _: progress and progress(sent, total),
         )
         batches = in_batches(messages, _BATCH)
-        corrected = corrected_beside() if task.calibration else {}
+        corrected = beside(CORRECTED_TOPICS) if task.calibration else {}
         live = replace(task, strict=True)  # nothing is lost by a recorder here
         validator = Validator(live, corrected=corrected, encoder=encoder and f'/{OUTPUT_ENCODER}')
     else:
-        corrected = find_corrected_topics(bag, topics.output)
-        names = (*topics, *corrected.values(), *filter(None, [encoder]))
+        corrected = find_beside(bag, CORRECTED_TOPICS, topics.output)
+        known = isinstance(task.parameters.gear, Mechanism)
+        loads = find_beside(bag, LOAD_TOPICS, topics.output) if known else {}
+        names = (*topics, *corrected.values(), *loads.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)
-        validator = Validator(task, topics, corrected, encoder=encoder)
+        validator = Validator(task, topics, corrected, loads, encoder=encoder)
     damage = None
     try:
         validator.feed(batches)

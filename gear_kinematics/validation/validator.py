@@ -5,6 +5,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from gear_kinematics.validation.corrected_topics import (
 )
 from gear_kinematics.validation.count_changes import CountChanges
 from gear_kinematics.validation.fields import Array
+from gear_kinematics.validation.load_topics import LOAD_COLUMNS, LOADS, RecomputedLoads
 from gear_kinematics.validation.matching import (
     SAMPLES,
     WINDOW,
@@ -41,7 +43,7 @@ from gear_kinematics.wire.cdr import MalformedMessageError
 _FRAME = 'stator'
 _TOPICS = Topics()
 _FEW = 64  # outputs that show the zero, which can change in a batch
-_NOT_CORRECTED: Mapping[str, str] = MappingProxyType({})
+_NONE: Mapping[str, str] = MappingProxyType({})
 _Batch = Mapping[str, TopicMessages]
 """Messages by the names of their topics."""
 
@@ -53,7 +55,8 @@ class Validator:
         self,
         task: Task,
         topics: Topics = _TOPICS,
-        corrected: Mapping[str, str] = _NOT_CORRECTED,
+        corrected: Mapping[str, str] = _NONE,
+        loads: Mapping[str, str] = _NONE,
         solver: Solver = solve,
         encoder: str = '',
     ) -> None:
@@ -63,6 +66,7 @@ class Validator:
             task: how to validate it.
             topics: names of the topics; that of poses that are not recorded is empty.
             corrected: the recorded ones of CORRECTED_TOPICS, each with its name in the recording.
+            loads: the recorded ones of LOAD_TOPICS, likewise.
             solver: recomputes the motion: `solve`, or that of the matrix method.
             encoder: the topic of an encoder at the output that references the rotor, if recorded.
 
@@ -72,6 +76,7 @@ class Validator:
         self._task = task
         self._parameters = parameters = task.parameters
         self._topics, self._corrected, self._encoder = topics, corrected, encoder
+        self._load_topics = loads
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
         self._health = input_health.InputHealth(parameters.max_rotor_speed)
@@ -97,7 +102,7 @@ class Validator:
             task.calibration, single_turn=parameters.single_turn, absolute=parameters.absolute
         )
         self._correction = None
-        columns = list(SAMPLES)
+        columns: list[Any] = list(SAMPLES)
         if task.calibration and corrected and not self._why_unjudged:
             self._correction = RecomputedCorrection(
                 task.calibration, parameters.max_rotor_acceleration
@@ -105,6 +110,12 @@ class Validator:
             columns += [(name, np.float64) for name in Correction._fields]
             for topic, name in corrected.items():
                 self._judge(CORRECTED[topic](name, joint, self._expectation))
+        self._loads = None
+        if loads:
+            self._loads = RecomputedLoads(parameters)
+            columns += LOAD_COLUMNS
+            for topic, name in loads.items():
+                self._judge(LOADS[topic](name, parameters, self._expectation))
         self._window = np.zeros(0, columns)
         """The latest samples."""
         self._prefix_open = not parameters.frame_prefix
@@ -135,7 +146,8 @@ class Validator:
         if self._changes.found:  # which the correction knows nothing of
             why = 'the zero of the rotor changes during the recording'
             self._correction, self._why_unjudged = None, self._why_unjudged or why
-        judged = {*self._topics, *(self._corrected.values() if self._correction else ())}
+        corrected = self._corrected.values() if self._correction else ()
+        judged = {*self._topics, *corrected, *self._load_topics.values()}
         rotor = self._health.report(self._input, self._topics.rotor)
         topics = tuple(
             output.report()
@@ -191,7 +203,7 @@ class Validator:
         for output in self._outputs:
             messages = batch[output.name]
             output.take(messages.data, messages.received, self._window, self._inputs)
-        done = np.all([output.matcher.matched for output in self._outputs], axis=0)
+        done = np.all([output.answered(self._window) for output in self._outputs], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
@@ -207,6 +219,8 @@ class Validator:
         self._samples += len(samples.stamp)
         if self._correction:
             columns |= self._correction.at(samples)._asdict()
+        if self._loads:
+            columns |= self._loads.at(samples)
         new = np.empty(len(samples.stamp), self._window.dtype)
         for name, values in columns.items():
             new[name] = values
@@ -229,7 +243,7 @@ class Validator:
         """Drop the oldest samples, whose outputs are there or count as missing."""
         oldest = self._window[:count]
         for group, outputs in self._groups:
-            answered = np.column_stack([output.matcher.matched[:count] for output in outputs])
+            answered = np.column_stack([output.answered(oldest) for output in outputs])
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
         for output in self._outputs:
             output.matcher.drop(count)
@@ -295,7 +309,8 @@ class Validator:
         return self.poses.errors[0].report().max_error if self.poses else 0.0
 
     def _sorted(self, messages: Iterable[Message]) -> _Batch:
-        return by_topic(messages, (*self._topics, *self._corrected.values(), self._encoder))
+        further = *self._corrected.values(), *self._load_topics.values(), self._encoder
+        return by_topic(messages, (*self._topics, *further))
 
     def _found(self) -> Iterator[Finding]:
         """Yield with what the outputs are compared, what explains their faults, and the rest."""

@@ -108,6 +108,29 @@ def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseAr
     )
 
 
+def decode_numbers(
+    messages: Sequence[bytes],
+    find_layout: Callable[[bytes], Layout],
+    texts: tuple[bytes, ...],
+    sizes: Sequence[int],
+) -> tuple[Array, Array, Array]:
+    """Decode messages with given texts, and a given number of float64 in each array.
+
+    Returns:
+        Stamps, (n,), ns; whether a message is another one or none of its type, (n,); and the
+        numbers, (n, sum of the sizes).
+    """
+    count = len(messages)
+    stamp, malformed = np.zeros(count, np.int64), np.ones(count, bool)
+    numbers = np.full((count, sum(sizes)), np.nan)
+    for rows, layout, table in _tables(messages, find_layout):
+        if layout.texts == texts and [size for _, size in layout.arrays] == [*sizes]:
+            malformed[rows] = False
+            stamp[rows], _ = _stamps(table, layout)
+            numbers[rows] = np.hstack([_doubles(table, layout, *array) for array in layout.arrays])
+    return stamp, malformed, numbers
+
+
 def encode(template: Template, stamps: Array, *arrays: Sequence[Array | float]) -> list[bytes]:
     """Encode n messages, as `template.encode` does one by one.
 

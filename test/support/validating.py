@@ -15,13 +15,15 @@ def validate(
     config: dict,
     *topics,
     corrected=None,
+    loads=None,
     solver=solve,
     encoder='',
     **options,
 ) -> BagReport:
     """Validate messages with the options of a `Task`."""
     task = Task(Path('bag'), config, **options)
-    named = {'corrected': corrected or {}, 'solver': solver, 'encoder': encoder}
+    named = {'corrected': corrected or {}, 'loads': loads or {}, 'solver': solver}
+    named['encoder'] = encoder
     validator = Validator(task, *topics, **named)
     validator.feed(in_batches(messages, 8192))
     return validator.report()

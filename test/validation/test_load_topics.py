@@ -1,0 +1,105 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The loads in recordings: the node's pass, and what differs is found and named."""
+
+from dataclasses import replace
+
+import pytest
+import validating
+from shipped_bags import BAGS, read_bag
+from validating import topic_of
+
+from gear_kinematics.kinematics.loads import Bodies
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.wire.joint_reader import RejectedInputError
+
+NAMES = {'branch_loads': '/branch_loads', 'joint_loads': '/joint_loads'}
+HEAVY = Bodies(0.05, 2e-5, 0.02, 3e-6, 4e-5, 0.4)
+
+
+def loaded(messages, config):
+    """Add what the node publishes, one message after the other."""
+    rotor, loads = RotorInput(config), Loads(config)
+    added = []
+    for topic, received, data in messages:
+        added.append((topic, received, data))
+        if topic != '/rotor_state':
+            continue
+        try:
+            sample = rotor.accept(data, lambda received=received: received)
+        except RejectedInputError:
+            continue
+        found = loads.follow(sample, rotor.segment)
+        added += (
+            (NAMES[name], received, message) for name, message in loads.encode(sample.stamp, found)
+        )
+    return added
+
+
+@pytest.fixture(params=[Bodies(), HEAVY], ids=['at rest', 'with masses'])
+def braced(request, config):
+    """Parameters of a preloaded gear."""
+    return replace(config, preload=1.5, branch_stiffness=(3000.0,), loads=request.param)
+
+
+def validate(messages, config):
+    return validating.validate(messages, config, loads=NAMES)
+
+
+@pytest.mark.parametrize('bag', ['servo_point_to_point', 'driver_faults'])
+def test_what_a_node_publishes_passes(bag, braced):
+    report = validate(loaded(read_bag(BAGS / bag), braced), braced)
+    assert report.verdict == Verdict.PASS, report.findings
+    for name in NAMES.values():
+        found = topic_of(report, name)
+        assert found.compared == found.messages > 1000
+        for field in found.fields:
+            assert field.max_error == 0.0
+            # With masses, what follows a gap by less than 20 ms is not judged.
+            assert field.compared > (0.6 if braced.loads == HEAVY else 0.99) * found.messages
+
+
+def test_recording_that_lacks_inputs_passes(braced):
+    """The node has seen the messages that a recorder loses, and its acceleration rests on them."""
+    messages = loaded(read_bag(BAGS / 'servo_point_to_point'), braced)
+    inputs = [k for k, m in enumerate(messages) if m[0] == '/rotor_state']
+    lost = {*inputs[1000:1010], inputs[2000]}
+    report = validate([m for k, m in enumerate(messages) if k not in lost], braced)
+    assert report.verdict == Verdict.PASS, report.findings
+
+
+@pytest.mark.parametrize(
+    ('topic', 'place', 'field'),
+    [('/branch_loads', -8, 'torque'), ('/branch_loads', -32, 'stand-off'),
+     ('/joint_loads', -48, 'force'), ('/joint_loads', -8, 'couple')],
+)  # fmt: skip
+def test_number_that_differs_is_named(topic, place, field, config):
+    braced = replace(config, preload=1.5, branch_stiffness=(3000.0,))
+    messages = loaded(read_bag(BAGS / 'servo_point_to_point'), braced)
+    row = next(k for k, m in enumerate(messages) if k > 4000 and m[0] == topic)
+    name, received, data = messages[row]
+    changed = bytearray(data)
+    changed[place + 7 + len(data)] ^= 0x40  # in the exponent of a float64
+    messages[row] = name, received, bytes(changed)
+    report = validate(messages, braced)
+    assert report.verdict == Verdict.FAIL
+    faulty = [f.name for f in topic_of(report, topic).fields if not f.passed]
+    assert faulty == [field]
+
+
+def test_missing_loads_are_found(config):
+    braced = replace(config, preload=1.5, branch_stiffness=(3000.0,))
+    messages = loaded(read_bag(BAGS / 'servo_point_to_point'), braced)
+    dropped = [k for k, m in enumerate(messages) if m[0] == '/joint_loads'][1500:1503]
+    report = validate([m for k, m in enumerate(messages) if k not in dropped], braced)
+    assert topic_of(report, '/joint_loads').missing == 3
+    assert topic_of(report, '/branch_loads').missing == 0
+
+
+def test_loads_of_another_preload_fail(config):
+    braced = replace(config, preload=1.5, branch_stiffness=(3000.0,))
+    messages = loaded(read_bag(BAGS / 'servo_point_to_point'), braced)
+    report = validate(messages, replace(braced, preload=1.6))
+    assert report.verdict == Verdict.FAIL
+    assert not topic_of(report, '/branch_loads').passed
