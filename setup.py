@@ -77,8 +77,8 @@ setup(
         'rosbags': ROSBAGS,
         # `gearkin plot`, `gearkin animate` and `--plot`
         'plot': ['matplotlib>=3.6', 'pillow'],
-        # `gearkin lost-motion` and `calibrate`
-        'measure': ['scipy>=1.11'],
+        # `gearkin lost-motion` and `calibrate`, and the load spectrum of `gearkin loads`
+        'measure': ['scipy>=1.11', 'rainflow>=3.1'],
         # `gearkin urdf --meshes`
         'mesh': ['mapbox-earcut'],
         # colcon test looks here to see that the package is tested with pytest.

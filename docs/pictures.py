@@ -28,11 +28,13 @@ from gear_recordings import record_both_encoders  # noqa: E402, see above
 
 DOCS = Path('docs')
 BAG = 'bags/servo_point_to_point'
+PRELOADED = ['--config', 'docs/examples/preloaded.yaml']
 CONFIG = ['--config', 'config/actuator.yaml']
 SHAFT = ['--branch-stiffness', '3000', '--shaft-stiffness', '1069']
 DRAWN = {
     'mechanism.gif': ['animate'],
     'scheme.svg': ['plot', 'scheme'],
+    'pictures/forces.svg': ['plot', 'scheme', '--torque', '4', *PRELOADED],
     'roses.svg': ['plot', 'roses'],
     'slides.svg': ['plot', 'slides'],
     'pictures/output.svg': ['plot', 'output', '--bag', BAG],
@@ -43,6 +45,7 @@ PAGES = {
     'pictures/describe.png': ['describe'],
     'pictures/index.png': ['index', '--degrees', '0.07'],
     'pictures/preload.png': ['preload', '--wanted-threshold', '1', *SHAFT],
+    'pictures/loads.png': ['loads', BAG, *PRELOADED],
     'pictures/lost_motion.png': ['lost-motion', 'docs/examples/ramps.csv', *CONFIG],
 }
 OF_RECORDINGS = {

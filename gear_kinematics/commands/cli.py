@@ -42,6 +42,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
         'hysteresis, lost motion, stiffness, play and transmission error from recordings',
         'lost-motion ramps.csv --html ramps.html --max-hysteresis 90',
     ),
+    'loads': (
+        'whether the preload held in recordings, and the forces at every joint',
+        'loads logs/monday --config actuator.yaml',
+    ),
     'calibrate': (
         'calibrate the real output, from recordings with an encoder at rotor and output',
         'calibrate encoder/monday encoder/tuesday -o calibration.yaml',

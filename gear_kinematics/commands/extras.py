@@ -9,6 +9,7 @@ EXTRAS = {
     'mapbox_earcut': 'mesh',
     'tornado': 'watch',
     'scipy': 'measure',
+    'rainflow': 'measure',
     'rosbags': 'rosbags',
 }
 """The extra that installs a package; setup.py defines the extras."""

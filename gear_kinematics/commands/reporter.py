@@ -97,7 +97,8 @@ class Reporter:
                 shown = document.of_failed() if self._options.quiet else document
                 render(shown, Console(), brief=self._brief)
         if plot:
-            figure = document.sections[-1].figure  # of several, the last compares the others
+            # Of several sections, the last compares the others.
+            figure = document.plot or document.sections[-1].figure
             if not figure:
                 raise ValueError(f'{plot}: there is nothing to plot')
             write_file(plot, to_image(figure, Path(plot)))

@@ -276,6 +276,8 @@ class Document:
     totals: str = ''
     """Summary of the sections in one line."""
     origin: Origin | None = None
+    plot: Figure | None = None
+    """What an image of the report shows; None: the figure of the last section."""
 
     def of_failed(self) -> Self:
         """Return the document without what passed, or makes no judgement."""

@@ -37,6 +37,8 @@ class MovingMechanism:
     """Angle of the output shaft, (n,), degrees."""
     start: int = 0
     """Index of the sample that is shown first."""
+    mesh_force: Array | None = None
+    """F_t of each branch, (n, B), N, drawn as an arrow to scale; see `kinematics.loads`."""
 
 
 class Drawings:
@@ -48,13 +50,18 @@ class Drawings:
     def moving(self, moving: MovingMechanism, figure: str) -> Iterator[str]:
         """Write a mechanism with the controls of its motion along the x axis of a figure."""
         yield f'<div class="motion" data-figure="{figure}">\n{_controls(moving)}'
-        yield from self.branches(moving.mechanism, moving.module)
+        yield from self.branches(
+            moving.mechanism, moving.module, forces=moving.mesh_force is not None
+        )
         yield '</div>\n'
 
-    def branches(self, mechanism: Mechanism, module: float) -> Iterator[str]:
+    def branches(
+        self, mechanism: Mechanism, module: float, *, forces: bool = False
+    ) -> Iterator[str]:
         """Write a mechanism branch by branch, for an element that has the angles.
 
-        The module of the teeth is in m.
+        The module of the teeth is in m. With forces, each branch has those on the satellite: an
+        arrow of `--force` radii at the pitch point along u'(θ), and one against it at the cam.
         """
         from gear_kinematics.shape.outlines import NAMES, bodies  # noqa: PLC0415, of pages alone
 
@@ -71,8 +78,18 @@ class Drawings:
                 yield f'<use class="{body}" href="#{self._name(outline, scale)}"/>\n'
             for body in ('output_shaft', 'satellite', 'oldham'):
                 yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
+            if forces:
+                e = scale * mechanism.eccentricity
+                pitch = e * mechanism.ring_teeth
+                pitch /= mechanism.ring_teeth - mechanism.satellite_teeth
+                arrows = (
+                    f'M0,{y + 15:.1f}V{y - 15:.1f}L{x:g},{y:.1f}Z'
+                    for x, y in ((-_RADIUS, pitch), (_RADIUS, e))
+                )
+                yield f'<path class="force" d="{"".join(arrows)}"/>\n'
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
         legend = ''.join(f'<li class="{body}">{NAMES[body]}</li>' for body in drawn[0])
+        legend += '<li class="force">force on the satellite</li>' * forces
         yield f'</div>\n<ul class="legend">{legend}</ul>\n'
 
     def shapes(self) -> str:

@@ -3,7 +3,7 @@
 // in page.css. A position counts samples; between them, angles are interpolated linearly.
 'use strict';
 (() => {
-  function connect(view, figure, {time, turned, layout}) {
+  function connect(view, figure, {time, turned, forces, layout}) {
     const [button, slider] = view.querySelectorAll('button, input');
     const speed = view.querySelector('select');
     const clock = view.querySelector('output');
@@ -22,6 +22,8 @@
       shown = 0;
       view.style.setProperty('--rotor', `${at(turned.rotor) % 360}deg`);
       view.style.setProperty('--output', `${at(turned.output) % 360}deg`);
+      view.querySelectorAll('figure').forEach((branch, k) =>
+        branch.style.setProperty('--force', forces ? at(forces[k]) : 0));
       slider.value = position;
       clock.value = slider.ariaValueText = `${at(time).toFixed(4)} s`;
       Plotly.relayout(figure, {[`${cursor}.x0`]: at(time), [`${cursor}.x1`]: at(time)});
@@ -77,6 +79,7 @@
   const shows = new Map();
   document.addEventListener('drawn', ({target, detail}) => {
     const view = document.querySelector(`.motion[data-figure=${target.id}]`);
+    if (!view) return; // a figure without a mechanism
     if (!shows.has(target)) shows.set(target, connect(view, target, detail));
     shows.get(target)();
   });

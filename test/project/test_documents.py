@@ -95,6 +95,8 @@ def test_every_command_in_the_documentation_has_arguments_that_exist(page):
 def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     shutil.copytree(ROOT / 'bags/servo_point_to_point', tmp_path / 'logs/monday')
     shutil.copy(ROOT / 'docs/examples/ramps.csv', tmp_path)
+    braced = '/**: {ros__parameters: {preload: 3.0, branch_stiffness: [3000.0]}}'
+    (tmp_path / 'actuator.yaml').write_text(braced, 'utf-8')
     (tmp_path / 'encoder').mkdir()
     record_both_encoders(tmp_path / 'encoder', 'monday', 'tuesday', 'friday')
     monkeypatch.chdir(tmp_path)
@@ -102,12 +104,13 @@ def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     for words in commands(README):
         assert main(words) == 0, capsys.readouterr().err
         told[words[0]] = capsys.readouterr().out
-    assert list(told) == ['validate', 'calibrate', 'preload', 'lost-motion']
+    assert list(told) == ['validate', 'calibrate', 'preload', 'lost-motion', 'loads']
     assert 'within the 95 % interval' in told['calibrate']
     assert 'for -1 to' in told['preload']
     assert 'ring hole 60 in chassis hole 10, tooth 11' in told['preload']
     assert 'the output rests anywhere within' in told['lost-motion']
-    written = {'monday.html', 'report.xml', 'calibration.html', 'ramps.html'}
+    assert 'both branches were in mesh; the least preload' in told['loads']
+    written = {'monday.html', 'report.xml', 'calibration.html', 'ramps.html', 'loads.html'}
     assert written <= {path.name for path in tmp_path.iterdir()}
 
 

@@ -127,6 +127,7 @@ TENANTS = {
     'mapbox_earcut': ['shape'],
     'tornado': ['watch'],
     'scipy': ['measurement'],
+    'rainflow': ['measurement'],
 }
 """Libraries, and the only rooms that import them."""
 
