@@ -43,6 +43,7 @@ def run(options: argparse.Namespace) -> ExitCode:
             module,
             frames,
             fps=_FPS,
+            force=drawing.force_at(options, config),
             progress=lambda done: bars.update(task, completed=done),
         )
     write_file(options.out, content)

@@ -10,6 +10,7 @@ from gear_kinematics.commands import arguments, bags
 from gear_kinematics.commands.files import add_force
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.loads import share_torque
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
@@ -26,10 +27,24 @@ def add_image(parser: argparse.ArgumentParser, formats: str) -> None:
     recording.add_argument(
         '--duration', type=arguments.positive, metavar='S', help='(default: all of it)'
     )
-    arguments.group(parser, 'motion')  # which the command fills, before that of the gear
+    arguments.group(parser, 'motion').add_argument(
+        '--torque',
+        type=arguments.finite,
+        metavar='N·m',
+        help='that the branches give the output: draws the forces on the satellite',
+    )
     arguments.add_mechanism(parser, sizes=True)
     add_force(parser)
     arguments.add_quiet(parser)
+
+
+def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
+    """F_t on the satellite of the first branch, N, at the torque that the options name."""
+    if not options.torque:
+        return 0.0
+    mechanism, direction = config.mechanism, -1 if config.preload < 0.0 else 1
+    shares = share_torque(mechanism, options.torque, config.brace, direction).torque
+    return float(shares[0]) / mechanism.satellite_rolling_radius
 
 
 def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:

@@ -15,7 +15,7 @@ from gear_kinematics.report.image import check_image, to_image
 _DEGREES = 40.0  # rotor angle at which all parts of the scheme can be seen
 _SPEED = 100.0 * math.pi  # rad/s: 3000 rpm
 _FIGURES = ('output', 'roses', 'scheme', 'slides')
-_OF_ONE = {'degrees': 'scheme', 'speed': 'slides', 'bag': 'output'}
+_OF_ONE = {'degrees': 'scheme', 'torque': 'scheme', 'speed': 'slides', 'bag': 'output'}
 """Options that only one of the figures has."""
 
 
@@ -74,5 +74,6 @@ def _draw(options: argparse.Namespace, config: NodeParameters, path: Path) -> by
         case _:
             degrees = _DEGREES if options.degrees is None else options.degrees
             rotor = split_turns(math.radians(degrees))
-            return plotting.scheme(config.mechanism, config.module, path, rotor)
+            force = drawing.force_at(options, config)
+            return plotting.scheme(config.mechanism, config.module, path, rotor, force)
     return to_image(figure, path)

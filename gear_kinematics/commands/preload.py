@@ -4,15 +4,20 @@
 import argparse
 import math
 from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments
 from gear_kinematics.commands import pins as pinning
+from gear_kinematics.commands.output import message_progress
 from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
+from gear_kinematics.measurement.loads.analysis import Task, compute_loads
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc
 
@@ -53,9 +58,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     ways.add_argument(
         '--wanted-threshold', type=float, metavar='N·m', help='load up to which both are in mesh'
     )
-    group = parser.add_argument_group(
-        'stiffness', 'torsional, at the output; not a parameter of the node'
+    ways.add_argument(
+        '--from',
+        dest='recording',
+        type=Path,
+        metavar='RECORDING',
+        help='loads under which both have to stay in mesh',
     )
+    arguments.group(parser, 'turn of a ring gear').add_argument(
+        '--margin',
+        type=arguments.positive,
+        default=1.2,
+        metavar='FACTOR',
+        help='on the least preload for a recording (default: %(default)g)',
+    )
+    group = parser.add_argument_group('stiffness', 'torsional, at the output')
     group.add_argument(
         '--branch-stiffness',
         type=float,
@@ -130,9 +147,33 @@ def _wanted(
     if options.wanted_preload is not None:
         wanted = Preload.from_torque(stiffness, abs(options.wanted_preload))
         return math.copysign(wanted.ring_turn(pair, backlash), options.wanted_preload)
+    if options.recording:
+        config = arguments.load_config(options, options.recording)
+        torque = options.margin * _needed(options, config, stiffness)
+        turn = Preload.from_torque(stiffness, torque).ring_turn(pair, backlash)
+        return math.copysign(turn, config.preload)
     if options.wanted_threshold is not None:
         return Preload.from_limit(stiffness, options.wanted_threshold).ring_turn(pair, backlash)
     return math.radians(options.degrees)
+
+
+def _needed(options: argparse.Namespace, config: NodeParameters, stiffness: Stiffness) -> float:
+    """The least preload that would have held in the recording, N·m."""
+    *branches, shaft = (
+        0.0 if math.isinf(k) else k
+        for k in (stiffness.branch_a, stiffness.branch_b, stiffness.shaft)
+    )
+    config = replace(
+        config,
+        preload=math.copysign(1.0, config.preload),
+        branch_stiffness=tuple(branches),
+        shaft_stiffness=shaft,
+    )
+    with message_progress(options.recording.name, quiet=options.quiet) as report_progress:
+        outcome = compute_loads(Task(options.recording, config), report_progress)
+    if not outcome.history:
+        raise ValueError(outcome.error)
+    return outcome.history.needed
 
 
 def _data(answer: _Answer) -> dict[str, Any]:
@@ -193,7 +234,9 @@ def _facts(answer: _Answer) -> Iterator[tuple[str, str]]:
     if answer.backlash:
         yield 'backlash', f'{arc(answer.backlash)} at the output before the turn'
     if preload.torque:
-        yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load'
+        force = preload.torque / answer.mechanism.satellite_rolling_radius
+        price = f', and {force:.4g} N at each mesh and cam'
+        yield 'preload', f'{preload.torque:.4g} N·m in both branches without a load{price}'
         stiffness = _in_words(known.both_in_mesh)
         yield 'both mesh', f'{_mesh_range(preload)}: {stiffness}'
         yield f'branch {a}', _threshold(preload.threshold_a, b, known.branch_b_alone)

@@ -42,6 +42,7 @@ def animate(
     frames: Trajectory,
     *,
     fps: int,
+    force: float = 0.0,
     progress: Callable[[int], None] = lambda _: None,
 ) -> bytes:
     """Animate the first branch, and its magnified centres with the rose of O4, as a GIF.
@@ -50,6 +51,7 @@ def animate(
         mechanism: the mechanism.
         module: of the teeth, m.
         frames: rotor positions to draw.
+        force: F_t, N, to draw the forces on the satellite, too.
         fps: frames per second; a GIF rounds their duration to hundredths of a second.
         progress: called with the number of each frame.
 
@@ -58,7 +60,7 @@ def animate(
     """
     with canvas((_WIDTH, _HEIGHT * _WIDTH)) as figure:
         figure.set_dpi(_DPI)
-        return _gif(figure, _moving(figure, mechanism, module, frames, progress), fps)
+        return _gif(figure, _moving(figure, mechanism, module, frames, force, progress), fps)
 
 
 def _moving(
@@ -66,6 +68,7 @@ def _moving(
     mechanism: Mechanism,
     module: float,
     frames: Trajectory,
+    force: float,
     progress: Callable[[int], None],
 ) -> Iterator[None]:
     """Draw the frames one by one."""
@@ -84,7 +87,7 @@ def _moving(
     ):
         figure.text(middle, height, text, ha='center', **style)
     moments = [figure.text(0.735, height, '', **style) for height in (0.88, 0.82, 0.76)]
-    bodies = Bodies(left, mechanism, module, 0)
+    bodies = Bodies(left, mechanism, module, 0, force)
     names = [NAMES[body] for body in bodies.patches]
     handles = list(bodies.patches.values())
     figure.legend(handles, names, loc=(0.72, 0.02), fontsize=7, handlelength=0.8)

@@ -32,6 +32,7 @@ FACES = {body: (_face(edge), edge) for body, edge in _EDGES.items()}
 """Colours of the face of each body and of its outline."""
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
+_ARROW = 0.5  # of the radius of the stator
 _DETAIL = 1.35  # eccentricities from the axis to the edge of the detail
 _LABEL = 15.0  # points from the labelled point
 _MM = 1e3  # in a metre
@@ -41,8 +42,10 @@ _CIRCLE = np.exp(1j * np.linspace(0.0, 2.0 * math.pi, 121))
 class Bodies:
     """The bodies of a branch drawn to scale; `show` moves them."""
 
-    def __init__(self, axes: Any, mechanism: Mechanism, module: float, branch: int) -> None:
-        """Draw them at φ2 = 0."""
+    def __init__(
+        self, axes: Any, mechanism: Mechanism, module: float, branch: int, force: float = 0.0
+    ) -> None:
+        """Draw them at φ2 = 0, with the forces of ring and cam on the satellite: F_t is given."""
         from matplotlib.patches import PathPatch  # noqa: PLC0415, an extra
 
         self._mechanism, self._branch = mechanism, branch
@@ -52,7 +55,14 @@ class Bodies:
             face, edge = FACES[body]
             style = {'facecolor': face, 'edgecolor': edge, 'linewidth': _OUTLINE}
             self.patches[body] = axes.add_patch(PathPatch(_path(outlines), **style))
-        _square(axes, _MARGIN * float(np.max(self._outlines['stator'][0])))
+        radius = float(np.max(self._outlines['stator'][0]))
+        _square(axes, _MARGIN * radius)
+        self._length = math.copysign(_ARROW * radius, force)
+        self.arrows = None
+        if force:
+            style = {'angles': 'xy', 'scale_units': 'xy', 'scale': 1.0, 'zorder': 4}
+            none = np.zeros(2)
+            self.arrows = axes.quiver(none, none, none, none, color=INK, width=0.012, **style)
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
@@ -60,6 +70,13 @@ class Bodies:
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         for body, patch in self.patches.items():
             patch.set_path(_path(placed[body].place(part) for part in self._outlines[body]))
+        if self.arrows:
+            mechanism, centre = self._mechanism, placed['satellite'].centre
+            x, y = centre / mechanism.eccentricity  # u(θ)
+            teeth = mechanism.ring_teeth - mechanism.satellite_teeth
+            self.arrows.set_offsets([centre * mechanism.ring_teeth / teeth, centre])
+            along = self._length * np.array([-y, x])  # u'(θ)
+            self.arrows.set_UVC(*np.transpose([along, -along]))
 
 
 class Centres:
@@ -125,7 +142,9 @@ def outlines(mechanism: Mechanism, module: float) -> Figure:
     return Figure((Panel('', 'x [mm]', 'y [mm]', tuple(lines), equal=True),))
 
 
-def scheme(mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition) -> bytes:
+def scheme(
+    mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition, force: float = 0.0
+) -> bytes:
     """Draw the kinematic scheme: the bodies of a branch to scale, and their centres magnified.
 
     Args:
@@ -133,10 +152,11 @@ def scheme(mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition
         module: of the teeth, m.
         path: of the image file, whose suffix is its format.
         rotor: the position φ2.
+        force: F_t, N, to draw the forces on the satellite, too.
     """
     with canvas((7.4, 4.7)) as figure:
         left, right = figure.subplots(1, 2)
-        drawn = Bodies(left, mechanism, module, 0)
+        drawn = Bodies(left, mechanism, module, 0, force)
         drawn.show(rotor)
         Centres(right, mechanism, 0).show(rotor)
         placed = poses(mechanism, rotor.angle, rotor_turns=rotor.turns)
@@ -149,7 +169,9 @@ def scheme(mechanism: Mechanism, module: float, path: Path, rotor: RotorPosition
         left.set_title(
             f'branch {mechanism.branches[0].name}, '
             f'$z_k$ = {mechanism.ring_teeth}, $z_s$ = {mechanism.satellite_teeth}\n'
-            f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}',
+            f'$φ_2$ = {rotor_angle}, $φ_5$ = {output_angle}'
+            + f', $F_t$ = {force:.4g} N'.replace('-', '−')
+            * bool(force),
             fontsize='medium',
         )
         eccentricity = f'the centres, $e$ = {_MM * mechanism.eccentricity:.4g} mm'

@@ -17,7 +17,8 @@ _BODY = """\
 </header>
 <main>
 <section class="live" aria-label="mechanism and values">
-<div id="mechanism" class="motion"></div>
+<div><div id="mechanism" class="motion"></div>
+<label id="margin" hidden>preload left <meter max="1" low="0.2" optimum="1"></meter></label></div>
 <dl id="values"></dl>
 <figure id="curve"><figcaption></figcaption>
 <svg viewBox="0 0 300 100" preserveAspectRatio="none" aria-hidden="true">

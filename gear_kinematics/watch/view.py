@@ -65,6 +65,7 @@ class View:
     drivers: tuple[Driver, ...] = ()
     rotor: float | None = None  # angle, degrees; None while it is unknown or out of date
     output: float | None = None
+    margin: float | None = None  # what is left of the preload, as a share of it
     question: str = ''  # to ask before homing; '' where there is nothing to home
     undo: str = ''  # parameters before their last change, to go back to; '' where there is none
     commission: Commission | None = None  # while a gear is commissioned
@@ -77,7 +78,16 @@ def view_of(gear: GearNode | None) -> View:
     if not gear:
         return view
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
-    return replace(view, diagnostics=statuses, values=tuple(values_of(gear)), **_motion_of(gear))
+    view = replace(view, diagnostics=statuses, margin=_margin(gear), **_motion_of(gear))
+    return replace(view, values=tuple(values_of(gear)))
+
+
+def _margin(gear: GearNode) -> float | None:
+    status = gear.statuses.get('preload')
+    if not status or time.monotonic() - status.at > _MAX_STATUS_AGE:
+        return None
+    percent = status.values.get('margin (% of the preload)')
+    return float(percent) / 100.0 if percent else None
 
 
 def _state_of(gear: GearNode | None) -> tuple[str, str]:
@@ -130,6 +140,11 @@ def values_of(gear: GearNode) -> Iterator[Entry]:
         yield from _motion(output, gear.gear, _freshness(output, gear.parameters))
         yield Entry('output rate', f'{gear.rate:.0f} Hz')
     yield _zero(gear, gear.parameters.rotor_zero)
+    if (margin := _margin(gear)) is not None:
+        values = gear.statuses['preload'].values
+        detail = f'least {values["least margin (N·m)"]} N·m in the last second'
+        tone: Tone = 'bad' if margin <= 0.0 else ''
+        yield Entry('preload left', f'{values["margin (N·m)"]} N·m', detail, tone)
     if corrected := gear.joint(topics.CORRECTED_STATE):
         interval = gear.joint(topics.CORRECTED_INTERVAL)
         detail = f'± {arc(interval.position)} (95 %)' if interval else ''

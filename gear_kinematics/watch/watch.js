@@ -87,6 +87,8 @@
         mechanism.style.setProperty(`--${name}`, `${now[name] % 360}deg`);
       }
     }
+    find('margin').hidden = now.margin === null;
+    find('margin').lastElementChild.value = now.margin ?? 0;
     showState(now.state, now.tone, now.message);
     set(find('node'), now.node);
     home.disabled = !now.question;

@@ -22,7 +22,7 @@ SIGNATURES = {'png': b'\x89PNG\r\n\x1a\n', 'svg': b'<?xml', 'pdf': b'%PDF-', 'gi
 @pytest.mark.parametrize(
     ('suffix', 'figure', 'options'),
     [
-        ('svg', 'scheme', ('--degrees', '20')),
+        ('svg', 'scheme', ('--degrees', '20', '--torque', '-4')),
         ('pdf', 'roses', ()),
         ('svg', 'slides', ('--speed', '-100')),
         ('PNG', 'output', ('--bag', SERVO, '--start-offset', '0.5', '--duration', '0.2')),

@@ -8,7 +8,7 @@ import re
 from fractions import Fraction
 
 import pytest
-from blocked_bags import gearkin, refusal
+from blocked_bags import BAGS, gearkin, refusal
 
 from gear_kinematics.commands.cli import main
 
@@ -216,3 +216,18 @@ def test_branches_that_cannot_be_braced_are_refused(count, tmp_path):
     for command in (['index', '--phase-b'], ['preload', '--degrees', '0.0572957795', *SOFT]):
         error = refusal(*command, '--config', config)
         assert f'exactly two branches are needed, not {count}' in error
+
+
+# From a recording.
+
+
+def test_preload_for_a_recording_holds_with_its_margin_and_has_its_price(capsys):
+    """The greatest torque of the recording is 4.0 N·m, of which branch B is relieved of 0.8."""
+    bag = BAGS / 'servo_point_to_point'
+    words = '--branch-stiffness', '3000', '--shaft-stiffness', '1000'
+    found = answer(capsys, 'preload', '--from', bag, '--margin', '1.5', *words)
+    assert found['preload'] == pytest.approx(1.5 * 0.8 * 4.0, rel=1e-3)
+    text = printed(capsys, 'preload', '--from', bag, *words)
+    assert '183.7 N at each mesh and cam' in text  # 1.2 × 3.2 N·m at 20.9 mm
+    lost = refusal('preload', '--from', BAGS / 'single_turn_encoder', *words)
+    assert 'the loads need the effort of the rotor' in lost

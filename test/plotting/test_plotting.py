@@ -71,6 +71,23 @@ def test_bodies_and_centres_are_drawn_where_the_motion_says(actuator, rotor_angl
         assert np.hypot(*(o4 - o3 / 2)) == pytest.approx(0.5 * e, abs=1e-12)
 
 
+@pytest.mark.parametrize('force', [191.0, -1.0])
+def test_forces_on_the_satellite_are_drawn_where_they_act(actuator, force):
+    """At the pitch point across the radius, and against it at the centre of the satellite."""
+    axes = figure_module.Figure().add_subplot()
+    drawn = Bodies(axes, actuator, MODULE, 0, force)
+    drawn.show(split_turns(0.7))
+    u = np.array([-math.sin(0.7), math.cos(0.7)])
+    (pitch, centre), arrows = drawn.arrows.get_offsets(), drawn.arrows
+    assert pitch == pytest.approx(0.0011 * 80 / 4 * u)
+    assert centre == pytest.approx(0.0011 * u)
+    mesh, cam = np.column_stack([arrows.U, arrows.V])
+    assert cam == pytest.approx(-mesh)
+    along = math.copysign(1.0, force) * np.array([-u[1], u[0]])  # u'(θ)
+    assert mesh == pytest.approx(np.hypot(*mesh) * along)
+    assert np.hypot(*mesh) > 0.005
+
+
 def test_scheme_shows_the_bodies_named_and_the_angles(actuator, figures):
     plotting.scheme(actuator, MODULE, PNG, split_turns(math.radians(36.1)))
     [figure] = figures

@@ -119,6 +119,24 @@ def test_values_are_those_of_the_topics():
     assert list(values_of(gear_node(parameters=None))) == []
 
 
+@pytest.mark.parametrize(('margin', 'tone'), [('0.75', ''), ('-0.3', 'bad')])
+def test_margin_of_the_preload_is_a_value_and_a_bar(margin, tone):
+    values = {
+        'margin (N·m)': margin,
+        'margin (% of the preload)': str(float(margin) / 0.015),
+        'least margin (N·m)': '-0.3',
+    }
+    status = Status('preload', 0, 'ok', values, time.monotonic())
+    view = view_of(gear_node(statuses={'preload': status}))
+    assert view.margin == pytest.approx(float(margin) / 1.5)
+    [entry] = [entry for entry in view.values if entry.name == 'preload left']
+    assert entry == Entry(
+        'preload left', f'{margin} N·m', 'least -0.3 N·m in the last second', tone
+    )
+    old = status._replace(at=time.monotonic() - 10.0)
+    assert view_of(gear_node(statuses={'preload': old})).margin is None
+
+
 def test_values_that_are_out_of_date_say_so_and_move_nothing():
     silent = gear_node(joint={topics.OUTPUT_STATE: Joint(0.1, None, 90.0)}.get)
     view = view_of(silent)
