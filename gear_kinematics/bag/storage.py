@@ -80,7 +80,7 @@ class Storage:
 
 
 def in_batches(
-    messages: Iterable[Message], count: int = 8192, size: int = 2**20
+    messages: Iterable[Message], count: int = 256, size: int = 2**20
 ) -> Iterator[list[Message]]:
     """Group messages into batches of up to `count` messages, and of about `size` bytes at most.
 
