@@ -21,7 +21,6 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
-from gear_kinematics.wire.joint_reader import RejectedInputError
 
 STATE, INTERVAL = '/corrected_state', '/corrected_interval'
 NAMES = {'corrected_state': STATE, 'corrected_interval': INTERVAL}
@@ -35,24 +34,16 @@ WITHIN_TURN = replace(
 
 
 def corrected(messages, config, made=MADE, *, referenced=True) -> list[Message]:
-    """Add what the node publishes, one message after the other."""
+    """Add the corrected output that the node publishes."""
     states = state_messages(config)
-    rotor, corrector = RotorInput(config), Corrector(made, config.max_rotor_acceleration)
-    added = []
-    for topic, received, data in messages:
-        added.append((topic, received, data))
-        if topic != '/rotor_state':
-            continue
-        try:
-            sample = rotor.accept(data, lambda received=received: received)
-        except RejectedInputError:
-            continue
+    corrector = Corrector(made, config.max_rotor_acceleration)
+
+    def answer(sample, rotor):
         correction = corrector.correct(sample, segment=rotor.segment, referenced=referenced)
-        added += (
-            (NAMES[name], received, message)
-            for name, message in states.encode_corrected(sample, correction)
-        )
-    return added
+        found = states.encode_corrected(sample, correction)
+        return [(NAMES[name], message) for name, message in found]
+
+    return validating.with_answers(messages, config, answer)
 
 
 @pytest.fixture(scope='module')

@@ -11,30 +11,20 @@ from validating import topic_of
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.loads import Loads
-from gear_kinematics.state.rotor_input import RotorInput
-from gear_kinematics.wire.joint_reader import RejectedInputError
 
 NAMES = {'branch_loads': '/branch_loads', 'joint_loads': '/joint_loads'}
 HEAVY = Bodies(0.05, 2e-5, 0.02, 3e-6, 4e-5, 0.4)
 
 
 def loaded(messages, config):
-    """Add what the node publishes, one message after the other."""
-    rotor, loads = RotorInput(config), Loads(config)
-    added = []
-    for topic, received, data in messages:
-        added.append((topic, received, data))
-        if topic != '/rotor_state':
-            continue
-        try:
-            sample = rotor.accept(data, lambda received=received: received)
-        except RejectedInputError:
-            continue
-        found = loads.follow(sample, rotor.segment)
-        added += (
-            (NAMES[name], received, message) for name, message in loads.encode(sample.stamp, found)
-        )
-    return added
+    """Add the loads that the node publishes."""
+    loads = Loads(config)
+
+    def answer(sample, rotor):
+        found = loads.encode(sample.stamp, loads.follow(sample, rotor.segment))
+        return [(NAMES[name], message) for name, message in found]
+
+    return validating.with_answers(messages, config, answer)
 
 
 @pytest.fixture(params=[Bodies(), HEAVY], ids=['at rest', 'with masses'])
