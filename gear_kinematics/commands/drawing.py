@@ -10,7 +10,6 @@ from gear_kinematics.commands import arguments, bags
 from gear_kinematics.commands.files import add_force
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.loads import share_torque
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.teeth import InterferenceError, tooth_pair
 
@@ -42,9 +41,8 @@ def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
     """F_t on the satellite of the first branch, N, at the torque that the options name."""
     if not options.torque:
         return 0.0
-    mechanism, direction = config.mechanism, -1 if config.preload < 0.0 else 1
-    shares = share_torque(mechanism, options.torque, config.brace, direction).torque
-    return float(shares[0]) / mechanism.satellite_rolling_radius
+    (torque, _), *_ = config.sharing.branches(options.torque, math)
+    return float(torque / config.mechanism.satellite_rolling_radius)
 
 
 def recording(options: argparse.Namespace, config: NodeParameters) -> Trajectory | None:

@@ -16,7 +16,7 @@ from gear_kinematics.measurement.loads.analysis import (
     Task,
     compute_loads,
 )
-from gear_kinematics.measurement.loads.document import Wanted, document
+from gear_kinematics.measurement.loads.document import document
 from gear_kinematics.report.document import Verdict
 
 
@@ -82,7 +82,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     if not histories:
         return ExitCode.UNUSABLE
     ordered = [histories[bag] for bag in found.bags if bag in histories]
-    report = document(ordered, Wanted(options.cam_rating, options.slot_friction))
+    report = document(ordered, options.cam_rating)
     reporter.write(report, (arguments.config_path(options, bag) for bag in histories))
     if failed:
         return ExitCode.UNUSABLE

@@ -20,6 +20,7 @@ from gear_kinematics.measurement.lost_motion import LostMotion
 from gear_kinematics.measurement.measured import HYSTERESIS, shown
 from gear_kinematics.measurement.wording import ARC_MINUTES
 from gear_kinematics.report.document import (
+    PENS,
     Cell,
     Figure,
     Line,
@@ -32,7 +33,6 @@ from gear_kinematics.report.document import (
     printable,
 )
 
-_PENS = (Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH)
 _TORQUES = 300
 """Of half a loop in a plot."""
 _WITHIN = 'Record each state several times, and compare with --group: recordings scatter more'
@@ -155,7 +155,7 @@ def _figure(reports: Sequence[LostMotion], groups: Sequence[Group]) -> Figure | 
             rise = np.mean([loop.rise.angle_at(torque[::-1]) for loop in ramps.loops], axis=0)
             angle = np.concatenate([fall, rise]) - np.mean([fall, rise])
             around = np.concatenate([torque, torque[::-1]])
-            pen = _PENS[k] if k < len(_PENS) else Pen.FAINT
+            pen = PENS[k] if k < len(PENS) else Pen.FAINT
             lines.append(Line(printable(group.name), pen, around, angle * ARC_MINUTES))
     labels = 'torque at the output [N·m]', 'wind-up at the output [arcmin]'
     return Figure((Panel('mean loops', *labels, tuple(lines)),)) if lines else None

@@ -16,7 +16,7 @@ from typing import Any, Self, get_origin
 import yaml
 
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
-from gear_kinematics.kinematics.loads import Bodies
+from gear_kinematics.kinematics.loads import Bodies, TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
@@ -232,20 +232,22 @@ class NodeParameters:
         return Mechanism(self.ring_teeth, self.satellite_teeth, self.eccentricity, self.branches)
 
     @property
-    def brace(self) -> Preload | None:
-        """How two branches are braced against each other; None if `preload` is 0.
+    def sharing(self) -> TorqueSharing:
+        """How the branches share the torque of the output; equally if `preload` is 0.
 
         Raises:
-            MechanismError: if there are not two branches, or all parts are rigid.
+            MechanismError: without a mechanism; of a preload, without two branches, one elastic.
         """
-        if not self.preload:
-            return None
-        braced(self.mechanism)
-        if not (any(self.branch_stiffness) or self.shaft_stiffness):
-            raise MechanismError(['a preload needs branch_stiffness or shaft_stiffness, N·m/rad'])
-        given = *(self.branch_stiffness * 2)[:2], self.shaft_stiffness
-        stiffness = Stiffness(*(each or math.inf for each in given))
-        return Preload.from_torque(stiffness, abs(self.preload))
+        mechanism, preload = self.mechanism, None
+        if self.preload:
+            braced(mechanism)  # its error, before others
+            if not (any(self.branch_stiffness) or self.shaft_stiffness):
+                needed = 'a preload needs branch_stiffness or shaft_stiffness, N·m/rad'
+                raise MechanismError([needed])
+            given = *(self.branch_stiffness * 2)[:2], self.shaft_stiffness
+            stiffness = Stiffness(*(each or math.inf for each in given))
+            preload = Preload.from_torque(stiffness, abs(self.preload))
+        return TorqueSharing(mechanism, preload, -1 if self.preload < 0.0 else 1)
 
     def urdf(self) -> str:
         """Write the URDF of the mechanism.

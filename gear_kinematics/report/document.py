@@ -156,6 +156,10 @@ class Pen(StrEnum):
     FAINT = 'faint'
 
 
+PENS = Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH
+"""Of lines side by side."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Line:
     """One line of a panel."""

@@ -85,11 +85,12 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._encoder = OutputEncoder(parameters, self._reference)
         self._corrector: Corrector | None = None
         self._display: Display | None = None
-        brace = parameters.brace
-        self._loads = Loads(parameters) if isinstance(self._gear, Mechanism) else None
-        self._preload = None
-        if self._loads and brace:
-            self._preload = PreloadMonitor(self._loads, brace.torque)
+        self._loads: Loads | None = None
+        self._preload: PreloadMonitor | None = None
+        if parameters.preload or isinstance(self._gear, Mechanism):
+            self._loads = Loads(parameters)
+            if parameters.preload:
+                self._preload = PreloadMonitor(self._loads, abs(parameters.preload))
         self._prepare([('calibration', parameters.calibration)])
         self._configure()
         self._monitor = InputMonitor(started=time.monotonic())

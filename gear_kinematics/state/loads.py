@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics import Mechanism, RotorSample
-from gear_kinematics.kinematics.loads import BranchLoads, LoadEquations, Pair, TorqueSharing
+from gear_kinematics.kinematics.loads import BranchLoads, LoadEquations, Pair
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorSamples
@@ -57,8 +57,7 @@ class Loads:
             MechanismError: if they describe no mechanism or no preload.
         """
         mechanism = parameters.mechanism
-        self.brace = parameters.brace
-        self.sharing = TorqueSharing(mechanism, self.brace, -1 if parameters.preload < 0.0 else 1)
+        self.sharing = parameters.sharing
         self._ratio = mechanism.gear_ratio
         self._torque_ratio = float(mechanism.gear_ratio)
         self._form = closed_form(mechanism)

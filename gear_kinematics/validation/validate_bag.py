@@ -84,12 +84,12 @@ def _judged(
     play: Callable[..., Iterable[Message]] | None,
 ) -> BagReport:
     """Validate what is recorded, or what a live node publishes for the recorded rotor states."""
-    joint = task.parameters.rotor_joint
+    joint, known = task.parameters.rotor_joint, isinstance(task.parameters.gear, Mechanism)
     topics = find_topics(
         bag,
         {'rotor': task.rotor_topic, 'output': task.output_topic, 'poses': task.poses_topic},
         outputs=not play,
-        poses=isinstance(task.parameters.gear, Mechanism),
+        poses=known,
         joint=joint,
     )
     encoder = find_encoder_topic(bag, topics.rotor) if task.parameters.absolute else ''
@@ -110,7 +110,6 @@ def _judged(
         validator = Validator(live, corrected=corrected, encoder=encoder and f'/{OUTPUT_ENCODER}')
     else:
         corrected = find_beside(bag, CORRECTED_TOPICS, topics.output)
-        known = isinstance(task.parameters.gear, Mechanism)
         loads = find_beside(bag, LOAD_TOPICS, topics.output) if known else {}
         names = (*topics, *corrected.values(), *loads.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)

@@ -86,13 +86,7 @@ def joint_state_layout(data: bytes) -> Layout:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    reader = _Reader(data)
-    reader.string()  # frame_id
-    for _ in range(reader.count(4)):
-        reader.string()
-    for _ in ('position', 'velocity', 'effort'):
-        reader.doubles(reader.count(8))
-    return reader.layout()
+    return _layout_of_joints(data, (1, 1, 1))  # position, velocity, effort
 
 
 def pose_array_layout(data: bytes) -> Layout:
@@ -108,16 +102,21 @@ def pose_array_layout(data: bytes) -> Layout:
 
 
 def wrenches_layout(data: bytes) -> Layout:
-    """Find the layout of a sensor_msgs/MultiDOFJointState; its arrays are those of the wrenches.
+    """Find the layout of a sensor_msgs/MultiDOFJointState: transforms, twists and wrenches.
 
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
+    return _layout_of_joints(data, (7, 6, 6))
+
+
+def _layout_of_joints(data: bytes, arrays: Sequence[int]) -> Layout:
+    """Find the layout of names and of arrays, given by the numbers of each item."""
     reader = _Reader(data)
     reader.string()  # frame_id
     for _ in range(reader.count(4)):
         reader.string()
-    for numbers in (7, 6, 6):  # transforms, twists, wrenches
+    for numbers in arrays:
         reader.doubles(numbers * reader.count(8 * numbers))
     return reader.layout()
 

@@ -87,8 +87,10 @@ class LoadHistory:
     forces: tuple[Force, ...]
     turns: float
     """Of satellites on their cams, to and fro."""
+    slot_friction: float | None
+    """μ of the slots."""
     slot_loss: float | None
-    """Share of the output's work that friction of the slots takes."""
+    """Share of the output's work that it takes."""
     left_out: dict[str, int]
     """Messages without known loads, by cause."""
 
@@ -100,7 +102,17 @@ class LoadHistory:
     @property
     def needed(self) -> float:
         """The least preload, N·m, with which both branches would have been in mesh."""
-        return abs(self.parameters.preload) - float(np.min(self.margin))
+        return abs(self.parameters.preload) - self.least_margin
+
+    @property
+    def least_margin(self) -> float:
+        """N·m."""
+        return float(np.min(self.margin))
+
+    @property
+    def greatest_torque(self) -> float:
+        """N·m, of the output in either direction."""
+        return float(np.max(np.abs(self.torque)))
 
     @property
     def lost(self) -> float:
@@ -151,6 +163,7 @@ def _history(
         tuple(_moments(stamp, start, margin, torque, parameters)),
         found,
         float(travel.sum()) / TURN * (1.0 - 1.0 / ratio),
+        task.slot_friction,
         _slot_loss(task, rotor, torque, forces[2::3]) if task.slot_friction else None,
         left_out,
     )

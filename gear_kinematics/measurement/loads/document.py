@@ -5,14 +5,14 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import cycle
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from gear_kinematics.kinematics.loads import share_torque
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.loads.analysis import ANGLE_BINS, Force, LoadHistory
 from gear_kinematics.report.document import (
+    PENS,
     Document,
     Figure,
     Finding,
@@ -30,23 +30,18 @@ from gear_kinematics.report.document import (
 from gear_kinematics.report.mechanism import MovingMechanism
 
 _MOST_MOMENTS = 10  # in the table and as links; all are in the JSON
-_PENS = Pen.FIRST, Pen.SECOND, Pen.THIRD, Pen.FOURTH, Pen.FIFTH, Pen.SIXTH
 _FRAMES = 1000  # of the moving mechanism
 _AROUND = 50  # more frames before and after the begin of each moment
 
 
-class Wanted(NamedTuple):
-    """What to compute of the loads beside themselves."""
+def document(histories: Sequence[LoadHistory], cam_rating: float | None = None) -> Document:
+    """Return the document on the loads of recordings.
 
-    cam_rating: float | None = None
-    """C, N, of the bearing of a cam."""
-    slot_friction: float | None = None
-    """μ of the slots."""
-
-
-def document(histories: Sequence[LoadHistory], wanted: Wanted) -> Document:
-    """Return the document on the loads of recordings."""
-    found = [_section(history, wanted) for history in histories]
+    Args:
+        histories: of the recordings.
+        cam_rating: C, N, of the bearing of a cam, to compute its life.
+    """
+    found = [_section(history, cam_rating) for history in histories]
     sections = tuple(found)
     plot = None
     if len(found) == 1:
@@ -56,7 +51,7 @@ def document(histories: Sequence[LoadHistory], wanted: Wanted) -> Document:
         sections = replace(found[0], tables=(head,)), more
         plot = Figure((_over_time(history), *panels), columns=2)
     pairs = zip(histories, found, strict=True)
-    recordings = [_data(history, section, wanted) for history, section in pairs]
+    recordings = [_data(history, section, cam_rating) for history, section in pairs]
     data = {'schema': 'gear_kinematics/loads', 'version': 1, 'recordings': recordings}
     verdicts = {section.verdict for section in found}
     verdict = next((each for each in (Verdict.FAIL, Verdict.PASS) if each in verdicts), None)
@@ -68,7 +63,7 @@ def answer(history: LoadHistory) -> str:
     time = duration(history.duration)
     if not history.parameters.preload:
         return (
-            f'Over {time} the output gave at most {number(float(np.abs(history.torque).max()))} '
+            f'Over {time} the output gave at most {number(history.greatest_torque)} '
             'N·m; without the parameter preload, nothing is known of the mesh.'
         )
     needed = number(history.needed)
@@ -87,7 +82,7 @@ def duration(seconds: float) -> str:
     return f'{seconds / 60.0:.1f} min' if seconds >= 100.0 else f'{number(seconds)} s'  # noqa: PLR2004
 
 
-def _section(history: LoadHistory, wanted: Wanted) -> Section:
+def _section(history: LoadHistory, cam_rating: float | None) -> Section:
     verdict = None
     if history.parameters.preload:
         verdict = Verdict.FAIL if history.moments else Verdict.PASS
@@ -103,10 +98,10 @@ def _section(history: LoadHistory, wanted: Wanted) -> Section:
         findings.append(Finding('error', text, moment.start))
     return Section(
         printable(history.name),
-        (_facts(history), _forces(history, wanted)),
+        (_facts(history), _forces(history, cam_rating)),
         verdict,
         tuple(findings),
-        tuple(_remarks(history, wanted)),
+        tuple(_remarks(history, cam_rating)),
         Figure((_over_time(history),), stacked=True),
         _moving(history),
         answer=said if verdict == Verdict.PASS else '',
@@ -116,16 +111,16 @@ def _section(history: LoadHistory, wanted: Wanted) -> Section:
 def _facts(history: LoadHistory) -> Table:
     facts = [('duration', duration(history.duration)), ('samples', str(len(history.time)))]
     if preload := abs(history.parameters.preload):
-        least = f'{number(float(history.margin.min()))} N·m'
+        least = f'{number(history.least_margin)} N·m'
         facts += [('preload', f'{number(preload)} N·m'), ('least margin', least)]
         facts.append(('out of mesh', f'{number(history.lost)} s'))
-    facts.append(('greatest torque', f'{number(float(np.abs(history.torque).max()))} N·m'))
+    facts.append(('greatest torque', f'{number(history.greatest_torque)} N·m'))
     return Table.of_values(Layout.INLINE, *facts)
 
 
-def _forces(history: LoadHistory, wanted: Wanted) -> Table:
+def _forces(history: LoadHistory, cam_rating: float | None) -> Table:
     def life(force: Force) -> str:
-        hours = _life(history, force, wanted)
+        hours = _life(history, force, cam_rating)
         return f'{number(hours)} h' if hours else ''
 
     return Table.of_items(
@@ -141,26 +136,26 @@ def _forces(history: LoadHistory, wanted: Wanted) -> Table:
     )
 
 
-def _life(history: LoadHistory, force: Force, wanted: Wanted) -> float | None:
+def _life(history: LoadHistory, force: Force, cam_rating: float | None) -> float | None:
     """L10 of a cam's bearing, h."""
-    if not (wanted.cam_rating and history.turns and force.name.startswith('cam')):
+    if not (cam_rating and history.turns and force.name.startswith('cam')):
         return None
-    return history.life(wanted.cam_rating, force)
+    return history.life(cam_rating, force)
 
 
-def _remarks(history: LoadHistory, wanted: Wanted) -> Iterator[str]:
+def _remarks(history: LoadHistory, cam_rating: float | None) -> Iterator[str]:
     if history.left_out:
         causes = ', '.join(f'{cause} {count}' for cause, count in history.left_out.items())
         yield f'Messages left out: {causes}.'
-    if wanted.cam_rating:
+    if cam_rating:
         yield (
-            f'L10 by ISO 281 for ball bearings of C = {number(wanted.cam_rating)} N, at the speed '
+            f'L10 by ISO 281 for ball bearings of C = {number(cam_rating)} N, at the speed '
             'and the cubic mean load of this recording; without lubrication and contamination '
             'factors.'
         )
     if history.slot_loss is not None:
         yield (
-            f'At μ = {wanted.slot_friction:g}, friction of the slots takes '
+            f'At μ = {history.slot_friction:g}, friction of the slots takes '
             f'{100.0 * history.slot_loss:.1f} % of the work of the output, if each couple acts as '
             'two forces at a distance of twice the rolling radius of the satellite.'
         )
@@ -179,7 +174,7 @@ def _over_time(history: LoadHistory) -> Panel:
 def _of_forces(history: LoadHistory) -> Iterator[Panel]:
     """Draw the greatest forces over the angle of the rotor, and the load spectrum."""
     angle = (np.arange(ANGLE_BINS) + 0.5) * 360.0 / ANGLE_BINS
-    pens = dict(zip((force.name for force in history.forces), cycle(_PENS)))
+    pens = dict(zip((force.name for force in history.forces), cycle(PENS)))
     for unit, title in (('N', 'greatest force'), ('N·m', 'greatest couple')):
         lines = tuple(
             Line(force.name, pens[force.name], angle, force.by_angle)
@@ -210,8 +205,7 @@ def _moving(history: LoadHistory) -> MovingMechanism:
     kept = np.array(sorted(rows))
     first = history.moments[0].sample if history.moments else 0
     parameters = history.parameters
-    mechanism, direction = parameters.mechanism, -1 if parameters.preload < 0.0 else 1
-    shares = share_torque(mechanism, history.torque[kept], parameters.brace, direction)
+    mechanism, shares = parameters.mechanism, parameters.sharing.branches(history.torque[kept], np)
     return MovingMechanism(
         mechanism,
         parameters.module,
@@ -219,11 +213,11 @@ def _moving(history: LoadHistory) -> MovingMechanism:
         np.degrees(history.rotor[kept]),
         np.degrees(history.rotor[kept]) / float(mechanism.gear_ratio),
         int(np.searchsorted(kept, first)),
-        shares.torque / mechanism.satellite_rolling_radius,
+        np.column_stack([torque for torque, _ in shares]) / mechanism.satellite_rolling_radius,
     )
 
 
-def _data(history: LoadHistory, section: Section, wanted: Wanted) -> dict[str, Any]:
+def _data(history: LoadHistory, section: Section, cam_rating: float | None) -> dict[str, Any]:
     preload = abs(history.parameters.preload)
     return {
         'name': history.name,
@@ -234,10 +228,10 @@ def _data(history: LoadHistory, section: Section, wanted: Wanted) -> dict[str, A
         'left_out': history.left_out,
         'preload': preload or None,
         'needed_preload': history.needed if preload else None,
-        'least_margin': float(history.margin.min()) if preload else None,
+        'least_margin': history.least_margin if preload else None,
         'out_of_mesh': history.lost if preload else None,
         'moments': [moment._asdict() for moment in history.moments],
-        'greatest_torque': float(np.abs(history.torque).max()),
+        'greatest_torque': history.greatest_torque,
         'slot_loss': history.slot_loss,
         'forces': {
             force.name: {
@@ -246,7 +240,7 @@ def _data(history: LoadHistory, section: Section, wanted: Wanted) -> dict[str, A
                 'p99_9': force.often,
                 'mean': force.mean,
                 'cubic_mean': None if math.isnan(force.cubic_mean) else force.cubic_mean,
-                'l10_hours': _life(history, force, wanted),
+                'l10_hours': _life(history, force, cam_rating),
                 'by_rotor_angle': [None if math.isnan(x) else x for x in force.by_angle.tolist()],
                 'cycles': [{'range': size, 'count': count} for size, count in force.cycles],
             }
