@@ -12,7 +12,7 @@ from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import RotorPosition
 from gear_kinematics.report.document import Figure, Line, Panel, Pen
 from gear_kinematics.report.image import COLOURS, FAINT, INK, add_legend, canvas, encode
-from gear_kinematics.shape.outlines import NAMES, Array, Pose, bodies, poses
+from gear_kinematics.shape.outlines import NAMES, Array, Pose, arrows, bodies, poses
 
 
 def _face(edge: str) -> str:
@@ -28,7 +28,7 @@ _EDGES = {
     'oldham': COLOURS['notable'],
     'output_shaft': COLOURS['pass'],
 }
-FACES = {body: (_face(edge), edge) for body, edge in _EDGES.items()}
+FACES = {body: (_face(edge), edge) for body, edge in _EDGES.items()} | {'force': (INK, INK)}
 """Colours of the face of each body and of its outline."""
 _MARGIN = 1.02
 _OUTLINE = 0.45  # points
@@ -50,19 +50,16 @@ class Bodies:
 
         self._mechanism, self._branch = mechanism, branch
         self._outlines = bodies(mechanism, module, branch)
+        radius = float(np.max(self._outlines['stator'][0]))
+        if force:
+            length = math.copysign(_ARROW * radius, force)
+            self._outlines['force'] = arrows(mechanism, length)
         self.patches = {}
         for body, outlines in self._outlines.items():
             face, edge = FACES[body]
             style = {'facecolor': face, 'edgecolor': edge, 'linewidth': _OUTLINE}
             self.patches[body] = axes.add_patch(PathPatch(_path(outlines), **style))
-        radius = float(np.max(self._outlines['stator'][0]))
         _square(axes, _MARGIN * radius)
-        self._length = math.copysign(_ARROW * radius, force)
-        self.arrows = None
-        if force:
-            style = {'angles': 'xy', 'scale_units': 'xy', 'scale': 1.0, 'zorder': 4}
-            none = np.zeros(2)
-            self.arrows = axes.quiver(none, none, none, none, color=INK, width=0.012, **style)
         self.show(RotorPosition(0, 0.0))
 
     def show(self, rotor: RotorPosition) -> None:
@@ -70,13 +67,6 @@ class Bodies:
         placed = poses(self._mechanism, rotor.angle, self._branch, rotor_turns=rotor.turns)
         for body, patch in self.patches.items():
             patch.set_path(_path(placed[body].place(part) for part in self._outlines[body]))
-        if self.arrows:
-            mechanism, centre = self._mechanism, placed['satellite'].centre
-            x, y = centre / mechanism.eccentricity  # u(θ)
-            teeth = mechanism.ring_teeth - mechanism.satellite_teeth
-            self.arrows.set_offsets([centre * mechanism.ring_teeth / teeth, centre])
-            along = self._length * np.array([-y, x])  # u'(θ)
-            self.arrows.set_UVC(*np.transpose([along, -along]))
 
 
 class Centres:

@@ -29,9 +29,10 @@ NAMES = {
     'rotor': "rotor's cam",
     'oldham': 'Oldham coupling',
     'output_shaft': 'arm',
+    'force': 'force on satellite',
 }
-"""Names of the bodies in drawings."""
-BODIES = tuple(NAMES)
+"""Names of the bodies and arrows in drawings."""
+BODIES = tuple(NAMES)[:-1]
 """The bodies of a branch from back to front, named as the links of the URDF."""
 
 _ARC = math.radians(3.0)  # between points of a circle, approximately
@@ -98,6 +99,20 @@ def bodies(mechanism: Mechanism, module: float, branch: int = 0) -> dict[str, Po
     }
 
 
+def arrows(mechanism: Mechanism, length: float) -> Polygons:
+    """Outline the forces on a satellite, in a frame whose y axis is u(θ).
+
+    An arrow of a length, m, at the pitch point along u'(θ), and one against it at O3; for a
+    negative length the other way round.
+    """
+    e, half = mechanism.eccentricity, 0.03 * length
+    pitch = e * mechanism.ring_teeth / (mechanism.ring_teeth - mechanism.satellite_teeth)
+    return tuple(
+        np.array([(0.0, y - width), (tip, y), (0.0, y + width)])
+        for tip, y, width in ((-length, pitch, -half), (length, e, half))
+    )
+
+
 def poses(
     mechanism: Mechanism,
     rotor_angle: ArrayLike,
@@ -114,7 +129,7 @@ def poses(
         rotor_turns: whole turns added to it, as for `solve`.
 
     Returns:
-        The pose of each of `BODIES`, in this order.
+        The pose of each of `BODIES`, in this order, and of `arrows`.
     """
     state = solve(mechanism, rotor_angle, rotor_turns=rotor_turns)
     shape = state.output_angle.shape
@@ -126,6 +141,7 @@ def poses(
         'rotor': Pose(axis, within_turn),
         'oldham': Pose(state.oldham_centre[..., branch, :], state.output_turn_angle),
         'output_shaft': Pose(axis, state.output_turn_angle),
+        'force': Pose(axis, within_turn + mechanism.branches[branch].cam_phase),
     }
 
 

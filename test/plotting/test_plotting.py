@@ -78,14 +78,14 @@ def test_forces_on_the_satellite_are_drawn_where_they_act(actuator, force):
     drawn = Bodies(axes, actuator, MODULE, 0, force)
     drawn.show(split_turns(0.7))
     u = np.array([-math.sin(0.7), math.cos(0.7)])
-    (pitch, centre), arrows = drawn.arrows.get_offsets(), drawn.arrows
-    assert pitch == pytest.approx(0.0011 * 80 / 4 * u)
-    assert centre == pytest.approx(0.0011 * u)
-    mesh, cam = np.column_stack([arrows.U, arrows.V])
-    assert cam == pytest.approx(-mesh)
+    mesh, cam = corners(drawn.patches['force'])
+    feet = [0.5 * (arrow[0] + arrow[2]) for arrow in (mesh, cam)]
+    assert feet == [pytest.approx(0.0011 * 80 / 4 * u), pytest.approx(0.0011 * u)]
     along = math.copysign(1.0, force) * np.array([-u[1], u[0]])  # u'(θ)
-    assert mesh == pytest.approx(np.hypot(*mesh) * along)
-    assert np.hypot(*mesh) > 0.005
+    length = float(np.hypot(*(mesh[1] - feet[0])))
+    assert length > 0.005
+    assert mesh[1] - feet[0] == pytest.approx(length * along)
+    assert cam[1] - feet[1] == pytest.approx(-length * along)
 
 
 def test_scheme_shows_the_bodies_named_and_the_angles(actuator, figures):
