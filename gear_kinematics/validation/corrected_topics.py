@@ -11,7 +11,6 @@ from typing import ClassVar
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.validation.output_topics import STATE_UNITS, Array, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
@@ -35,18 +34,6 @@ class Unbroken:
         if len(stamp):
             self._last, self._holes = int(stamp[-1]), int(holes[-1])
         return np.asarray(samples.segment + holes)
-
-
-class RecomputedCorrection:
-    """The correction at the samples of a recording."""
-
-    def __init__(self, calibration: Calibration, max_acceleration: float) -> None:
-        self._corrector = Corrector(calibration, max_acceleration)
-        self._unbroken = Unbroken()
-
-    def at(self, samples: RotorSamples) -> Correction:
-        """Compute the correction at the next samples, (n,)."""
-        return self._corrector.correct_batch(*samples[:5], self._unbroken.segments(samples))
 
 
 class CorrectedState(JointStateTopic):

@@ -105,15 +105,15 @@ def _judged(
             progress=lambda sent, _: progress and progress(sent, total),
         )
         batches = in_batches(messages, _BATCH)
-        corrected = beside(CORRECTED_TOPICS) if task.calibration else {}
+        further = beside(CORRECTED_TOPICS) if task.calibration else {}
         live = replace(task, strict=True)  # nothing is lost by a recorder here
-        validator = Validator(live, corrected=corrected, encoder=encoder and f'/{OUTPUT_ENCODER}')
+        validator = Validator(live, further=further, encoder=encoder and f'/{OUTPUT_ENCODER}')
     else:
-        corrected = find_beside(bag, CORRECTED_TOPICS, topics.output)
-        loads = find_beside(bag, LOAD_TOPICS, topics.output) if known else {}
-        names = (*topics, *corrected.values(), *loads.values(), *filter(None, [encoder]))
+        judged = *CORRECTED_TOPICS, *(LOAD_TOPICS if known else ())
+        further = find_beside(bag, judged, topics.output)
+        names = (*topics, *further.values(), *filter(None, [encoder]))
         batches = bag.batches(names, progress)
-        validator = Validator(task, topics, corrected, loads, encoder=encoder)
+        validator = Validator(task, topics, further, encoder=encoder)
     damage = None
     try:
         validator.feed(batches)

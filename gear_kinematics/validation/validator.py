@@ -11,21 +11,22 @@ import numpy as np
 
 from gear_kinematics.bag import Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
-from gear_kinematics.correction.corrector import Correction
+from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.kinematics import Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.report.document import Verdict
+from gear_kinematics.state.loads import Loads
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.validation import input_health
 from gear_kinematics.validation.corrected_topics import (
     CORRECTED,
-    RecomputedCorrection,
+    Unbroken,
     why_unjudged,
 )
 from gear_kinematics.validation.count_changes import CountChanges
 from gear_kinematics.validation.fields import Array
-from gear_kinematics.validation.load_topics import LOAD_COLUMNS, LOADS, RecomputedLoads
+from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import (
     SAMPLES,
     WINDOW,
@@ -39,6 +40,7 @@ from gear_kinematics.validation.report import BagReport, Finding
 from gear_kinematics.validation.task import Task
 from gear_kinematics.validation.turn_references import TurnReferences
 from gear_kinematics.wire.cdr import MalformedMessageError
+from gear_kinematics.wire.topics import LOAD_TOPICS
 
 _FRAME = 'stator'
 _TOPICS = Topics()
@@ -55,8 +57,7 @@ class Validator:
         self,
         task: Task,
         topics: Topics = _TOPICS,
-        corrected: Mapping[str, str] = _NONE,
-        loads: Mapping[str, str] = _NONE,
+        further: Mapping[str, str] = _NONE,
         solver: Solver = solve,
         encoder: str = '',
     ) -> None:
@@ -65,8 +66,8 @@ class Validator:
         Args:
             task: how to validate it.
             topics: names of the topics; that of poses that are not recorded is empty.
-            corrected: the recorded ones of CORRECTED_TOPICS, each with its name in the recording.
-            loads: the recorded ones of LOAD_TOPICS, likewise.
+            further: the recorded ones of CORRECTED_TOPICS and LOAD_TOPICS, each with its name in
+                the recording.
             solver: recomputes the motion: `solve`, or that of the matrix method.
             encoder: the topic of an encoder at the output that references the rotor, if recorded.
 
@@ -75,8 +76,8 @@ class Validator:
         """
         self._task = task
         self._parameters = parameters = task.parameters
-        self._topics, self._corrected, self._encoder = topics, corrected, encoder
-        self._load_topics = loads
+        self._topics, self._further, self._encoder = topics, further, encoder
+        self._corrected = [name for topic, name in further.items() if topic in CORRECTED]
         self._gear = gear = parameters.gear
         self._input = RotorInput(parameters)
         self._health = input_health.InputHealth(parameters.max_rotor_speed)
@@ -101,21 +102,19 @@ class Validator:
         self._why_unjudged = why_unjudged(
             task.calibration, single_turn=parameters.single_turn, absolute=parameters.absolute
         )
-        self._correction = None
+        self._unbroken, self._corrector, self._loads = Unbroken(), None, None
         columns: list[Any] = list(SAMPLES)
-        if task.calibration and corrected and not self._why_unjudged:
-            self._correction = RecomputedCorrection(
-                task.calibration, parameters.max_rotor_acceleration
-            )
+        if task.calibration and self._corrected and not self._why_unjudged:
+            self._corrector = Corrector(task.calibration, parameters.max_rotor_acceleration)
             columns += [(name, np.float64) for name in Correction._fields]
-            for topic, name in corrected.items():
+        if LOAD_TOPICS.keys() & further.keys():
+            self._loads = Loads(parameters)
+            columns.append(('acceleration', np.float64))
+        for topic, name in further.items():
+            if topic in LOAD_TOPICS:
+                self._judge(LoadTopic(topic, name, parameters, self._expectation))
+            elif self._corrector:
                 self._judge(CORRECTED[topic](name, joint, self._expectation))
-        self._loads = None
-        if loads:
-            self._loads = RecomputedLoads(parameters)
-            columns += LOAD_COLUMNS
-            for topic, name in loads.items():
-                self._judge(LOADS[topic](name, parameters, self._expectation))
         self._window = np.zeros(0, columns)
         """The latest samples."""
         self._prefix_open = not parameters.frame_prefix
@@ -145,9 +144,9 @@ class Validator:
             group.close()
         if self._changes.found:  # which the correction knows nothing of
             why = 'the zero of the rotor changes during the recording'
-            self._correction, self._why_unjudged = None, self._why_unjudged or why
-        corrected = self._corrected.values() if self._correction else ()
-        judged = {*self._topics, *corrected, *self._load_topics.values()}
+            self._corrector, self._why_unjudged = None, self._why_unjudged or why
+        unjudged = () if self._corrector else self._corrected
+        judged = {*self._topics, *self._further.values()}.difference(unjudged)
         rotor = self._health.report(self._input, self._topics.rotor)
         topics = tuple(
             output.report()
@@ -217,10 +216,12 @@ class Validator:
         columns['number'] = self._samples + np.arange(len(samples.stamp))
         columns['segment'] = self._firsts(samples.segment, columns['number'])
         self._samples += len(samples.stamp)
-        if self._correction:
-            columns |= self._correction.at(samples)._asdict()
+        segments = self._unbroken.segments(samples)
+        if self._corrector:
+            columns |= self._corrector.correct_batch(*samples[:5], segments)._asdict()
         if self._loads:
-            columns |= self._loads.at(samples)
+            found = self._loads.accelerations(samples.stamp, samples.velocity, segments)
+            columns['acceleration'] = np.where(np.isnan(samples.effort), np.nan, found)
         new = np.empty(len(samples.stamp), self._window.dtype)
         for name, values in columns.items():
             new[name] = values
@@ -309,8 +310,7 @@ class Validator:
         return self.poses.errors[0].report().max_error if self.poses else 0.0
 
     def _sorted(self, messages: Iterable[Message]) -> _Batch:
-        further = *self._corrected.values(), *self._load_topics.values(), self._encoder
-        return by_topic(messages, (*self._topics, *further))
+        return by_topic(messages, (*self._topics, *self._further.values(), self._encoder))
 
     def _found(self) -> Iterator[Finding]:
         """Yield with what the outputs are compared, what explains their faults, and the rest."""
@@ -327,5 +327,5 @@ class Validator:
             yield Finding(f'{rotor}: {self._input.missing_joint}', cause=True)
         for group, _ in self._groups:
             yield from group.causes()
-        if not self._correction and self._begun.keys() & set(self._corrected.values()):
+        if not self._corrector and self._begun.keys() & set(self._corrected):
             yield Finding(f'the corrected output is not judged: {self._why_unjudged}')

@@ -17,16 +17,14 @@ def validate(
     messages: list[Message],
     config: dict,
     *topics,
-    corrected=None,
-    loads=None,
+    further=None,
     solver=solve,
     encoder='',
     **options,
 ) -> BagReport:
     """Validate messages with the options of a `Task`."""
     task = Task(Path('bag'), config, **options)
-    named = {'corrected': corrected or {}, 'loads': loads or {}, 'solver': solver}
-    named['encoder'] = encoder
+    named = {'further': further or {}, 'solver': solver, 'encoder': encoder}
     validator = Validator(task, *topics, **named)
     validator.feed(in_batches(messages, 8192))
     return validator.report()

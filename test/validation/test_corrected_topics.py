@@ -52,7 +52,7 @@ def servo(config) -> list[Message]:
 
 
 def validate(messages, config, made=MADE, **options):
-    return validating.validate(messages, config, corrected=NAMES, calibration=made, **options)
+    return validating.validate(messages, config, further=NAMES, calibration=made, **options)
 
 
 def changed(messages, topic: str, number: int, **fields):

@@ -34,7 +34,7 @@ def braced(request, config):
 
 
 def validate(messages, config):
-    return validating.validate(messages, config, loads=NAMES)
+    return validating.validate(messages, config, further=NAMES)
 
 
 @pytest.mark.parametrize('bag', ['servo_point_to_point', 'driver_faults'])
