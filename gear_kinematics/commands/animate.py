@@ -12,6 +12,7 @@ from gear_kinematics.commands.files import check_targets, write_file
 from gear_kinematics.commands.output import progress
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.image import check_image
 
 _SPEED = 2.0 * TURN  # rad/s: fast enough for the output, slow enough for the rotor
 _FPS = 20
@@ -31,7 +32,7 @@ def run(options: argparse.Namespace) -> ExitCode:
     """Draw the frames, write the file and print its length."""
     path = Path(options.out)
     check_targets(options, {'FILE': options.out})
-    plotting.check_animation(path)
+    check_image(path, ['gif'])
     config = arguments.load_config(options, options.bag)
     mechanism, module = config.mechanism, config.module
     frames = _frames(options, config, mechanism.cycle_turns)

@@ -3,6 +3,7 @@
 
 import argparse
 from collections.abc import Iterator
+from dataclasses import asdict
 from fractions import Fraction
 from typing import Any, NamedTuple
 
@@ -85,11 +86,6 @@ def at_setting(options: argparse.Namespace, mechanism: Mechanism) -> Pins:
 
 
 def to_json(setting: PinSetting) -> dict[str, Any]:
-    """Return tooth, holes and turns of a setting."""
-    return {
-        'tooth': setting.tooth,
-        'ring_hole': setting.ring_hole,
-        'chassis_hole': setting.chassis_hole,
-        'turn': str(setting.turn),
-        'body_turn': str(setting.body_turn),
-    }
+    """Return tooth and holes of a setting, and its turns as exact fractions."""
+    given = asdict(setting)
+    return given | {name: str(given[name]) for name in ('turn', 'body_turn')}

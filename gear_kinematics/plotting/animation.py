@@ -4,7 +4,6 @@
 import math
 from collections.abc import Callable, Iterator
 from io import BytesIO
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,19 +20,6 @@ from gear_kinematics.shape.outlines import NAMES
 _WIDTH, _DPI = 4.0, 105  # inches: 420 pixels
 _HEIGHT = 2 / 3  # of the width: the mechanism, and beside it the centres at half its size
 _GROUND = '#ffffff'
-
-
-def check_animation(path: Path) -> None:
-    """Check that an animation can be written, before any work.
-
-    Raises:
-        ValueError: if `path` has another suffix than .gif.
-        ModuleNotFoundError: without matplotlib.
-    """
-    if path.suffix.lower() != '.gif':
-        raise ValueError(f'{path}: the suffix of an animation must be gif')
-    with canvas((1.0, 1.0)):
-        pass
 
 
 def animate(
@@ -90,7 +76,8 @@ def _moving(
     bodies = Bodies(left, mechanism, module, 0, force)
     names = [NAMES[body] for body in bodies.patches]
     handles = list(bodies.patches.values())
-    figure.legend(handles, names, loc=(0.72, 0.02), fontsize=7, handlelength=0.8)
+    style = {'fontsize': 7, 'handlelength': 0.8, 'labelspacing': 0.3}
+    figure.legend(handles, names, loc=(0.72, 0.02), **style)
     artists = bodies, Centres(right, mechanism, 0)
     output = frames.state(mechanism).output_angle
     for number, (time, turns, angle, turned) in enumerate(

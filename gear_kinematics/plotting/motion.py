@@ -8,14 +8,13 @@ import numpy as np
 from gear_kinematics.bag.trajectory import Trajectory
 from gear_kinematics.kinematics import Gear, Mechanism, solve
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.report.document import Array, Figure, Line, Panel, Pen
+from gear_kinematics.report.document import PENS, Array, Figure, Line, Panel, Pen
 
 MOST_PETALS = 1000
 """With more, a rose looks like a disc."""
 _PETAL_POINTS = 48
 _MM = 1e3  # in a metre
 _SAMPLES = 361  # of a turn
-_PENS = tuple(pen for pen in Pen if pen not in {Pen.MODEL, Pen.FAINT})
 
 
 def roses(mechanism: Mechanism) -> Figure:
@@ -26,7 +25,7 @@ def roses(mechanism: Mechanism) -> Figure:
     """
     panels = []
     paths = np.moveaxis(_MM * rose(mechanism), 1, 0)
-    for branch, path, pen in zip(mechanism.branches, paths, cycle(_PENS)):
+    for branch, path, pen in zip(mechanism.branches, paths, cycle(PENS)):
         line = Line(branch.name, pen, *path.T)
         title = f'branch {branch.name}: {mechanism.oldham_petals} petals'
         panels.append(Panel(title, 'x [mm]', 'y [mm]', (line,), equal=True))
@@ -65,7 +64,7 @@ def slides(mechanism: Mechanism, speed: float) -> Figure:
         values = chain(on_satellite.T, on_arm.T)
         lines = (
             Line(name, pen, np.degrees(angle), _MM * value)
-            for name, pen, value in zip(names, cycle(_PENS), values)
+            for name, pen, value in zip(names, cycle(PENS), values)
         )
         return Panel('', f'rotor angle [°] at {speed:.4g} rad/s', label, tuple(lines))
 

@@ -2,7 +2,7 @@
 """Writes figures as image files, with matplotlib."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import chdir, contextmanager
 from importlib import import_module
 from io import BytesIO
@@ -44,16 +44,15 @@ _DPI = 150
 _TICK_DIGITS = 8
 
 
-def check_image(path: Path) -> None:
+def check_image(path: Path, formats: Collection[str] = _METADATA.keys()) -> None:
     """Check that an image can be written, before any work; its suffix is the format.
 
     Raises:
-        ValueError: if the suffix is unknown.
+        ValueError: if the suffix is none of the formats.
         ModuleNotFoundError: without matplotlib.
     """
-    if _format(path) not in _METADATA:
-        known = ', '.join(_METADATA)
-        raise ValueError(f'{path}: the suffix of a plot must be one of {known}')
+    if _format(path) not in formats:
+        raise ValueError(f'{path}: the suffix must be {" or ".join(formats)}')
     with chdir(_FOLDER):
         import_module('matplotlib')
 

@@ -154,7 +154,7 @@ def page_of(path):
             ['{recording}', '{motion}', '--plot', 'x.png'],
             '--plot: the recordings have no torque ramps in common',
         ),
-        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix of a plot must be one of'),
+        (['{recording}', '--plot', 'x.txt'], 'x.txt: the suffix must be png or'),
         (['{recording}', '--json', '-', '--html', '-'], 'only one report can go to stdout'),
         (['{motion}', '--rotor-column', 'phi'], "no column 'phi'; there are: output, rotor"),
         (['{motion}', '--ratio', '19:1'], 'a gear ratio must be an integer, a fraction or a dec'),
