@@ -2,21 +2,15 @@
 """`gearkin loads`: whether the preload held over recordings, and what every joint carried."""
 
 import argparse
+import math
 from importlib import import_module
-from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.output import complain, message_progress
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
-from gear_kinematics.measurement.loads.analysis import (
-    WORK,
-    LoadHistory,
-    Outcome,
-    Task,
-    compute_loads,
-)
-from gear_kinematics.measurement.loads.document import document
+from gear_kinematics.measurement.loads.document import WORK, Report, document, report
+from gear_kinematics.measurement.loads.recorded import Task
 from gear_kinematics.report.document import Verdict
 
 
@@ -29,12 +23,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     gear.add_argument(
         '--cam-rating',
         type=arguments.positive,
+        default=math.nan,
         metavar='N',
         help="basic dynamic load rating C of a cam's ball bearing, for its L10 life",
     )
     gear.add_argument(
         '--slot-friction',
         type=arguments.positive,
+        default=math.nan,
         metavar='MU',
         help='coefficient of friction of the slots, for an estimate of their loss',
     )
@@ -44,46 +40,35 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(options: argparse.Namespace) -> ExitCode:
-    """Compute the loads of every recording; the exit code is 1 if a branch was out of mesh."""
+    """Report the loads of every recording; the exit code is 1 if a branch was out of mesh."""
     import_module('rainflow')  # before hours of work
     found = find_bags(options.bags)
-    for fault in found.faults.values():
-        complain(fault)
-    failed = bool(found.faults)
     reporter = Reporter(options, len(found.bags), brief=not options.verbose)
-    tasks: list[Task] = []
-    for bag in found.bags:
-        try:
-            tasks.append(
-                Task(
-                    bag,
-                    arguments.load_config(options, bag),
-                    options.rotor_topic,
-                    options.joint is None,
-                    options.slot_friction,
-                    options.debug,
-                )
-            )
-        except (ValueError, OSError) as error:
-            complain(error)
-            failed = True
+    tasks = [
+        Task(
+            bag,
+            arguments.load_config(options, bag),
+            options.rotor_topic,
+            options.joint is None,
+            options.cam_rating,
+            options.slot_friction,
+            options.debug,
+        )
+        for bag in found.bags
+    ]
 
-    def compute(task: Task) -> Outcome:
-        with message_progress(task.path.name, quiet=options.quiet) as report_progress:
-            return compute_loads(task, report_progress)
+    def run(task: Task) -> Report:
+        with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
+            return report(task, report_progress)
 
-    histories: dict[Path, LoadHistory] = {}
-    for task, outcome in bags.results(options, WORK, tasks, 'recordings', compute):
-        if outcome.error:
-            complain(outcome.error)
-            failed = True
-        if outcome.history:
-            histories[task.path] = outcome.history
-    if not histories:
+    results = bags.results(options, WORK, tasks, 'recordings', run)
+    reports = {task.bag: done for task, done in results}
+    faults = [*found.faults.values(), *(done.error for done in reports.values() if done.error)]
+    for fault in faults:
+        complain(fault)
+    joined = document([reports[bag] for bag in found.bags])
+    if joined.sections:
+        reporter.write(joined, (arguments.config_path(options, task.bag) for task in tasks))
+    if faults:
         return ExitCode.UNUSABLE
-    ordered = [histories[bag] for bag in found.bags if bag in histories]
-    report = document(ordered, options.cam_rating)
-    reporter.write(report, (arguments.config_path(options, bag) for bag in histories))
-    if failed:
-        return ExitCode.UNUSABLE
-    return ExitCode.FAILED if report.verdict == Verdict.FAIL else ExitCode.DONE
+    return ExitCode.FAILED if joined.verdict == Verdict.FAIL else ExitCode.DONE

@@ -4,9 +4,10 @@
 import argparse
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from gear_kinematics import plotting
 from gear_kinematics.commands import ExitCode, arguments
@@ -15,9 +16,9 @@ from gear_kinematics.commands.output import message_progress
 from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
+from gear_kinematics.kinematics.loads import TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
-from gear_kinematics.measurement.loads.analysis import Task, compute_loads
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.measurement.loads.recorded import Task, read_loads
 from gear_kinematics.report.document import Document, Layout, Section, Table
 from gear_kinematics.shape.angles import arc
 
@@ -26,17 +27,13 @@ class _Answer(NamedTuple):
     """A preload, and the pins for it."""
 
     mechanism: Mechanism
+    names: tuple[str, str]
+    """Of branches A and B."""
     backlash: float
     preload: Preload
     pins: Pins
     pinned: Preload
     """Preload of the nearest setting."""
-
-    @property
-    def names(self) -> tuple[str, str]:
-        """Names of branches A and B."""
-        branch_a, branch_b = braced(self.mechanism)
-        return branch_a.name, branch_b.name
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -124,7 +121,7 @@ def run(options: argparse.Namespace) -> ExitCode:
 
 def _answer(options: argparse.Namespace) -> _Answer:
     pair = arguments.load_config(options).mechanism
-    braced(pair)  # its error, before others
+    a, b = braced(pair)  # its error, before others
     branches, backlash = options.branch_stiffness, options.backlash
     if len(branches) > 2:  # noqa: PLR2004, A and B
         raise ValueError(f'--branch-stiffness takes one value or two, not {len(branches)}')
@@ -132,48 +129,33 @@ def _answer(options: argparse.Namespace) -> _Answer:
     if options.setting:
         pins = pinning.at_setting(options, pair)
     else:
-        pins = pinning.find(options, pair, _wanted(options, pair, stiffness, backlash))
+        pins = pinning.find(options, pair, _wanted(options, pair, stiffness))
     preload, pinned = (
         Preload.from_ring_turn(pair, stiffness, angle - (pins.phase or 0.0), backlash)
         for angle in (pins.ring_turn, pins.nearest.ring_turn)
     )
-    return _Answer(pair, backlash, preload, pins, pinned)
+    return _Answer(pair, (a.name, b.name), backlash, preload, pins, pinned)
 
 
-def _wanted(
-    options: argparse.Namespace, pair: Mechanism, stiffness: Stiffness, backlash: float
-) -> float:
+def _wanted(options: argparse.Namespace, pair: Mechanism, stiffness: Stiffness) -> float:
     """The turn that the options ask for, rad."""
+    sign = 1.0
     if options.wanted_preload is not None:
-        wanted = Preload.from_torque(stiffness, abs(options.wanted_preload))
-        return math.copysign(wanted.ring_turn(pair, backlash), options.wanted_preload)
-    if options.recording:
+        sign = options.wanted_preload
+        preload = Preload.from_torque(stiffness, abs(options.wanted_preload))
+    elif options.wanted_threshold is not None:
+        preload = Preload.from_limit(stiffness, options.wanted_threshold)
+    elif options.recording:
         config = arguments.load_config(options, options.recording)
-        torque = options.margin * _needed(options, config, stiffness)
-        turn = Preload.from_torque(stiffness, torque).ring_turn(pair, backlash)
-        return math.copysign(turn, config.preload)
-    if options.wanted_threshold is not None:
-        return Preload.from_limit(stiffness, options.wanted_threshold).ring_turn(pair, backlash)
-    return math.radians(options.degrees)
-
-
-def _needed(options: argparse.Namespace, config: NodeParameters, stiffness: Stiffness) -> float:
-    """The least preload that would have held in the recording, N·m."""
-    *branches, shaft = (
-        0.0 if math.isinf(k) else k
-        for k in (stiffness.branch_a, stiffness.branch_b, stiffness.shaft)
-    )
-    config = replace(
-        config,
-        preload=math.copysign(1.0, config.preload),
-        branch_stiffness=tuple(branches),
-        shaft_stiffness=shaft,
-    )
-    with message_progress(options.recording.name, quiet=options.quiet) as report_progress:
-        outcome = compute_loads(Task(options.recording, config), report_progress)
-    if not outcome.history:
-        raise ValueError(outcome.error)
-    return outcome.history.needed
+        sign = math.copysign(1.0, config.preload)
+        with message_progress(options.recording.name, quiet=options.quiet) as report_progress:
+            loads = read_loads(Task(options.recording, config), report_progress)
+        without = TorqueSharing(pair, Preload(stiffness, 0.0), int(sign))
+        needed = -float(np.min(without.margin(loads.torque)))
+        preload = Preload.from_torque(stiffness, options.margin * needed)
+    else:
+        return math.radians(options.degrees)
+    return math.copysign(preload.ring_turn(pair, options.backlash), sign)
 
 
 def _data(answer: _Answer) -> dict[str, Any]:

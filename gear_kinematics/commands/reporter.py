@@ -97,8 +97,7 @@ class Reporter:
                 shown = document.of_failed() if self._options.quiet else document
                 render(shown, Console(), brief=self._brief)
         if plot:
-            # Of several sections, the last compares the others.
-            figure = document.plot or document.sections[-1].figure
+            figure = document.sections[-1].image  # of several, the last compares the others
             if not figure:
                 raise ValueError(f'{plot}: there is nothing to plot')
             write_file(plot, to_image(figure, Path(plot)))

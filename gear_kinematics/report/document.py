@@ -243,6 +243,8 @@ class Section:
     """Notes on the interpretation of the values."""
     figure: Figure | None = None
     mechanism: MovingMechanism | None = None
+    below: Figure | None = None
+    """What a page shows below both."""
     key: Table | None = None
     """What a page shows above the figure."""
     leads: bool = False
@@ -251,6 +253,13 @@ class Section:
     answer: str = ''
     """The result in one line."""
     elapsed: float = 0.0  # s, of the check
+
+    @property
+    def image(self) -> Figure | None:
+        """What an image file shows."""
+        if not (self.figure and self.below):
+            return self.figure
+        return Figure((*self.figure.panels, *self.below.panels), columns=self.below.columns)
 
 
 @dataclass(frozen=True, slots=True)
@@ -280,8 +289,6 @@ class Document:
     totals: str = ''
     """Summary of the sections in one line."""
     origin: Origin | None = None
-    plot: Figure | None = None
-    """What an image of the report shows; None: the figure of the last section."""
 
     def of_failed(self) -> Self:
         """Return the document without what passed, or makes no judgement."""

@@ -85,6 +85,7 @@ def _section(section: Section, number: int, drawings: Drawings) -> Iterator[str]
     yield _list(findings, f'{len(findings)} more findings')
     yield _table(section.key) if section.key else ''
     yield from _figure(section.figure, section.mechanism, name, drawings)
+    yield from _figure(section.below, None, name, drawings)
     yield _list(list(map(escape, section.remarks)), f'{len(section.remarks)} remarks')
     head, *tables = section.tables
     below = ''.join(map(_table, tables))

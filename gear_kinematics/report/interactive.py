@@ -29,7 +29,7 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
     Returns:
         `data` and `layout` of plotly; `time`, the x of all lines without one of their own;
         `turned`, the angles of rotor and output in degrees, if there is a mechanism; `forces` of
-        its branches, as shares of the greatest, if they are drawn.
+        its branches, if they are drawn.
     """
     several = len(panels) > 1
     layout: dict[str, Any] = {'shapes': [], 'annotations': [], 'showlegend': False}
@@ -62,11 +62,8 @@ def interactive(panels: Sequence[Panel], mechanism: MovingMechanism | None) -> d
     if mechanism:
         turned = {'rotor': mechanism.rotor, 'output': mechanism.output}
         plot['turned'] = {name: _rounded(angle, '.3f') for name, angle in turned.items()}
-        if mechanism.mesh_force is not None:  # the greatest as long as the radius of the drawing
-            greatest = float(np.abs(mechanism.mesh_force).max()) or 1.0
-            plot['forces'] = [
-                _rounded(force / greatest, '.3g') for force in mechanism.mesh_force.T
-            ]
+        if mechanism.forces is not None:
+            plot['forces'] = [_rounded(force, '.3f') for force in mechanism.forces.T]
         # motion.js moves this one, the last of the shapes.
         layout['shapes'].append(_line(('x', 0, 0), ('paper', 0, 1), 'text', dash='solid'))
     return plot

@@ -37,8 +37,8 @@ class MovingMechanism:
     """Angle of the output shaft, (n,), degrees."""
     start: int = 0
     """Index of the sample that is shown first."""
-    mesh_force: Array | None = None
-    """F_t of each branch, (n, B), N, drawn as an arrow to scale; see `kinematics.loads`."""
+    forces: Array | None = None
+    """F_t of each branch, (n, B), drawn as an arrow so many radii of the drawing long."""
 
 
 class Drawings:
@@ -50,9 +50,8 @@ class Drawings:
     def moving(self, moving: MovingMechanism, figure: str) -> Iterator[str]:
         """Write a mechanism with the controls of its motion along the x axis of a figure."""
         yield f'<div class="motion" data-figure="{figure}">\n{_controls(moving)}'
-        yield from self.branches(
-            moving.mechanism, moving.module, forces=moving.mesh_force is not None
-        )
+        forces = moving.forces is not None
+        yield from self.branches(moving.mechanism, moving.module, forces=forces)
         yield '</div>\n'
 
     def branches(
@@ -63,33 +62,26 @@ class Drawings:
         The module of the teeth is in m. With forces, each branch has those on the satellite: an
         arrow of `--force` radii at the pitch point along u'(θ), and one against it at the cam.
         """
-        from gear_kinematics.shape.outlines import NAMES, bodies  # noqa: PLC0415, of pages alone
+        from gear_kinematics.shape import outlines  # noqa: PLC0415, of pages alone
 
-        drawn = [bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
-        scale = _RADIUS / float(np.max(np.abs(drawn[0]['stator'][0])))
+        drawn = [outlines.bodies(mechanism, module, k) for k in range(len(mechanism.branches))]
+        radius = float(np.max(np.abs(drawn[0]['stator'][0])))
+        if forces:
+            drawn = [each | {'force': outlines.arrows(mechanism, radius)} for each in drawn]
+        scale = _RADIUS / radius
         yield f'<div class="branches" style="--e: {scale * mechanism.eccentricity:.3f}px">\n'
-        for branch, outlines in zip(mechanism.branches, drawn, strict=True):
+        for branch, shapes in zip(mechanism.branches, drawn, strict=True):
             yield (
                 f'<figure style="--cam: {math.degrees(branch.cam_phase):.6g}deg">'
                 f'<svg viewBox="{-_VIEW:g} {-_VIEW:g} {2 * _VIEW:g} {2 * _VIEW:g}" role="img" '
                 f'aria-label="branch {branch.name}"><g class="upright">\n'
             )
-            for body, outline in outlines.items():
+            for body, outline in shapes.items():
                 yield f'<use class="{body}" href="#{self._name(outline, scale)}"/>\n'
             for body in ('output_shaft', 'satellite', 'oldham'):
                 yield f'<circle class="{body} centre" r="{_CENTRE:g}"/>\n'
-            if forces:
-                e = scale * mechanism.eccentricity
-                pitch = e * mechanism.ring_teeth
-                pitch /= mechanism.ring_teeth - mechanism.satellite_teeth
-                arrows = (
-                    f'M0,{y + 15:.1f}V{y - 15:.1f}L{x:g},{y:.1f}Z'
-                    for x, y in ((-_RADIUS, pitch), (_RADIUS, e))
-                )
-                yield f'<path class="force" d="{"".join(arrows)}"/>\n'
             yield f'</g></svg><figcaption>branch {branch.name}</figcaption></figure>\n'
-        legend = ''.join(f'<li class="{body}">{NAMES[body]}</li>' for body in drawn[0])
-        legend += '<li class="force">force on the satellite</li>' * forces
+        legend = ''.join(f'<li class="{body}">{outlines.NAMES[body]}</li>' for body in drawn[0])
         yield f'</div>\n<ul class="legend">{legend}</ul>\n'
 
     def shapes(self) -> str:

@@ -230,4 +230,4 @@ def test_preload_for_a_recording_holds_with_its_margin_and_has_its_price(capsys)
     text = printed(capsys, 'preload', '--from', bag, *words)
     assert '183.7 N at each mesh and cam' in text  # 1.2 × 3.2 N·m at 20.9 mm
     lost = refusal('preload', '--from', BAGS / 'single_turn_encoder', *words)
-    assert 'the loads need the effort of the rotor' in lost
+    assert 'the loads on /rotor_state are unknown: effort missing' in lost

@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 from pathlib import Path
 
 import made_bags
@@ -10,7 +11,8 @@ import numpy as np
 import pytest
 
 from gear_kinematics.commands.cli import main
-from gear_kinematics.measurement.loads.analysis import spectrum
+from gear_kinematics.kinematics import Branch, Mechanism, solve
+from gear_kinematics.measurement.loads.recorded import spectrum
 from gear_kinematics.wire.batches import encode
 from gear_kinematics.wire.cdr import JointStateTemplate
 
@@ -21,15 +23,18 @@ OVERLOADS = [(4000, 300, 0.5), (9000, 1, -0.45), (15000, 497, 0.48)]
 """First sample, number of samples and rotor effort, N·m, of which 0.315 is the most."""
 
 
-def record(folder: Path, *, effort: bool = True, overloads=OVERLOADS) -> Path:
-    """Record 20 s at 1 kHz, at ±0.1 N·m of the rotor but for the overloads."""
-    count = 20_000
-    torque = 0.1 * np.sin(np.arange(count) * math.tau / 2000.0)
+TIME = np.arange(20_000) * 1e-3  # s
+
+
+def record(folder: Path, *, effort: bool = True, overloads=OVERLOADS, period=2.0) -> Path:
+    """Record 20 s at 1 kHz, at ±0.1 N·m of the rotor in each period, s, but for the overloads."""
+    count = len(TIME)
+    torque = 0.1 * np.sin(TIME * math.tau / period)
     for first, samples, value in overloads:
         torque[first : first + samples] = value
     stamps = START + np.arange(count) * 1_000_000
     template = JointStateTemplate(['rotor'], velocity=True, effort=effort)
-    arrays = [SPEED * np.arange(count) * 1e-3], [SPEED], [torque]
+    arrays = [SPEED * TIME], [SPEED], [torque]
     messages = encode(template, stamps, *arrays[: 2 + effort])
     rows = zip(stamps.tolist(), messages, strict=True)
     return made_bags.folder(
@@ -70,11 +75,28 @@ def test_overloads_are_found_to_the_sample(tmp_path, config, capsys):
     )
 
 
+def test_moments_are_links_to_the_mechanism_with_its_forces(tmp_path, config):
+    pytest.importorskip('plotly')
+    page = tmp_path / 'loads.html'
+    words = '--config', str(config), '--html', str(page), '--quiet'
+    assert main(['loads', str(record(tmp_path)), *words]) == 1
+    text = page.read_text('utf-8')
+    times = re.findall(r'<a href="#figure-0" data-time="([\d.]+)">branch', text)
+    assert [float(time) for time in times] == [4.0, 9.0, 15.0]
+    assert len(re.findall('<use class="force"', text)) == 2
+    (moving,) = re.findall(r'data-figure="figure-0">(\{.*?\})</script>', text)
+    drawn = json.loads(moving)
+    forces = np.array(drawn['forces'])
+    # 0.5 N·m at the rotor: one branch gives all of 9.5 N·m, and the other nothing.
+    at = drawn['time'].index(4.0)
+    assert forces[:, at] == pytest.approx([0.0, -1.0])
+
+
 def test_forces_of_a_recording_without_overloads_by_hand(tmp_path, config, capsys):
     code, found = report(capsys, record(tmp_path, overloads=()), '--config', config)
     assert code == 0
     assert not found['moments']
-    torque = 3.0 + 0.95 * np.sin(np.arange(20_000) * math.tau / 2000.0)
+    torque = 3.0 + 0.95 * np.sin(TIME * math.tau / 2.0)
     for branch in 'ab':
         forces = found['forces'][f'mesh_{branch}'], found['forces'][f'cam_{branch}']
         for force in forces:
@@ -83,10 +105,9 @@ def test_forces_of_a_recording_without_overloads_by_hand(tmp_path, config, capsy
             cubic = np.mean(torque[1:] ** 3) ** (1 / 3) / RADIUS
             assert force['cubic_mean'] == pytest.approx(cubic, rel=1e-5)
             # Ten periods of one range: nine full cycles, and the rest from the mean and back.
-            sizes = [cycle['range'] for cycle in force['cycles']]
-            assert sizes[0] == pytest.approx(1.9 / RADIUS, rel=0.02)
+            assert force['cycles'][0][0] == pytest.approx(1.9 / RADIUS, rel=0.02)
             assert found['forces'][f'slot_{branch}']['greatest'] == pytest.approx(3.95, rel=1e-6)
-    full = sum(c['count'] for c in forces[0]['cycles'] if c['range'] > 1.8 / RADIUS)
+    full = sum(count for size, count in forces[0]['cycles'] if size > 1.8 / RADIUS)
     assert full == pytest.approx(9.5)
 
 
@@ -101,13 +122,34 @@ def test_bearing_lives_as_iso_281_says(tmp_path, config, capsys):
     assert found['forces']['mesh_a']['l10_hours'] is None
 
 
-def test_slots_lose_what_the_worked_example_says(tmp_path, config, capsys):
-    """μ (4/π) zk/zs of the power of the couples, which the preload keeps up without load."""
+def test_forces_over_the_angle_of_the_rotor(tmp_path, config, capsys):
+    """With the torque a function of that angle: 277 samples in each of 72 bins."""
+    bag = record(tmp_path, overloads=(), period=math.tau / SPEED)
+    _, found = report(capsys, bag, '--config', config)
+    edges = np.linspace(0.0, math.tau, 73)
+    # i = -19: branch A, which pushes forward, is relieved by a positive effort of the rotor.
+    at_edges = (3.0 - 0.95 * np.sin(edges)) / RADIUS
+    low, high = np.sort([at_edges[:-1], at_edges[1:]], axis=0)
+    greatest, most, mean = np.transpose(found['forces']['cam_a']['by_rotor_angle'])
+    assert np.all((0.999 * low < mean) & (mean < greatest) & (most <= greatest))
+    crest = np.abs(np.sin(edges[:-1])) < 0.95  # elsewhere the greatest is inside of the bin
+    assert greatest[crest] == pytest.approx(high[crest], rel=1e-3)
+    assert mean == pytest.approx((low + high) / 2, rel=2e-3)
+
+
+def test_slots_lose_force_times_speed(tmp_path, config, capsys):
+    """As the speeds of both slides say, from the motion of the mechanism."""
     bag = record(tmp_path, overloads=())
     _, found = report(capsys, bag, '--config', config, '--slot-friction', '0.1')
-    couples, work = 2 * 3.0, np.mean(np.abs(1.9 * np.sin(np.arange(2000) * math.tau / 2000)))
-    expected = 0.1 * 4 / math.pi * 80 / 76 * couples / work
-    assert found['slot_loss'] == pytest.approx(expected, rel=0.02)
+    state = solve(
+        Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', math.pi))), SPEED * TIME, SPEED
+    )
+    speeds = np.abs(state.satellite_slide_velocity) + np.abs(state.arm_slide_velocity)
+    load = 0.95 * np.sin(TIME * math.tau / 2.0)
+    couples = np.stack([3.0 - load, 3.0 + load], axis=-1)
+    lost = 0.1 * np.sum(couples / RADIUS * speeds)  # two forces 2 rs apart, at both slots
+    work = np.sum(np.abs(2.0 * load * state.output_velocity))
+    assert found['slot_loss'] == pytest.approx(lost / work, rel=1e-3)
 
 
 def test_without_a_preload_only_the_forces_are_told(tmp_path, capsys):
@@ -124,7 +166,7 @@ def test_without_effort_there_is_one_clear_error(tmp_path, config, capsys):
     captured = capsys.readouterr()
     assert not captured.out
     assert captured.err == (
-        f'gearkin: {bag}: the loads need the effort of the rotor, which /rotor_state lacks\n'
+        f'gearkin: {bag}: the loads on /rotor_state are unknown: effort missing 20000\n'
     )
 
 

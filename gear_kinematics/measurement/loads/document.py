@@ -3,20 +3,27 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from itertools import cycle
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from gear_kinematics.bag import ReportProgress, fleet
+from gear_kinematics.bag.errors import unexpected
 from gear_kinematics.measurement.envelope import envelope
-from gear_kinematics.measurement.loads.analysis import ANGLE_BINS, Force, LoadHistory
+from gear_kinematics.measurement.loads.recorded import (
+    ANGLE_BINS,
+    Force,
+    Moment,
+    RecordedLoads,
+    Task,
+    read_loads,
+)
 from gear_kinematics.report.document import (
     PENS,
     Document,
     Figure,
     Finding,
-    Layout,
     Line,
     Panel,
     Pen,
@@ -29,221 +36,186 @@ from gear_kinematics.report.document import (
 )
 from gear_kinematics.report.mechanism import MovingMechanism
 
-_MOST_MOMENTS = 10  # in the table and as links; all are in the JSON
+_LEVELS = 'greatest force', '99.9 % of the forces are below', 'mean force'
+_MOST_MOMENTS = 10  # in words and as links; all are in the JSON
 _FRAMES = 1000  # of the moving mechanism
 _AROUND = 50  # more frames before and after the begin of each moment
 
 
-def document(histories: Sequence[LoadHistory], cam_rating: float | None = None) -> Document:
-    """Return the document on the loads of recordings.
+class Report(NamedTuple):
+    """The report on one recording, or why there is none."""
 
-    Args:
-        histories: of the recordings.
-        cam_rating: C, N, of the bearing of a cam, to compute its life.
-    """
-    found = [_section(history, cam_rating) for history in histories]
-    sections = tuple(found)
-    plot = None
-    if len(found) == 1:
-        (head, forces), (history,) = found[0].tables, histories
-        panels = tuple(_of_forces(history))
-        more = Section('forces', (forces,), figure=Figure(panels))
-        sections = replace(found[0], tables=(head,)), more
-        plot = Figure((_over_time(history), *panels), columns=2)
-    pairs = zip(histories, found, strict=True)
-    recordings = [_data(history, section, cam_rating) for history, section in pairs]
-    data = {'schema': 'gear_kinematics/loads', 'version': 1, 'recordings': recordings}
-    verdicts = {section.verdict for section in found}
+    section: Section | None
+    data: dict[str, Any]
+    error: str
+    """In one line that names the recording: of damage, up to which it was read, too."""
+
+
+def document(reports: Sequence[Report]) -> Document:
+    """Join the reports on recordings."""
+    sections = tuple(report.section for report in reports if report.section)
+    verdicts = {section.verdict for section in sections}
     verdict = next((each for each in (Verdict.FAIL, Verdict.PASS) if each in verdicts), None)
-    return Document('gearkin loads', sections, data, verdict, plot=plot)
+    data = {'schema': 'gear_kinematics/loads', 'version': 1}
+    data |= {'recordings': [report.data for report in reports if report.section]}
+    return Document('gearkin loads', sections, data, verdict)
 
 
-def answer(history: LoadHistory) -> str:
+def report(task: Task, progress: ReportProgress | None = None) -> Report:
+    """Report the loads of a recording, and any error about it."""
+    try:
+        return _report(task, read_loads(task, progress))
+    except (ValueError, OSError) as error:
+        cause = str(error)
+    except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
+        cause = unexpected(error, debug=task.debug)
+    return _failed(cause if str(task.bag) in cause else f'{task.bag}: {cause}')
+
+
+def _failed(cause: str) -> Report:
+    return Report(None, {}, cause)
+
+
+WORK = fleet.Work(report, lambda task, cause: _failed(f'{task.bag}: {cause}'))
+"""For `fleet.on_this_machine`."""
+
+
+def _report(task: Task, loads: RecordedLoads) -> Report:
+    preload, verdict = abs(loads.parameters.preload), None
+    moments, forces = [*loads.moments()], [*loads.forces(task.cam_rating)]
+    answer, loss = _answer(loads, moments), loads.slot_loss(task.slot_friction)
+    if preload:
+        verdict = Verdict.FAIL if moments else Verdict.PASS
+    section = Section(
+        printable(task.bag.name),
+        (_table(forces),),
+        verdict,
+        tuple(_findings(answer, moments)),
+        tuple(_remarks(task, loads, loss)),
+        Figure((_over_time(loads),), stacked=True),
+        _moving(loads, [moment.sample for moment in moments[:_MOST_MOMENTS]]),
+        below=Figure(tuple(_over_angle(forces)), columns=2),
+    )
+    data = {
+        'name': task.bag.name,
+        'answer': answer,
+        'verdict': verdict,
+        'duration': float(loads.time[-1]),
+        'samples': len(loads.time),
+        'left_out': loads.left_out,
+        'preload': preload or None,
+        'needed_preload': loads.needed_preload,
+        'moments': [moment._asdict() for moment in moments],
+        'forces': {force.name: force._asdict() for force in forces},
+        'slot_loss': loss,
+    }
+    return Report(section, data, loads.damage)
+
+
+def _answer(loads: RecordedLoads, moments: Sequence[Moment]) -> str:
     """Say whether both branches stayed in mesh, and what preload would have held."""
-    time = duration(history.duration)
-    if not history.parameters.preload:
-        return (
-            f'Over {time} the output gave at most {number(history.greatest_torque)} '
-            'N·m; without the parameter preload, nothing is known of the mesh.'
-        )
-    needed = number(history.needed)
-    given = number(abs(history.parameters.preload))
-    least = f'the least preload that would have held: {needed} N·m (set: {given})'
-    if not history.moments:
-        return f'In {time} both branches were in mesh; {least}.'
-    moments = counted(len(history.moments), 'moment')
-    first = f'the first at {history.moments[0].start:.3f} s'
-    lost = f'{moments} ({number(history.lost)} s), {first}'
-    return f'In {time} both branches were in mesh but for {lost}; {least}.'
+    seconds, preload, lost = loads.time[-1], abs(loads.parameters.preload), ''
+    time = f'{seconds / 60.0:.1f} min' if seconds >= 100.0 else f'{number(seconds)} s'  # noqa: PLR2004
+    if not preload:
+        most = f'Over {time} the output gave at most {number(np.max(np.abs(loads.torque)))} N·m'
+        return f'{most}; without the parameter preload, nothing is known of the mesh.'
+    if moments:
+        total = number(sum(moment.duration for moment in moments))
+        first = f'the first at {moments[0].start:.3f} s'
+        lost = f' but for {counted(len(moments), "moment")} ({total} s), {first}'
+    needed = f'{number(loads.needed_preload)} N·m (set: {number(preload)})'
+    held = f'In {time} both branches were in mesh{lost}'
+    return f'{held}; the least preload that would have held: {needed}.'
 
 
-def duration(seconds: float) -> str:
-    """Write a duration in s or min."""
-    return f'{seconds / 60.0:.1f} min' if seconds >= 100.0 else f'{number(seconds)} s'  # noqa: PLR2004
-
-
-def _section(history: LoadHistory, cam_rating: float | None) -> Section:
-    verdict = None
-    if history.parameters.preload:
-        verdict = Verdict.FAIL if history.moments else Verdict.PASS
-    said = answer(history)
-    findings = [Finding('error' if history.moments else 'finding', said)]
-    if verdict == Verdict.PASS:
-        findings.clear()
-    for moment in history.moments[:_MOST_MOMENTS]:
+def _findings(answer: str, moments: Sequence[Moment]) -> Iterator[Finding]:
+    yield Finding('error' if moments else 'finding', answer)
+    for moment in moments[:_MOST_MOMENTS]:
         text = (
             f'branch {moment.branch} was out of mesh for {number(moment.duration)} s from '
             f'{moment.start:.3f} s on: {number(-moment.least_margin)} N·m beyond the preload'
         )
-        findings.append(Finding('error', text, moment.start))
-    return Section(
-        printable(history.name),
-        (_facts(history), _forces(history, cam_rating)),
-        verdict,
-        tuple(findings),
-        tuple(_remarks(history, cam_rating)),
-        Figure((_over_time(history),), stacked=True),
-        _moving(history),
-        answer=said if verdict == Verdict.PASS else '',
-    )
+        yield Finding('error', text, moment.start)
 
 
-def _facts(history: LoadHistory) -> Table:
-    facts = [('duration', duration(history.duration)), ('samples', str(len(history.time)))]
-    if preload := abs(history.parameters.preload):
-        least = f'{number(history.least_margin)} N·m'
-        facts += [('preload', f'{number(preload)} N·m'), ('least margin', least)]
-        facts.append(('out of mesh', f'{number(history.lost)} s'))
-    facts.append(('greatest torque', f'{number(history.greatest_torque)} N·m'))
-    return Table.of_values(Layout.INLINE, *facts)
+def _remarks(task: Task, loads: RecordedLoads, loss: float) -> Iterator[str]:
+    if loads.left_out:
+        causes = ', '.join(f'{cause} {count}' for cause, count in loads.left_out.items())
+        yield f'Messages left out: {causes}.'
+    if math.isfinite(task.cam_rating):
+        yield (
+            f'L10 by ISO 281 for ball bearings of C = {number(task.cam_rating)} N, at the speed '
+            'and the cubic mean load of this recording; without lubrication and contamination '
+            'factors.'
+        )
+    if math.isfinite(loss):
+        yield (
+            f'At μ = {task.slot_friction:g}, friction of the slots takes {100.0 * loss:.1f} % of '
+            'the work of the output, if each couple acts as two forces at a distance of twice '
+            'the rolling radius of the satellite.'
+        )
 
 
-def _forces(history: LoadHistory, cam_rating: float | None) -> Table:
-    def life(force: Force) -> str:
-        hours = _life(history, force, cam_rating)
-        return f'{number(hours)} h' if hours else ''
-
+def _table(forces: Sequence[Force]) -> Table:
     return Table.of_items(
         {
             'force': lambda force: f'{force.name} [{force.unit}]',
             'greatest': lambda force: number(force.greatest),
-            '99.9 % below': lambda force: number(force.often),
+            '99.9 % below': lambda force: number(force.p99_9),
             'mean': lambda force: number(force.mean),
-            'cubic mean': lambda force: number(force.cubic_mean) if history.turns else '',
-            'L10': life,
+            'cubic mean': lambda force: _known(force.cubic_mean),
+            'L10 [h]': lambda force: _known(force.l10_hours),
         },
-        history.forces,
+        forces,
     )
 
 
-def _life(history: LoadHistory, force: Force, cam_rating: float | None) -> float | None:
-    """L10 of a cam's bearing, h."""
-    if not (cam_rating and history.turns and force.name.startswith('cam')):
-        return None
-    return history.life(cam_rating, force)
+def _known(value: float) -> str:
+    return number(value) if math.isfinite(value) else ''
 
 
-def _remarks(history: LoadHistory, cam_rating: float | None) -> Iterator[str]:
-    if history.left_out:
-        causes = ', '.join(f'{cause} {count}' for cause, count in history.left_out.items())
-        yield f'Messages left out: {causes}.'
-    if cam_rating:
-        yield (
-            f'L10 by ISO 281 for ball bearings of C = {number(cam_rating)} N, at the speed '
-            'and the cubic mean load of this recording; without lubrication and contamination '
-            'factors.'
-        )
-    if history.slot_loss is not None:
-        yield (
-            f'At μ = {history.slot_friction:g}, friction of the slots takes '
-            f'{100.0 * history.slot_loss:.1f} % of the work of the output, if each couple acts as '
-            'two forces at a distance of twice the rolling radius of the satellite.'
-        )
+def _over_time(loads: RecordedLoads) -> Panel:
+    if loads.parameters.preload:
+        title, values = 'margin to the loss of mesh', loads.margin
+    else:
+        title, values = 'torque of the output', loads.torque
+    line = Line(title, Pen.FIRST, *envelope(loads.time, values))
+    levels = ((0.0, 'out of mesh below'),) if loads.parameters.preload else ()
+    return Panel(title, 'time [s]', f'{title} [N·m]', (line,), levels=levels)
 
 
-def _over_time(history: LoadHistory) -> Panel:
-    time, label = history.time, 'time [s]'
-    if not history.parameters.preload:
-        line = Line('torque', Pen.FIRST, *envelope(time, history.torque))
-        return Panel('torque of the output', label, 'torque [N·m]', (line,))
-    line = Line('margin', Pen.FIRST, *envelope(time, history.margin))
-    level = (0.0, 'out of mesh below')
-    return Panel('margin to the loss of mesh', label, 'margin [N·m]', (line,), levels=(level,))
-
-
-def _of_forces(history: LoadHistory) -> Iterator[Panel]:
-    """Draw the greatest forces over the angle of the rotor, and the load spectrum."""
+def _over_angle(forces: Sequence[Force]) -> Iterator[Panel]:
+    """Draw the forces of teeth and cams over the angle of the rotor, and their spectrum."""
     angle = (np.arange(ANGLE_BINS) + 0.5) * 360.0 / ANGLE_BINS
-    pens = dict(zip((force.name for force in history.forces), cycle(PENS)))
-    for unit, title in (('N', 'greatest force'), ('N·m', 'greatest couple')):
+    drawn = [*zip((force for force in forces if force.unit == 'N'), cycle(PENS))]
+    for k, title in enumerate(_LEVELS):
         lines = tuple(
-            Line(force.name, pens[force.name], angle, force.by_angle)
-            for force in history.forces
-            if force.unit == unit
+            Line(force.name, pen, angle, np.array(force.by_rotor_angle)[:, k])
+            for force, pen in drawn
         )
-        yield Panel(title, 'angle of the rotor [°]', f'{title} [{unit}]', lines)
-    lines = tuple(
-        Line(
-            force.name,
-            pens[force.name],
-            np.array([size for size, _ in force.cycles]),
-            np.cumsum([count for _, count in force.cycles]),
-        )
-        for force in history.forces
-        if force.cycles
-    )
+        yield Panel(title, 'angle of the rotor [°]', 'force [N]', lines)
+    spectra = ((force, pen, *np.transpose(force.cycles)) for force, pen in drawn if force.cycles)
+    lines = tuple(Line(force.name, pen, x, np.cumsum(y)) for force, pen, x, y in spectra)
     if lines:
         title = 'cycles of at least this range'
         yield Panel('load spectrum', 'range [N]', title, lines, scale='log')
 
 
-def _moving(history: LoadHistory) -> MovingMechanism:
-    count = len(history.time)
-    rows = {*np.linspace(0, count - 1, _FRAMES).astype(int).tolist()}
-    for moment in history.moments[:_MOST_MOMENTS]:
-        rows.update(range(max(moment.sample - _AROUND, 0), min(moment.sample + _AROUND, count)))
-    kept = np.array(sorted(rows))
-    first = history.moments[0].sample if history.moments else 0
-    parameters = history.parameters
-    mechanism, shares = parameters.mechanism, parameters.sharing.branches(history.torque[kept], np)
+def _moving(loads: RecordedLoads, begins: Sequence[int]) -> MovingMechanism:
+    """The mechanism over the whole recording, and closer around the begins of moments."""
+    last, around = len(loads.stamp) - 1, np.arange(-_AROUND, _AROUND)
+    rows = [np.linspace(0, last, _FRAMES), *(begin + around for begin in begins)]
+    kept = np.unique(np.concatenate(rows).astype(int).clip(0, last))
+    parameters, turned = loads.parameters, np.degrees(loads.rotor[kept])
+    mechanism = parameters.mechanism
+    shares = parameters.sharing.branches(loads.torque[kept], np)
+    torques = np.column_stack([torque for torque, _ in shares])
     return MovingMechanism(
         mechanism,
         parameters.module,
-        history.time[kept],
-        np.degrees(history.rotor[kept]),
-        np.degrees(history.rotor[kept]) / float(mechanism.gear_ratio),
-        int(np.searchsorted(kept, first)),
-        np.column_stack([torque for torque, _ in shares]) / mechanism.satellite_rolling_radius,
+        loads.time[kept],
+        turned,
+        turned / float(mechanism.gear_ratio),
+        int(np.searchsorted(kept, begins[0] if begins else 0)),
+        torques / (np.abs(torques).max() or 1.0),  # as are the forces
     )
-
-
-def _data(history: LoadHistory, section: Section, cam_rating: float | None) -> dict[str, Any]:
-    preload = abs(history.parameters.preload)
-    return {
-        'name': history.name,
-        'answer': answer(history),
-        'verdict': section.verdict,
-        'duration': history.duration,
-        'samples': len(history.time),
-        'left_out': history.left_out,
-        'preload': preload or None,
-        'needed_preload': history.needed if preload else None,
-        'least_margin': history.least_margin if preload else None,
-        'out_of_mesh': history.lost if preload else None,
-        'moments': [moment._asdict() for moment in history.moments],
-        'greatest_torque': history.greatest_torque,
-        'slot_loss': history.slot_loss,
-        'forces': {
-            force.name: {
-                'unit': force.unit,
-                'greatest': force.greatest,
-                'p99_9': force.often,
-                'mean': force.mean,
-                'cubic_mean': None if math.isnan(force.cubic_mean) else force.cubic_mean,
-                'l10_hours': _life(history, force, cam_rating),
-                'by_rotor_angle': [None if math.isnan(x) else x for x in force.by_angle.tolist()],
-                'cycles': [{'range': size, 'count': count} for size, count in force.cycles],
-            }
-            for force in history.forces
-        },
-    }

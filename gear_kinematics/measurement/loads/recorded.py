@@ -1,0 +1,249 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The loads at the samples of a recording, and what they come to."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gear_kinematics.bag import Bag, BagError, ReportProgress, by_topic
+from gear_kinematics.bag.roles import find_rotor_topic, only_joint
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.wire.cdr import SECOND
+
+Array = NDArray[Any]
+
+ANGLE_BINS = 72
+"""Of a turn of the rotor: 5° each."""
+_JOINTS = 'mesh', 'cam', 'slot'
+_BEARING_EXPONENT = 3.0  # of ball bearings, ISO 281:2007, 4; roller bearings live longer
+_STEPS = 64  # of the range of a force, below one of which a cycle is not counted
+_LONGEST_STEP = SECOND  # ns, of a sample without a next one to show how long it lasted
+
+
+class Task(NamedTuple):
+    """A recording, and how to report its loads."""
+
+    bag: Path
+    parameters: NodeParameters
+    rotor_topic: str | None = None
+    only_joint: bool = True
+    """Whether the only joint of the rotor's topic is taken, whatever it is called."""
+    cam_rating: float = math.nan
+    """C, N: the basic dynamic load rating of the bearing of a cam, for its life."""
+    slot_friction: float = math.nan
+    """μ of the slots, for their loss."""
+    debug: bool = False
+    """Whether to print tracebacks of unexpected errors to stderr."""
+
+
+class Moment(NamedTuple):
+    """A time in which a branch was out of mesh."""
+
+    start: float
+    """s, since the first sample."""
+    duration: float
+    """s; that of a single sample lasts until the next one."""
+    branch: str
+    least_margin: float
+    """N·m, less than 0."""
+    stamp: int
+    """Of the first sample, ns."""
+    sample: int
+    """Its number."""
+
+
+class Force(NamedTuple):
+    """A force, N, or a couple, N·m, over a recording."""
+
+    name: str
+    """As in `RecordedLoads.joints`."""
+    unit: str
+    greatest: float
+    p99_9: float
+    """99.9 % of the samples are below."""
+    mean: float
+    cubic_mean: float
+    """The cube root of the mean cube over the rotor's travel; NaN at a standstill."""
+    l10_hours: float
+    """The life of a cam's bearing at the speed and the cubic mean of the recording, or NaN."""
+    by_rotor_angle: list[tuple[float, float, float]]
+    """The first three at each of ANGLE_BINS; NaN where the rotor never was."""
+    cycles: list[tuple[float, float]]
+    """The load spectrum of a force: ranges, N, and how often they occurred."""
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedLoads:
+    """The loads at n samples of a recording."""
+
+    parameters: NodeParameters
+    stamp: Array
+    """(n,), ns."""
+    rotor: Array
+    """(n,), rad: φ2."""
+    torque: Array
+    """(n,), N·m: Σ T."""
+    joints: Mapping[str, Array]
+    """(n,) each, without signs: `output`, the torque, N·m, and for each branch `mesh_<name>` and
+    `cam_<name>`, forces, N, and `slot_<name>`, the couple of the satellite's slot, N·m."""
+    left_out: Mapping[str, int]
+    """Messages without known loads, by cause."""
+    damage: str
+    """At which reading ended, if any."""
+
+    @cached_property
+    def time(self) -> Array:
+        """(n,), s, since the first sample."""
+        return np.asarray((self.stamp - self.stamp[0]) / SECOND)
+
+    @cached_property
+    def margin(self) -> Array:
+        """(n,), N·m; NaN without a preload. See `TorqueSharing.margin`."""
+        return np.asarray(self.parameters.sharing.margin(self.torque))
+
+    @cached_property
+    def travel(self) -> Array:
+        """How far the rotor turned to each sample, (n,), rad."""
+        return np.asarray(np.abs(np.diff(self.rotor, prepend=self.rotor[:1])))
+
+    @property
+    def needed_preload(self) -> float:
+        """The least, N·m, with which both branches would have been in mesh; NaN without any."""
+        return round(abs(self.parameters.preload) - float(np.min(self.margin)), 12)
+
+    def moments(self) -> Iterator[Moment]:
+        """Yield the times in which a branch was out of mesh."""
+        edges = np.flatnonzero(np.diff(self.margin <= 0.0, prepend=False, append=False))
+        lasts = np.diff(self.stamp, append=self.stamp[-1]).clip(0, _LONGEST_STEP)
+        for begin, end in edges.reshape(-1, 2).tolist():
+            worst = begin + int(np.argmin(self.margin[begin:end]))
+            # The branch that pushes in the direction of the torque gives all of it.
+            left = int(self.parameters.preload * self.torque[worst] > 0.0)
+            yield Moment(
+                float(self.time[begin]),
+                float(lasts[begin:end].sum()) / SECOND,
+                self.parameters.branches[left].name,
+                float(self.margin[worst]),
+                int(self.stamp[begin]),
+                begin,
+            )
+
+    def forces(self, cam_rating: float) -> Iterator[Force]:
+        """Yield what each joint carried; the rating, N, of a cam's bearing is for its life."""
+        bins = np.minimum(self.rotor % TURN / TURN * ANGLE_BINS, ANGLE_BINS - 1).astype(np.uint8)
+        order = np.argsort(bins, kind='stable')
+        borders = np.searchsorted(bins[order], np.arange(1, ANGLE_BINS))
+        for name, values in self.joints.items():
+            unit = 'N' if name.startswith(('mesh', 'cam')) else 'N·m'
+            with np.errstate(invalid='ignore'):  # of a standstill
+                cubic_mean = float(np.cbrt(values**3 @ self.travel / self.travel.sum()))
+            life = self.life(cam_rating, cubic_mean) if name.startswith('cam') else math.nan
+            at_angles = [*map(_levels, np.split(values[order], borders))]
+            cycles = spectrum(values) if unit == 'N' else []
+            yield Force(name, unit, *_levels(values), cubic_mean, life, at_angles, cycles)
+
+    def life(self, rating: float, load: float) -> float:
+        """L10 = (C/P)^p 10⁶ turns of the bearing of a cam (ISO 281), in h of this recording.
+
+        Args:
+            rating: C, N, the basic dynamic load rating.
+            load: P, N, the cubic mean.
+        """
+        ratio = float(self.parameters.mechanism.gear_ratio)
+        turns = self.travel.sum() / TURN * (1.0 - 1.0 / ratio)  # of the satellite on its cam
+        hours = self.time[-1] / 3600.0
+        return float((rating / load) ** _BEARING_EXPONENT * 1e6 / turns * hours)
+
+    @np.errstate(divide='ignore', invalid='ignore')  # without any work
+    def slot_loss(self, friction: float) -> float:
+        """Share of the output's work that the slots take: μ (4/π)(zk/zs) Σ abs(T)/abs(Σ T).
+
+        Each couple T acts as two forces at a distance of 2 rs; both slides have the amplitude e,
+        so that the sum of their speeds is (4/π) e (zk/zs) φ2' in the mean of a turn.
+
+        Args:
+            friction: μ.
+        """
+        mechanism, shares = self.parameters.mechanism, self.parameters.sharing
+        couples = sum(abs(torque) for torque, _ in shares.branches(self.torque, np))
+        teeth = mechanism.ring_teeth / mechanism.satellite_teeth
+        given, taken = abs(self.torque) @ self.travel, couples @ self.travel
+        return float(friction * 4.0 / math.pi * teeth * taken / given)
+
+
+def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLoads:
+    """Read a recording, up to any damage, and compute its loads.
+
+    Raises:
+        BagError: if it cannot be read, or has nowhere what the loads need.
+        MechanismError: if the parameters describe no mechanism or no preload.
+    """
+    parameters, damage = task.parameters, ''
+    stamps: list[Array] = []
+    tables: list[Array] = []
+    with Bag(task.bag) as bag:
+        topic = find_rotor_topic(bag, task.rotor_topic, parameters.rotor_joint)
+        if task.only_joint:
+            joint = only_joint(bag, topic, parameters.rotor_joint)
+            parameters = replace(parameters, rotor_joint=joint)
+        rotor, loads = RotorInput(parameters), Loads(parameters)
+        lacking = 'effort or acceleration missing' if loads.needs_motion else 'effort missing'
+        try:
+            for batch in bag.batches([topic], progress):
+                messages = by_topic(batch, [topic])[topic]
+                samples = rotor.accept_batch(messages.data, messages.received)
+                found = loads.follow_batch(samples)
+                rows = [TURN * samples.turns + samples.angle, found.torque]
+                for branch in found.branches:
+                    rows += np.hypot(*branch.mesh_force), np.hypot(*branch.cam_force)
+                    rows.append(np.abs(branch.satellite_couple))
+                known = np.isfinite(found.torque)
+                stamps.append(samples.stamp[known])
+                tables.append(np.stack(rows)[:, known])
+                if unknown := np.count_nonzero(~known):
+                    rotor.rejected[lacking] += int(unknown)
+        except BagError as error:  # what could be read counts
+            damage = str(error)
+    if not any(map(len, stamps)):
+        why = rotor.why_rejected or 'no messages'
+        raise BagError(damage or f'{task.bag}: the loads on {topic} are unknown: {why}')
+    angle, torque, *forces = np.concatenate(tables, axis=1)
+    names = [f'{kind}_{each.name}' for each in parameters.branches for kind in _JOINTS]
+    joints = {'output': np.abs(torque), **dict(zip(names, forces, strict=True))}
+    return RecordedLoads(
+        parameters, np.concatenate(stamps), angle, torque, joints, dict(rotor.rejected), damage
+    )
+
+
+def _levels(values: Array) -> tuple[float, float, float]:
+    """The greatest, the percentile 99.9 and the mean."""
+    if not len(values):
+        return np.nan, np.nan, np.nan
+    return float(values.max()), float(np.percentile(values, 99.9)), float(values.mean())
+
+
+def spectrum(values: Array) -> list[tuple[float, float]]:
+    """Count the cycles of a load by rainflow (ASTM E1049-85, 5.4.4).
+
+    Args:
+        values: (n,), of which only 64 levels are told apart.
+
+    Returns:
+        Ranges in the unit of the values, the largest first, with their counts.
+    """
+    import rainflow  # noqa: PLC0415, of an extra
+
+    step = float(np.ptp(values)) / _STEPS or 1.0
+    levels = np.round((values - values.min()) / step).astype(int)
+    changes = levels[np.flatnonzero(np.diff(levels, prepend=-1))]
+    counts = rainflow.count_cycles(changes.tolist())
+    return [(size * step, count) for size, count in reversed(counts) if size]
