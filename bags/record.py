@@ -21,7 +21,7 @@ from typing import Literal, NamedTuple
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.live import Replay, running_node
 from gear_kinematics.share import share_directory
-from gear_kinematics.wire.cdr import JointStateTemplate
+from gear_kinematics.wire.cdr import JointStateTemplate, Template
 from gear_kinematics.wire.topics import RECORDED_TOPICS
 
 _COUNTS = 2**20  # of the encoder, per turn
@@ -93,20 +93,20 @@ def _encoder(angle: float) -> float:
     return round(angle / (2.0 * math.pi) * _COUNTS) / _COUNTS * 2.0 * math.pi
 
 
-def _readings(motion: Motion) -> tuple[list[float], list[float], list[float]]:
+def _readings(motion: Motion) -> tuple[float, float, float]:
     torque = _INERTIA * motion.acceleration
     if motion.velocity:
         torque += math.copysign(_FRICTION, motion.velocity)
     return (
-        [_encoder(motion.angle)],
-        [motion.velocity + _noise.gauss(0.0, 0.05)],
-        [torque + _noise.gauss(0.0, 0.002)],
+        _encoder(motion.angle),
+        motion.velocity + _noise.gauss(0.0, 0.05),
+        torque + _noise.gauss(0.0, 0.002),
     )
 
 
 def servo_driver(_number: int, stamp: int, motion: Motion) -> list[bytes]:
     """A driver that reports all there is."""
-    return [_full.encode(stamp, *_readings(motion))]
+    return [_full.encode(stamp, _readings(motion))]
 
 
 def single_turn_driver(_number: int, stamp: int, motion: Motion) -> list[bytes]:
@@ -116,31 +116,31 @@ def single_turn_driver(_number: int, stamp: int, motion: Motion) -> list[bytes]:
 
 def faulty_driver(number: int, stamp: int, motion: Motion) -> list[bytes]:
     """Every fault of real drivers, each a few times."""
-    position, velocity, effort = _readings(motion)
-    good = _full.encode(stamp, position, velocity, effort)
+    readings = position, velocity, effort = _readings(motion)
+    good = _full.encode(stamp, readings)
     if any(number in silence for silence in _SILENCES):
         return []
     match number % 100:
         case 10:
             return [good, good]  # the same stamp twice
         case 20:
-            return [good, _full.encode(stamp - 5_000_000, position, velocity, effort)]
+            return [good, _full.encode(stamp - 5_000_000, readings)]
         case 30:
-            return [_full.encode(stamp, [math.nan], velocity, effort)]
+            return [_full.encode(stamp, [math.nan, velocity, effort])]
         case 40:
-            return [_WRONG_JOINT.encode(stamp, position, velocity, effort)]
+            return [_WRONG_JOINT.encode(stamp, readings)]
         case 50:
-            return [_NO_NUMBERS.encode(stamp)]
+            return [_NO_NUMBERS.encode(stamp, [])]
         case 60:
-            return [_full.encode(stamp, position, [math.nan], [math.inf])]
+            return [_full.encode(stamp, [position, math.nan, math.inf])]
         case 70:
-            return [_position_only.encode(stamp, position)]
+            return [_position_only.encode(stamp, [position])]
     return [good]
 
 
 _SILENCES = range(400, 460), range(900, 1050)  # 0.12 s and 0.3 s
 _WRONG_JOINT = JointStateTemplate(['gripper'], velocity=True, effort=True)
-_NO_NUMBERS = JointStateTemplate(['rotor'], position=False, velocity=False, effort=False)
+_NO_NUMBERS = Template('', ['rotor'], (0, 1, ()), (0, 1, ()), (0, 1, ()))
 
 SCENARIOS = {
     'servo_point_to_point': Scenario(point_to_point, servo_driver, 500.0, 6.0),

@@ -14,7 +14,7 @@ coupling, so that O4 - O3 = -x u'(φ5) and O4 = y u(φ5); rs = e zs/(zk - zs). F
     F = F_t u'(θ) - abs(F_t) tan(αw) u(θ)    the same with its radial part, away from the ring
     F_cam = m3 a3 + N3 u(φ5) - F         cam on satellite, at O3
 
-and for the rotor, with φ2'' = i φ5'' and O3 × F_cam = m3 e² φ2'' - x N3 - e F_t:
+and for the rotor, with φ2'' = i φ5'', O3 × F_cam = m3 e² φ2'' - x N3 - e F_t and rs = -i e:
 
     τ2 = J2 φ2'' + Σ O3 × F_cam
 
@@ -26,7 +26,7 @@ How the branches share the torque of the output is statically indeterminate: `sh
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from numbers import Real
 from types import ModuleType
@@ -38,10 +38,7 @@ from numpy.typing import ArrayLike
 from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import Array, BranchPosition, MotionState, read_only
-from gear_kinematics.kinematics.preload import Preload, braced
-
-Pair = tuple[Any, Any]
-_ZERO = (0.0, 0.0)
+from gear_kinematics.kinematics.preload import Flanks, Pair, Preload, braced
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,18 +111,11 @@ class Loads:
         read_only(self)
 
 
-class BranchLoads(NamedTuple):
-    """The loads of one branch, as in `Loads`, as floats or arrays; forces are pairs (x, y)."""
-
-    mesh_tangential: Any
-    mesh_force: Pair
-    cam_force: Pair
-    satellite_slot_force: Pair
-    arm_slot_force: Pair
-    satellite_couple: Any
-    arm_couple: Any
-    rotor_torque: Any
-    """O3 × F_cam: the share of the branch, N·m."""
+BranchLoads = tuple[Any, Pair, Pair, Pair, Pair, Any, Any]
+"""The loads of one branch, floats or arrays, in the order of the fields of `Loads`."""
+Inertia = tuple[Pair, Pair, Pair, Any, Any, Any, Any]
+"""What masses add to a branch: N3 u, N5 u', F + F_cam, C3, C5, F_t rs and O3 × F_cam."""
+AT_REST: Inertia = (0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 0.0, 0.0, 0.0, 0.0
 
 
 class LoadEquations:
@@ -140,63 +130,58 @@ class LoadEquations:
         self._eccentricity = mechanism.eccentricity
         self._radius = mechanism.satellite_rolling_radius
         self._ratio = float(mechanism.gear_ratio)
-        self._radial = math.tan(bodies.pressure_angle)
-        self._orbit_inertia = bodies.satellite_mass * mechanism.eccentricity**2
+        self._tangent = math.tan(bodies.pressure_angle)
 
-    def branch(
-        self,
-        position: BranchPosition,
-        arm: Pair,
-        torque: Any,
-        output_acceleration: Any = 0.0,
-        satellite_acceleration: Pair = _ZERO,
-        oldham_acceleration: Pair = _ZERO,
-    ) -> BranchLoads:
-        """Loads of one branch.
-
-        Args:
-            position: of its bodies.
-            arm: u(φ5).
-            torque: T, N·m, of the branch on the output shaft.
-            output_acceleration: φ5'', rad/s².
-            satellite_acceleration: a3, m/s².
-            oldham_acceleration: a4, m/s².
-        """
-        bodies, e, (ux, uy) = self._bodies, self._eccentricity, arm
-        N3 = N5 = orbit = spin3 = spin4 = 0.0
-        inertia_x, inertia_y = _ZERO
-        if not self._massless:
-            (a3x, a3y), (a4x, a4y) = satellite_acceleration, oldham_acceleration
-            N3 = bodies.coupling_mass * (a4x * ux + a4y * uy)
-            N5 = bodies.coupling_mass * (a4y * ux - a4x * uy)
-            inertia_x, inertia_y = bodies.satellite_mass * a3x, bodies.satellite_mass * a3y
-            spin3 = bodies.satellite_inertia * output_acceleration
-            spin4 = bodies.coupling_inertia * output_acceleration
-            orbit = self._orbit_inertia * self._ratio * output_acceleration
-        C5 = 0.0 - torque - position.arm_slide * N5
-        C3 = spin4 - C5
-        lever = position.satellite_slide * N3
-        F_t = (spin3 + C3 + lever) / self._radius
-        theta_x, theta_y = position.satellite[0] / e, position.satellite[1] / e  # u(θ)
-        radial = abs(F_t) * self._radial
-        mesh_x = 0.0 - F_t * theta_y - radial * theta_x
-        mesh_y = F_t * theta_x - radial * theta_y
+    def inertia(
+        self, position: BranchPosition, arm: Pair, output_acceleration: Any, a3: Pair, a4: Pair
+    ) -> Inertia:
+        """What the masses of a branch add: arm u(φ5), φ5'' in rad/s², a3 and a4 in m/s²."""
+        if self._massless:
+            return AT_REST
+        bodies, e, (_, _, x, y) = self._bodies, self._eccentricity, position
+        (ux, uy), (a3x, a3y), (a4x, a4y) = arm, a3, a4
+        N3 = bodies.coupling_mass * (a4x * ux + a4y * uy)
+        N5 = bodies.coupling_mass * (a4y * ux - a4x * uy)
         slot_x, slot_y = N3 * ux, N3 * uy
-        return BranchLoads(
-            F_t,
-            (mesh_x, mesh_y),
-            (inertia_x + slot_x - mesh_x, inertia_y + slot_y - mesh_y),
+        C5 = -y * N5
+        C3 = bodies.coupling_inertia * output_acceleration - C5
+        moment = bodies.satellite_inertia * output_acceleration + C3 + x * N3
+        orbit = bodies.satellite_mass * e**2 * self._ratio * output_acceleration
+        return (
             (slot_x, slot_y),
-            (0.0 - N5 * uy, N5 * ux),
+            (-N5 * uy, N5 * ux),
+            (bodies.satellite_mass * a3x + slot_x, bodies.satellite_mass * a3y + slot_y),
             C3,
             C5,
-            orbit - lever - e * F_t,
+            moment,
+            orbit - x * N3 - e * moment / self._radius,
         )
 
-    def rotor_torque(self, branches: Sequence[BranchLoads], output_acceleration: Any = 0.0) -> Any:
-        """τ2, N·m: of the rotor's inertia and the branches."""
-        inertial = self._bodies.rotor_inertia * self._ratio * output_acceleration
-        return sum((branch.rotor_torque for branch in branches), inertial)
+    def branches(
+        self,
+        positions: Iterable[BranchPosition],
+        torques: Iterable[Any],
+        inertias: Iterable[Inertia],
+    ) -> list[BranchLoads]:
+        """Loads of the branches that give the output shaft the torques T, N·m."""
+        e, radius, tangent, found = self._eccentricity, self._radius, self._tangent, []
+        for position, T, inertia in zip(positions, torques, inertias, strict=True):
+            (x, y), _, _, _ = position
+            slot, arm_slot, (pull_x, pull_y), C3, C5, moment, _ = inertia
+            F_t = (moment + T) / radius
+            along = F_t / e  # as (x, y) = e u(θ)
+            away = abs(along) * tangent
+            mesh_x, mesh_y = 0.0 - along * y - away * x, along * x - away * y
+            mesh, cam = (mesh_x, mesh_y), (pull_x - mesh_x, pull_y - mesh_y)
+            found.append((F_t, mesh, cam, slot, arm_slot, C3 + T, C5 - T))
+        return found
+
+    def rotor_torque(
+        self, shares: Iterable[Any], output_acceleration: Any, torque: Any = 0.0
+    ) -> Any:
+        """τ2, N·m: of O3 × F_cam of the masses of each branch, the rotor's inertia, and Σ T."""
+        own = self._bodies.rotor_inertia * self._ratio * output_acceleration
+        return sum(shares, own) + torque / self._ratio
 
 
 @np.errstate(invalid='ignore')  # values that are not finite give NaN
@@ -232,27 +217,26 @@ def solve(
         fault = f'branch_torques of shape {torques.shape} do not fit a state of shape {shape}'
         raise ValueError(fault) from None
     equations = LoadEquations(mechanism, bodies)
-    arm = -np.sin(state.output_turn_angle), np.cos(state.output_turn_angle)
-    branches = [
-        equations.branch(
-            BranchPosition(
-                _pair(state.satellite_centre, k),
-                _pair(state.oldham_centre, k),
-                state.satellite_slide[..., k],
-                state.arm_slide[..., k],
-            ),
-            arm,
-            torques[..., k],
-            state.output_acceleration,
-            _pair(state.satellite_acceleration, k),
-            _pair(state.oldham_acceleration, k),
-        )
-        for k in range(count)
-    ]
-    *columns, _ = zip(*branches, strict=True)
-    arrays = [_samples_first(column, shape) for column in columns]
-    rotor = equations.rotor_torque(branches, state.output_acceleration)
-    arrays.append(np.broadcast_to(rotor, shape).copy())
+    angle = state.output_turn_angle[..., np.newaxis]
+    acceleration = state.output_acceleration[..., np.newaxis]
+    position = BranchPosition(
+        _pair(state.satellite_centre),
+        _pair(state.oldham_centre),
+        state.satellite_slide,
+        state.arm_slide,
+    )
+    inertia = equations.inertia(
+        position,
+        (-np.sin(angle), np.cos(angle)),
+        acceleration,
+        _pair(state.satellite_acceleration),
+        _pair(state.oldham_acceleration),
+    )
+    (branches,) = equations.branches([position], [torques], [inertia])  # all at once
+    shares = np.moveaxis(_joined(inertia[-1], (*shape, count)), -1, 0)
+    rotor = equations.rotor_torque(shares, state.output_acceleration, torques.sum(axis=-1))
+    arrays = [_joined(value, (*shape, count)) for value in branches]
+    arrays.append(_joined(rotor, shape))
     return Loads(*arrays)  # in the order of the fields
 
 
@@ -290,9 +274,7 @@ def share_torque(
     """
     torque = np.asarray(output_torque, dtype=np.float64)
     shares = TorqueSharing(mechanism, preload, direction).branches(torque, np)
-    torques, apart = zip(*shares, strict=True)
-    shape = torque.shape
-    return BranchTorques(_samples_first(torques, shape), _samples_first(apart, shape))
+    return BranchTorques(*(_joined(values, torque.shape) for values in shares))
 
 
 class TorqueSharing:
@@ -305,45 +287,33 @@ class TorqueSharing:
     def __init__(self, mechanism: Mechanism, preload: Preload | None, direction: int) -> None:
         if direction not in (1, -1):
             raise ValueError(f'direction must be 1 or -1, not {direction!r}')
-        self._count, self._sides = len(mechanism.branches), None
+        self._count, self._flanks = len(mechanism.branches), None
         if preload is not None:
             braced(mechanism)
-            self._sides = preload.sides
+            self._flanks = Flanks(preload)
         self._direction = float(direction)
 
-    def branches(self, torque: Any, xp: ModuleType) -> list[Pair]:
-        """Torque (N·m) and stand-off (rad) of each branch; `xp` is `math` for floats."""
-        if self._sides is None:
-            return [(torque / self._count, 0.0)] * self._count
-        side_a, side_b = self._sides
+    def branches(self, torque: Any, xp: ModuleType) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Torques (N·m) and stand-offs (rad) of the branches; `xp` is `math` for floats."""
+        if self._flanks is None:
+            return (torque / self._count,) * self._count, (0.0,) * self._count
         sign = self._direction
-        load = -sign * torque
-        torque_a, stand_off_a = side_a.contact(load, xp)
-        torque_b, stand_off_b = side_b.contact(-load, xp)
-        # No -0.0.
-        return [(sign * torque_a + 0.0, stand_off_a), (0.0 - sign * torque_b, stand_off_b)]
+        (torque_a, torque_b), stand_offs = self._flanks.contacts(-sign * torque, xp)
+        return (sign * torque_a + 0.0, 0.0 - sign * torque_b), stand_offs  # no -0.0
 
     def margin(self, torque: Any) -> Any:
-        """What the load leaves of T0 in one branch, N·m: below 0 out of mesh, NaN without T0."""
-        if self._sides is None:
+        """As of `Flanks`, for the torque of the output; NaN without a preload."""
+        if self._flanks is None:
             return torque * math.nan
-        side_a, side_b = self._sides
-        load = -self._direction * torque
-        larger: Any = np.maximum if isinstance(torque, np.ndarray) else max
-        return side_a.preload - larger(side_a.share * load, -side_b.share * load)
+        return self._flanks.margin(-self._direction * torque)
 
 
-def _pair(points: Array, branch: int) -> Pair:
-    return points[..., branch, 0], points[..., branch, 1]
+def _pair(points: Array) -> Pair:
+    return points[..., 0], points[..., 1]
 
 
-def _samples_first(column: Sequence[Any], shape: tuple[int, ...]) -> Array:
-    """Write the values of the branches, or pairs of them, into one array (*shape, B[, 2])."""
-    inner = (len(column), 2) if isinstance(column[0], tuple) else (len(column),)
-    array = np.empty((*shape, *inner))
-    for k, value in enumerate(column):
-        if isinstance(value, tuple):
-            array[..., k, 0], array[..., k, 1] = value
-        else:
-            array[..., k] = value
-    return array
+def _joined(value: Any, shape: tuple[int, ...]) -> Array:
+    """Broadcast a value to a shape, or several of them to one array with a last axis."""
+    if isinstance(value, tuple):
+        return np.stack([np.broadcast_to(each, shape) for each in value], axis=-1)
+    return np.broadcast_to(value, shape)

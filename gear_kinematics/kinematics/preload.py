@@ -37,6 +37,8 @@ from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.mechanism import Branch, Mechanism
 from gear_kinematics.kinematics.vernier import angle_between, turns
 
+Pair = tuple[Any, Any]
+
 STEEL_SHEAR_MODULUS = 79.3e9
 """G of steel, Pa."""
 
@@ -157,48 +159,6 @@ class Stiffness:
         return 1.0 / self.compliance_a if self.compliance_a else math.inf
 
 
-class Contact(NamedTuple):
-    """The working flanks of one branch under an external torque, as floats or arrays."""
-
-    torque: Any
-    """N·m, at least 0; 0 when the branch is out of mesh."""
-    stand_off: Any
-    """rad at the output, at least 0: the angle between the flanks; 0 in mesh."""
-
-
-class Side(NamedTuple):
-    """One branch of a preload. The load on it is M for branch A, and -M for branch B."""
-
-    preload: float
-    """T0, N·m."""
-    share: float
-    """cB/(cA + cB) of branch A, cA/(cA + cB) of B: how much of the load it is relieved of."""
-    other: float
-    """cB of branch A, cA of B: the compliance of what carries on alone, rad/(N·m)."""
-    twist: float
-    """The interference, rad; 0 if there is play."""
-    play: float
-    """rad; 0 if there is preload."""
-
-    def contact(self, load: Any, xp: ModuleType) -> Contact:
-        """The working flanks under a load.
-
-        The torque is the greatest of T0 - share × load, -load and 0, which are its values with
-        both branches in mesh, with this one alone and with the other alone. Without load, an
-        output with play is taken to rest in its middle.
-
-        Args:
-            load: N·m; a float, or an array of any shape.
-            xp: `math` for a float, else numpy; the results are the same to the bit.
-        """
-        larger: Any = max if xp is math else np.maximum
-        torque = larger(larger(self.preload - self.share * load, -load), 0.0) + 0.0  # no -0.0
-        apart = larger(self.other * load - self.twist, 0.0)
-        if self.play:
-            apart = apart + self.play * (0.5 + 0.5 * (load > 0.0))
-        return Contact(torque, apart * (torque == 0.0))
-
-
 class TorqueSplit(NamedTuple):
     """Response to an external torque; arrays of its shape."""
 
@@ -293,20 +253,12 @@ class Preload:
         """
         M = np.asarray(load, dtype=np.float64)
         cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
-        side_a, side_b = self.sides
-        branch_a, branch_b = side_a.contact(M, np).torque, side_b.contact(-M, np).torque
+        (branch_a, branch_b), _ = Flanks(self).contacts(M, np)
         elastic = np.where(
             self.threshold_b <= M, cB * (branch_b - self.torque), cA * (self.torque - branch_a)
         )
         free = np.sign(M) * self.play / 2.0
         return TorqueSplit(branch_a, branch_b, elastic + free + 0.0)  # no -0.0
-
-    @property
-    def sides(self) -> tuple[Side, Side]:
-        """Branches A and B."""
-        cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
-        both, rest = self.stiffness.compliance, (self._twist, self.play)
-        return Side(self.torque, cB / both, cB, *rest), Side(self.torque, cA / both, cA, *rest)
 
     @property
     def _twist(self) -> float:
@@ -317,6 +269,40 @@ class Preload:
         if self._twist == 0.0:
             return 0.0
         return self._twist / compliance if compliance else math.inf
+
+
+class Flanks:
+    """The working flanks of both branches of a preload, with its constants.
+
+    Floats and arrays give the same results to the bit.
+    """
+
+    def __init__(self, preload: Preload) -> None:
+        cA, cB = preload.stiffness.compliance_a, preload.stiffness.compliance_b
+        both = preload.stiffness.compliance
+        self._shares = cB / both, cA / both  # of M, by which A is relieved and B loaded
+        self._preload, self._constants = preload.torque, (cA, cB, preload.interference)
+
+    def contacts(self, M: Any, xp: ModuleType) -> tuple[Pair, Pair]:
+        """Torques of A and B, N·m, and angles between their flanks, rad at the output; all ≥ 0.
+
+        A torque is the greatest of its values with both branches in mesh, with one and with the
+        other. Without load, play is halved. `xp` is `math` for floats.
+        """
+        (share_a, share_b), (cA, cB, interference) = self._shares, self._constants
+        larger: Any = max if xp is math else np.maximum
+        torque_a = larger(larger(self._preload - share_a * M, -M), 0.0) + 0.0  # no -0.0
+        torque_b = larger(larger(self._preload + share_b * M, M), 0.0) + 0.0
+        out_a, out_b = torque_a == 0.0, torque_b == 0.0  # both: each has half of the play
+        apart_a = abs(cB * M - interference) * (out_a / (1.0 + out_b))  # abs, for rounding
+        apart_b = abs(cA * M + interference) * (out_b / (1.0 + out_a))
+        return (torque_a, torque_b), (apart_a, apart_b)
+
+    def margin(self, M: Any) -> Any:
+        """What a load leaves of T0 in one branch, N·m: below 0 out of mesh."""
+        share_a, share_b = self._shares
+        larger: Any = np.maximum if isinstance(M, np.ndarray) else max
+        return self._preload - larger(share_a * M, -share_b * M)
 
 
 def _not_negative(name: str, value: float) -> float:

@@ -90,7 +90,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         if parameters.preload or isinstance(self._gear, Mechanism):
             self._loads = Loads(parameters)
             if parameters.preload:
-                self._preload = PreloadMonitor(self._loads, abs(parameters.preload))
+                self._preload = PreloadMonitor(parameters)
         self._prepare([('calibration', parameters.calibration)])
         self._configure()
         self._monitor = InputMonitor(started=time.monotonic())

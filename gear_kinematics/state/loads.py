@@ -14,27 +14,19 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.kinematics import Mechanism, RotorSample
-from gear_kinematics.kinematics.loads import BranchLoads, LoadEquations, Pair
+from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.kinematics.loads import AT_REST, BranchLoads, LoadEquations
 from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.wire.batches import Array, encode
-from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, WrenchesTemplate
+from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, Template, WrenchesTemplate
 from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS, LOAD_TOPICS
 
 _WINDOW = 20_000_000  # ns. A velocity in steps of 0.01 rad/s gives steps of 0.5 rad/s².
 _LONGEST = 100_000_000  # ns, beyond which a mean is no acceleration of the moment
-
-
-def load_joints(mechanism: Mechanism) -> dict[str, list[str]]:
-    """The joints in each of LOAD_TOPICS, without a prefix."""
-    kinds = {BRANCH_LOADS: ('branch',), JOINT_LOADS: ('mesh', 'cam', 'slot_satellite', 'slot_arm')}
-    names = [branch.name for branch in mechanism.branches]
-    return {
-        topic: [f'{kind}_{name}' for kind in each for name in names]
-        for topic, each in kinds.items()
-    }
+_JOINTS = 'mesh', 'cam', 'slot_satellite', 'slot_arm'  # of each branch
 
 
 class SampleLoads(NamedTuple):
@@ -42,8 +34,10 @@ class SampleLoads(NamedTuple):
 
     torque: Any
     """Σ T, N·m, of the branches on the output shaft; NaN if unknown."""
-    shares: Sequence[Pair] = ()
-    """Torque, N·m, and stand-off, rad, of each branch; see `TorqueSharing`."""
+    torques: Sequence[Any] = ()
+    """N·m, of the branches; see `TorqueSharing`."""
+    stand_offs: Sequence[Any] = ()
+    """rad, of the branches."""
     branches: Sequence[BranchLoads] = ()
 
 
@@ -62,31 +56,26 @@ class Loads:
         self._torque_ratio = float(mechanism.gear_ratio)
         self._form = closed_form(mechanism)
         self._equations = LoadEquations(mechanism, parameters.loads)
+        self._at_rest = [AT_REST] * len(mechanism.branches)
         self._acceleration = None if parameters.loads.without_mass else Acceleration()
-        prefix = parameters.frame_prefix
-        names = {
-            topic: [prefix + name for name in joints]
-            for topic, joints in load_joints(mechanism).items()
+        prefix, names = parameters.frame_prefix, [each.name for each in mechanism.branches]
+        branches = [f'{prefix}branch_{name}' for name in names]
+        joints = [f'{prefix}{kind}_{name}' for name in names for kind in _JOINTS]
+        self.templates: Mapping[str, Template] = {
+            BRANCH_LOADS: JointStateTemplate(branches, velocity=False, effort=True),
+            JOINT_LOADS: WrenchesTemplate(f'{prefix}stator', joints),
         }
-        self._templates = {
-            BRANCH_LOADS: JointStateTemplate(names[BRANCH_LOADS], velocity=False, effort=True),
-            JOINT_LOADS: WrenchesTemplate(f'{prefix}stator', names[JOINT_LOADS]),
-        }
-
-    @property
-    def needs_motion(self) -> bool:
-        """Whether the loads depend on velocity and acceleration."""
-        return self._acceleration is not None
+        """Of the messages, by topic."""
 
     def follow(self, sample: RotorSample, segment: int, *, whole: bool = True) -> SampleLoads:
         """Return the loads at the next sample, or only the torque of the output."""
-        acceleration = velocity = 0.0
+        stamp, (turns, angle), velocity, effort = sample
+        velocity = math.nan if velocity is None else velocity
+        effort = math.nan if effort is None else effort
+        acceleration = 0.0
         if self._acceleration:
-            velocity = math.nan if sample.velocity is None else sample.velocity
-            acceleration = self._acceleration.follow(sample.stamp, velocity, segment)
-        effort = math.nan if sample.effort is None else sample.effort
-        motion = velocity, acceleration
-        return self.at(*sample.position, effort, motion, math, whole=whole)
+            acceleration = self._acceleration.follow(stamp, velocity, segment)
+        return self.at(turns, angle, effort, (velocity, acceleration), math, whole=whole)
 
     @np.errstate(invalid='ignore', over='ignore')
     def follow_batch(self, samples: RotorSamples) -> SampleLoads:
@@ -121,40 +110,25 @@ class Loads:
             xp: `math` for floats.
             whole: whether more than the torque of the output is wanted.
         """
-        torque = self._torque_ratio * effort
-        branches: list[BranchLoads] = []
+        torque, inertias = self._torque_ratio * effort, self._at_rest
         if not (whole or self._acceleration):
             return SampleLoads(torque)
         _, rest = self._ratio.output_angle(turns, angle, xp)
-        positions = self._form.branches(angle, rest, xp)
-        arm, branch = (-xp.sin(rest), xp.cos(rest)), self._equations.branch
-        if not self._acceleration:
-            shares = self.sharing.branches(torque, xp)
-            for position, (T, _) in zip(positions, shares, strict=True):
-                branches.append(branch(position, arm, T))
-            return SampleLoads(torque, shares, branches)
-        output_acceleration = self._ratio.output_rate(motion[1])
-        moved = [
-            (
-                position,
-                output_acceleration,
-                rates.satellite_acceleration,
-                rates.oldham_acceleration,
-            )
-            for position, rates in zip(
-                positions, self._form.rates(positions, *motion), strict=True
-            )
-        ]
-        idle = [branch(position, arm, 0.0, *rates) for position, *rates in moved]
-        torque = self._torque_ratio * (
-            effort - self._equations.rotor_torque(idle, output_acceleration)
-        )
+        positions, equations = self._form.branches(angle, rest, xp), self._equations
+        if self._acceleration:
+            arm, acceleration = (-xp.sin(rest), xp.cos(rest)), self._ratio.output_rate(motion[1])
+            rates = self._form.rates(positions, *motion)
+            inertias = [
+                equations.inertia(position, arm, acceleration, a3, a4)
+                for position, (*_, a3, a4) in zip(positions, rates, strict=True)
+            ]
+            idle = equations.rotor_torque((share for *_, share in inertias), acceleration)
+            torque = self._torque_ratio * (effort - idle)
         if not whole:
             return SampleLoads(torque)
-        shares = self.sharing.branches(torque, xp)
-        for (position, *rates), (T, _) in zip(moved, shares, strict=True):
-            branches.append(branch(position, arm, T, *rates))
-        return SampleLoads(torque, shares, branches)
+        torques, stand_offs = self.sharing.branches(torque, xp)
+        branches = equations.branches(positions, torques, inertias)
+        return SampleLoads(torque, torques, stand_offs, branches)
 
     def encode(
         self, stamp: int, loads: SampleLoads, topics: Iterable[str] = LOAD_TOPICS
@@ -162,43 +136,31 @@ class Loads:
         """Yield topic and message at a sample; none if its loads are unknown."""
         if math.isfinite(loads.torque):
             for topic in topics:
-                yield topic, self._templates[topic].encode(stamp, *NUMBERS[topic](loads))
+                yield topic, self.templates[topic].encode(stamp, NUMBERS[topic](loads))
 
     def encode_batch(self, stamps: Array, loads: SampleLoads) -> dict[str, list[bytes]]:
         """Encode all LOAD_TOPICS at n samples, b'' where the loads are unknown."""
         known = np.isfinite(loads.torque).tolist()
         found = {}
-        for topic, template in self._templates.items():
-            messages = encode(template, stamps, *NUMBERS[topic](loads))
+        for topic, template in self.templates.items():
+            messages = encode(template, stamps, NUMBERS[topic](loads))
             found[topic] = [data * there for data, there in zip(messages, known, strict=True)]
         return found
 
 
-def _torques(loads: SampleLoads) -> tuple[Sequence[Any], ...]:
-    """The arrays of branch_loads: positions and efforts of the branches, floats or arrays."""
-    torques, stand_off = zip(*loads.shares, strict=True)
-    return stand_off, torques
+def _wrenches(loads: SampleLoads) -> list[Any]:
+    """For each joint force x y and couple z."""
+    numbers: list[Any] = []
+    for _, mesh, cam, satellite_slot, arm_slot, C3, C5 in loads.branches:
+        numbers += *mesh, 0.0, *cam, 0.0, *satellite_slot, C3, *arm_slot, C5
+    return numbers
 
 
-def _wrenches(loads: SampleLoads) -> tuple[list[Any]]:
-    """The array of joint_loads, of floats or arrays: for each joint force and couple, x y z."""
-    meshes: list[Any] = []
-    cams: list[Any] = []
-    satellite_slots: list[Any] = []
-    arm_slots: list[Any] = []
-    for _, (mx, my), (cx, cy), (sx, sy), (ax, ay), C3, C5, _ in loads.branches:
-        meshes += mx, my, 0.0, 0.0, 0.0, 0.0
-        cams += cx, cy, 0.0, 0.0, 0.0, 0.0
-        satellite_slots += sx, sy, 0.0, 0.0, 0.0, C3
-        arm_slots += ax, ay, 0.0, 0.0, 0.0, C5
-    return (meshes + cams + satellite_slots + arm_slots,)
-
-
-NUMBERS: Mapping[str, Callable[[SampleLoads], tuple[Sequence[Any], ...]]] = {
-    BRANCH_LOADS: _torques,
+NUMBERS: Mapping[str, Callable[[SampleLoads], Sequence[Any]]] = {
+    BRANCH_LOADS: lambda loads: (*loads.stand_offs, *loads.torques),
     JOINT_LOADS: _wrenches,
 }
-"""The numbers of each array of the messages, by topic."""
+"""The numbers of the messages, floats or arrays, by topic."""
 
 
 class Acceleration:

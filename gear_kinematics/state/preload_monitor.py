@@ -10,8 +10,9 @@ import numpy as np
 from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.correction.uncertainty import Estimate
 from gear_kinematics.kinematics import RotorSample
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, Report
-from gear_kinematics.state.loads import Loads, SampleLoads
+from gear_kinematics.state.loads import SampleLoads
 from gear_kinematics.wire.cdr import SECOND
 
 _ADVICE = 'Raise the preload (gearkin preload) or lower the torque of the output.'
@@ -27,9 +28,12 @@ class PreloadMonitor:
     An encoder at the output can confirm it: out of mesh, the output yields more for each N·m.
     """
 
-    def __init__(self, loads: Loads, preload: float) -> None:
-        """Start for the loads of a mechanism with a preload T0, N·m."""
-        self._sharing, self._preload, self._moves = loads.sharing, preload, loads.needs_motion
+    def __init__(self, parameters: NodeParameters) -> None:
+        """Start for a mechanism with a preload."""
+        self._sharing, self._preload = parameters.sharing, abs(parameters.preload)
+        self._needed = 'no effort'
+        if not parameters.loads.without_mass:
+            self._needed += ' or no velocity'
         self._margin = self._torque = math.nan
         self._in_mesh: bool | None = None
         self._errors: deque[tuple[float, float]] = deque(maxlen=_MOST_ERRORS)
@@ -84,8 +88,8 @@ class PreloadMonitor:
         received, lost = self._received, self._lost
         self._clear()
         if not known:
-            what = 'no effort' + (' or no velocity' if self._moves else '')
-            return Report(OK, f'unknown: {what} in rotor_state' if received else 'no input', {})
+            what = f'unknown: {self._needed} in rotor_state' if received else 'no input'
+            return Report(OK, what, {})
         share = f'{100.0 * lost / seen if seen else 100.0 * (least <= 0.0):.1f}'
         values = {'preload (N·m)': f'{self._preload:.4g}'}
         for name, margin in (('margin', self._margin), ('least margin', least)):

@@ -74,7 +74,7 @@ class OutputMessages:
                 yield topic, self._output_state(corrected, angle)
             else:
                 template = self._output_states[False, False]
-                yield topic, template.encode(sample.stamp, (correction.half_width,))
+                yield topic, template.encode(sample.stamp, [correction.half_width])
 
     @np.errstate(over='ignore')
     def encode_corrections(
@@ -92,37 +92,37 @@ class OutputMessages:
 
     def transmission_error(self, sample: ErrorSample) -> bytes:
         """Encode a transmission error, as the position of the output joint."""
-        return self._output_states[False, False].encode(sample.stamp, (sample.error,))
+        return self._output_states[False, False].encode(sample.stamp, [sample.error])
 
     def _output_state(self, sample: RotorSample, output_angle: float) -> bytes:
         stamp, _, velocity, effort = sample
         present = velocity is not None, effort is not None
-        arrays = self._output_arrays(present, output_angle, velocity, effort)
-        return self._output_states[present].encode(stamp, *arrays)
+        numbers = self._output_numbers(present, output_angle, velocity, effort)
+        return self._output_states[present].encode(stamp, numbers)
 
     def _output_states_of(self, samples: RotorSamples, output_angle: Array) -> list[bytes]:
         output_states = len(samples.stamp) * [b'']
         for present, template in self._output_states.items():
             absent = np.isnan([samples.velocity, samples.effort])
             rows = np.flatnonzero(np.all(present != absent.T, axis=1))
-            arrays = self._output_arrays(
+            numbers = self._output_numbers(
                 present, output_angle[rows], samples.velocity[rows], samples.effort[rows]
             )
-            encoded = encode(template, samples.stamp[rows], *arrays)
+            encoded = encode(template, samples.stamp[rows], numbers)
             for row, message in zip(rows.tolist(), encoded, strict=True):
                 output_states[row] = message
         return output_states
 
-    def _output_arrays(
+    def _output_numbers(
         self, present: tuple[bool, bool], output_angle: Any, velocity: Any, effort: Any
-    ) -> list[tuple[Any]]:
-        """The arrays of an output_state, of one joint each: floats or numpy arrays."""
-        arrays = [(output_angle,)]
+    ) -> list[Any]:
+        """The numbers of an output_state: floats or arrays."""
+        numbers = [output_angle]
         if present[0]:
-            arrays.append((self._ratio.output_rate(velocity),))
+            numbers.append(self._ratio.output_rate(velocity))
         if present[1]:
-            arrays.append((self._torque_ratio * effort,))
-        return arrays
+            numbers.append(self._torque_ratio * effort)
+        return numbers
 
 
 class StateMessages(OutputMessages):
@@ -188,17 +188,16 @@ class StateMessages(OutputMessages):
         """Encode the joint states, in the order of `joint_names`."""
         rotor_angle = TURN * sample.position.turns + sample.position.angle
         on_cam = output_angle - rotor_angle
-        positions = [rotor_angle, *(on_cam for _ in branches)]
-        positions += [branch.satellite_slide for branch in branches]
-        positions.append(output_angle)
+        numbers = [rotor_angle, *(on_cam for _ in branches)]
+        numbers += [branch.satellite_slide for branch in branches]
+        numbers.append(output_angle)
         velocity = sample.velocity
-        if velocity is None:
-            return self._joint_states[False].encode(sample.stamp, positions)
-        output_velocity = self._ratio.output_rate(velocity)
-        velocities = [velocity, *(output_velocity - velocity for _ in branches)]
-        velocities += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
-        velocities.append(output_velocity)
-        return self._joint_states[True].encode(sample.stamp, positions, velocities)
+        if velocity is not None:
+            output_velocity = self._ratio.output_rate(velocity)
+            numbers += [velocity, *(output_velocity - velocity for _ in branches)]
+            numbers += [self._form.slide_velocities(branch, velocity)[0] for branch in branches]
+            numbers.append(output_velocity)
+        return self._joint_states[velocity is not None].encode(sample.stamp, numbers)
 
 
 def state_messages(parameters: NodeParameters) -> OutputMessages:

@@ -2,7 +2,6 @@
 """Compares the topics of the loads with recomputed ones, sample by sample."""
 
 from collections.abc import Sequence
-from itertools import chain
 
 import numpy as np
 
@@ -34,7 +33,7 @@ class LoadTopic(OutputTopic):
         """Take the loads from the parameters of the node, for one of LOAD_TOPICS."""
         self._topic, self._loads = topic, Loads(parameters)
         self.layout, units = _TYPES[topic]
-        tolerances, zero = expectation.tolerances, np.zeros(1)
+        tolerances = expectation.tolerances
         # A force acts at levers of the order of the eccentricity.
         force = tolerances.effort / parameters.mechanism.eccentricity
         errors = (
@@ -42,28 +41,25 @@ class LoadTopic(OutputTopic):
             for field, unit in units.items()
         )
         super().__init__(name, '', expectation, *errors)
-        idle = self._loads.at(zero, zero, zero, (zero, zero))
-        self._wanted = self.layout(self._loads.encode_batch(zero, idle)[topic][0])
 
     def answered(self, samples: Array) -> Array:
         """Whether each of the oldest samples of the window has its message, or needs none."""
         return np.asarray(super().answered(samples) | np.isnan(samples['acceleration']))
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        prefix = self.label.encode()
-        texts = tuple(text and prefix + text for text in self._wanted.texts)
-        sizes = [size for _, size in self._wanted.arrays]
-        stamp, malformed, self._numbers = decode_numbers(messages, self.layout, texts, sizes)
+        like = self._loads.templates[self._topic]
+        stamp, malformed, self._numbers = decode_numbers(messages, self.layout, like, self.label)
         return stamp, malformed
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         motion = samples['velocity'], samples['acceleration']
         loads = self._loads.at(samples['turns'], samples['angle'], samples['effort'], motion)
-        expected = np.broadcast_arrays(*chain(*NUMBERS[self._topic](loads)))
+        expected = np.broadcast_arrays(samples['turns'], *NUMBERS[self._topic](loads))[1:]
         error = finite_or_infinite(np.abs(self._numbers[rows] - np.stack(expected, axis=-1)))
         known = self._changes.known(samples) & ~np.isnan(samples['acceleration'])
         error[~known] = np.nan
         # Of all branches the one and the other, or of each joint the force and the couple.
-        groups = 1 if self._topic == BRANCH_LOADS else len(self._wanted.texts) - 1
-        count = len(expected) // (2 * groups)
-        return [*map(FieldSamples, error.reshape(-1, groups, 2, count).max(axis=(1, 3)).T)]
+        second = np.repeat([False, True], len(expected) // 2)
+        if self._topic == JOINT_LOADS:
+            second = np.resize([False, False, True], len(expected))
+        return [FieldSamples(error[:, each].max(axis=1)) for each in (~second, second)]

@@ -109,51 +109,46 @@ def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseAr
 
 
 def decode_numbers(
-    messages: Sequence[bytes],
-    find_layout: Callable[[bytes], Layout],
-    texts: tuple[bytes, ...],
-    sizes: Sequence[int],
+    messages: Sequence[bytes], find_layout: Callable[[bytes], Layout], like: Template, prefix: str
 ) -> tuple[Array, Array, Array]:
-    """Decode messages with given texts, and a given number of float64 in each array.
+    """Decode messages that are like those of a template, but for a prefix of its texts.
 
     Returns:
         Stamps, (n,), ns; whether a message is another one or none of its type, (n,); and the
-        numbers, (n, sum of the sizes).
+        numbers that `like.encode` takes, (n, numbers).
     """
-    count = len(messages)
+    expected, count = find_layout(bytes(like.blank)), len(messages)
+    texts = tuple(text and prefix.encode() + text for text in expected.texts)
+    sizes = [size for _, size in expected.arrays]
+    offsets = [start + 8 * k for start, size in expected.arrays for k in range(size)]
+    given = np.isin(offsets, like.offsets)
     stamp, malformed = np.zeros(count, np.int64), np.ones(count, bool)
-    numbers = np.full((count, sum(sizes)), np.nan)
+    numbers = np.full((count, len(like.offsets)), np.nan)
     for rows, layout, table in _tables(messages, find_layout):
-        if layout.texts == texts and [size for _, size in layout.arrays] == [*sizes]:
-            malformed[rows] = False
+        if layout.texts == texts and [size for _, size in layout.arrays] == sizes:
+            found = np.hstack([_doubles(table, layout, *array) for array in layout.arrays])
             stamp[rows], _ = _stamps(table, layout)
-            numbers[rows] = np.hstack([_doubles(table, layout, *array) for array in layout.arrays])
+            malformed[rows], numbers[rows] = found[:, ~given].any(axis=1), found[:, given]
     return stamp, malformed, numbers
 
 
-def encode(template: Template, stamps: Array, *arrays: Sequence[Array | float]) -> list[bytes]:
+def encode(template: Template, stamps: Array, numbers: Sequence[Array | float]) -> list[bytes]:
     """Encode n messages, as `template.encode` does one by one.
 
     Args:
         template: the layout and the texts of all messages.
         stamps: (n,), ns.
-        arrays: the numbers of each array, each as an array (n,) or a constant.
+        numbers: of all arrays, each as an array (n,) or a constant.
     """
-    blank = template.encode(0, *(count * [0.0] for _, count in template.arrays))
-    fields = {'seconds': ('<i4', STAMP_OFFSET), 'nanoseconds': ('<u4', STAMP_OFFSET + 4)}
-    for index, (offset, count) in enumerate(template.arrays):
-        fields[f'array {index}'] = (f'({count},)<f8', offset)
-    formats, offsets = zip(*fields.values(), strict=True)
-    table = np.frombuffer(
-        bytearray(len(stamps) * blank),
-        {'names': list(fields), 'formats': formats, 'offsets': offsets, 'itemsize': len(blank)},
-    )
-    table['seconds'], table['nanoseconds'] = np.divmod(stamps, SECOND)
-    for index, numbers in enumerate(arrays):
-        for place, number in enumerate(numbers):
-            table[f'array {index}'][:, place] = number
+    size = len(template.blank)
+    table = np.frombuffer(len(stamps) * template.blank, np.uint8).reshape(len(stamps), size)
+    seconds, nanoseconds = np.divmod(stamps, SECOND)
+    _columns(table, STAMP_OFFSET, '<i4')[:, 0] = seconds
+    _columns(table, STAMP_OFFSET + 4, '<u4')[:, 0] = nanoseconds
+    for offset, number in zip(template.offsets, numbers, strict=True):
+        _columns(table, offset, '<f8')[:, 0] = number
     data = table.tobytes()
-    return [data[start : start + len(blank)] for start in range(0, len(data), len(blank))]
+    return [data[start : start + size] for start in range(0, len(data), size)]
 
 
 def _tables(
@@ -183,12 +178,15 @@ def _tables(
 
 def _stamps(table: Array, layout: Layout) -> tuple[Array, Array]:
     """The stamps, ns, and their field `nanosec`."""
-    words = np.ascontiguousarray(table[:, STAMP_OFFSET : STAMP_OFFSET + 8])
-    seconds = words.view(f'{layout.order}i4')[:, 0].astype(np.int64)
-    nanoseconds = words.view(f'{layout.order}u4')[:, 1]
+    seconds = _columns(table, STAMP_OFFSET, f'{layout.order}i4')[:, 0].astype(np.int64)
+    nanoseconds = _columns(table, STAMP_OFFSET + 4, f'{layout.order}u4')[:, 0]
     return seconds * SECOND + nanoseconds, nanoseconds
 
 
 def _doubles(table: Array, layout: Layout, offset: int, count: int) -> Array:
-    column = np.ascontiguousarray(table[:, offset : offset + 8 * count])
-    return column.view(f'{layout.order}f8').reshape(len(table), count)
+    return _columns(table, offset, f'{layout.order}f8', count)
+
+
+def _columns(table: Array, offset: int, dtype: str, count: int = 1) -> Array:
+    """The numbers of a type at an offset of each row, (rows, count), to read or write."""
+    return table[:, offset : offset + count * np.dtype(dtype).itemsize].view(dtype)

@@ -13,7 +13,7 @@ ends at its first zero; bytes after the message are ignored.
 """
 
 import struct
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 SECOND = 1_000_000_000  # ns
@@ -86,7 +86,7 @@ def joint_state_layout(data: bytes) -> Layout:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    return _layout_of_joints(data, (1, 1, 1))  # position, velocity, effort
+    return _layout(data, (1, 1, 1))  # position, velocity, effort
 
 
 def pose_array_layout(data: bytes) -> Layout:
@@ -95,10 +95,7 @@ def pose_array_layout(data: bytes) -> Layout:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    reader = _Reader(data)
-    reader.string()  # frame_id
-    reader.doubles(7 * reader.count(56))
-    return reader.layout()
+    return _layout(data, (7,), named=False)
 
 
 def wrenches_layout(data: bytes) -> Layout:
@@ -107,14 +104,14 @@ def wrenches_layout(data: bytes) -> Layout:
     Raises:
         MalformedMessageError: if the bytes are anything else.
     """
-    return _layout_of_joints(data, (7, 6, 6))
+    return _layout(data, (7, 6, 6))
 
 
-def _layout_of_joints(data: bytes, arrays: Sequence[int]) -> Layout:
-    """Find the layout of names and of arrays, given by the numbers of each item."""
+def _layout(data: bytes, arrays: Sequence[int], *, named: bool = True) -> Layout:
+    """Find the layout of names, if any, and of arrays, given by the numbers of each item."""
     reader = _Reader(data)
     reader.string()  # frame_id
-    for _ in range(reader.count(4)):
+    for _ in range(reader.count(4) if named else 0):
         reader.string()
     for numbers in arrays:
         reader.doubles(numbers * reader.count(8 * numbers))
@@ -169,90 +166,91 @@ class _Reader:
 class Template:
     """A message laid out once; encoding only writes the stamp and the numbers."""
 
-    def __init__(self, frame_id: str) -> None:
-        self._buffer = bytearray(_ENCAPSULATION + bytes(STAMP.size))
-        self.arrays: list[tuple[int, int]] = []
-        """Offset and count of the float64 of each array."""
+    def __init__(
+        self, frame_id: str, names: Sequence[str] | None, *arrays: tuple[int, int, Iterable[int]]
+    ) -> None:
+        """Lay the message out.
+
+        Args:
+            frame_id: of the header.
+            names: the array of names, if the type has one.
+            arrays: of each the number of items, the float64 of an item, and the places of those
+                that `encode` writes; the others are 0.
+        """
+        self.blank = bytearray(_ENCAPSULATION + bytes(STAMP.size))
+        """The message with zeros as stamp and numbers."""
+        self.offsets: list[int] = []
+        """Of the numbers in it."""
         self._string(frame_id)
+        if names is not None:
+            self._count(len(names))
+            for name in names:
+                self._string(name)
+        for count, size, places in arrays:
+            self._count(count)
+            if count:  # an empty array has no padding
+                self._pad(8)
+                start, item = len(self.blank), 8 * size
+                self.offsets += [start + k * item + 8 * n for k in range(count) for n in places]
+                self.blank += bytes(count * item)
+        self._divide()
 
-    def encode(self, stamp: int, *arrays: Sequence[float]) -> bytes:
-        """Return the bytes of the message, from the stamp (ns) and the numbers of each array."""
-        values: list[Any] = [_ENCAPSULATION, *divmod(stamp, SECOND)]
-        for text, array in zip(self._texts, arrays, strict=True):
-            values.append(text)
-            values += array
-        return self._pack(*values, self._end)
+    def encode(self, stamp: int, numbers: Sequence[float]) -> bytes:
+        """Return the bytes of the message, from the stamp (ns) and the numbers of all arrays."""
+        values: Sequence[Any] = numbers
+        if self._gaps:
+            values = [*numbers]
+            for place, gap in self._gaps:
+                values.insert(place, gap)
+        return self._pack(_ENCAPSULATION, *divmod(stamp, SECOND), self._start, *values)
 
-    def _finish(self) -> None:
+    def _divide(self) -> None:
         """Divide the message into numbers and the bytes between them, to pack it in one call."""
-        code, end = f'<{STAMP_OFFSET}siI', STAMP_BYTES.stop
-        self._texts = []
-        for offset, count in self.arrays:
-            code += f'{offset - end}s{count}d'
-            self._texts.append(bytes(self._buffer[end:offset]))
-            end = offset + 8 * count
-        self._end = bytes(self._buffer[end:])
-        self._pack = struct.Struct(f'{code}{len(self._end)}s').pack
+        end = self.offsets[0] if self.offsets else len(self.blank)
+        self._start = bytes(self.blank[STAMP_BYTES.stop : end])
+        self._gaps: list[tuple[int, bytes]] = []
+        code = f'<{STAMP_OFFSET}siI{len(self._start)}s'
+        for place, offset in enumerate(self.offsets):
+            gap = bytes(self.blank[end:offset])
+            if any(gap):
+                self._gaps.append((place + len(self._gaps), gap))
+            code += f'{len(gap)}{"s" if any(gap) else "x"}d'
+            end = offset + 8
+        self._pack = struct.Struct(f'{code}{len(self.blank) - end}x').pack  # counts of 0
 
     def _count(self, count: int) -> None:
         self._pad(4)
-        self._buffer += struct.pack('<I', count)
+        self.blank += struct.pack('<I', count)
 
     def _string(self, text: str) -> None:
         encoded = text.encode() + b'\0'
         self._count(len(encoded))
-        self._buffer += encoded
-
-    def _doubles(self, count: int) -> None:
-        if count:
-            self._pad(8)
-            self.arrays.append((len(self._buffer), count))
-            self._buffer += bytes(8 * count)
+        self.blank += encoded
 
     def _pad(self, size: int) -> None:
-        self._buffer += bytes(-(len(self._buffer) - STAMP_OFFSET) % size)
+        self.blank += bytes(-(len(self.blank) - STAMP_OFFSET) % size)
 
 
 class JointStateTemplate(Template):
-    """A sensor_msgs/JointState of the given joints: encode(stamp, positions, ...)."""
+    """A sensor_msgs/JointState of the given joints, with the arrays that are present."""
 
     def __init__(self, names: Sequence[str], *, velocity: bool, effort: bool) -> None:
-        """Lay the message out; `encode` takes only the arrays that are present."""
-        super().__init__(frame_id='')
-        self._count(len(names))
-        for name in names:
-            self._string(name)
-        for present in (True, velocity, effort):
-            count = len(names) if present else 0
-            self._count(count)
-            self._doubles(count)
-        self._finish()
+        """Lay the message out: positions, velocities, efforts."""
+        present = True, velocity, effort
+        super().__init__('', names, *((len(names) * there, 1, (0,)) for there in present))
 
 
 class PoseArrayTemplate(Template):
-    """A geometry_msgs/PoseArray: encode(stamp, numbers), per pose x y z and quaternion x y z w."""
+    """A geometry_msgs/PoseArray: per pose x y z and quaternion x y z w."""
 
     def __init__(self, frame_id: str, poses: int) -> None:
         """Lay the message out for a number of poses."""
-        super().__init__(frame_id)
-        self._count(poses)
-        self._doubles(7 * poses)
-        self._finish()
+        super().__init__(frame_id, None, (poses, 7, range(7)))
 
 
 class WrenchesTemplate(Template):
-    """A sensor_msgs/MultiDOFJointState with a wrench for each joint, and nothing else.
-
-    encode(stamp, numbers): per joint the force x y z, N, and the torque x y z, N·m.
-    """
+    """A sensor_msgs/MultiDOFJointState of planar wrenches: per joint force x y, torque z."""
 
     def __init__(self, frame_id: str, names: Sequence[str]) -> None:
-        """Lay the message out for the joints of these names."""
-        super().__init__(frame_id)
-        self._count(len(names))
-        for name in names:
-            self._string(name)
-        for count in (0, 0, len(names)):  # transforms, twists, wrenches
-            self._count(count)
-        self._doubles(6 * len(names))
-        self._finish()
+        """Lay the message out for the joints of these names, without transforms and twists."""
+        super().__init__(frame_id, names, (0, 7, ()), (0, 6, ()), (len(names), 6, (0, 1, 5)))

@@ -190,7 +190,7 @@ def test_shares_add_up_and_only_branches_in_mesh_carry(interference, outputs, di
     for output, *row in zip(outputs.tolist(), torque, stand_off, strict=True):
         alone = TorqueSharing(mechanism, preload, direction).branches(output, math)
         assert all(isinstance(value, float) for pair in alone for value in pair)
-        np.testing.assert_array_equal(np.transpose(row), alone)
+        np.testing.assert_array_equal(row, alone)
 
 
 def test_branches_without_preload_have_equal_shares(mechanism):
@@ -213,24 +213,19 @@ def test_arrays_and_floats_agree_to_the_last_bit(case):
     turns, rest = split_turns(rotor[0])
     _, output = ratio.output_angle(turns, rest, math)
     turning = ratio.output_rate(rotor[2])
-    positions = form.branches(rest, output, math)
-    branches = [
-        equations.branch(
-            position,
-            (-math.sin(output), math.cos(output)),
-            torque,
-            turning,
-            rates.satellite_acceleration,
-            rates.oldham_acceleration,
-        )
-        for position, rates, torque in zip(
-            positions, form.rates(positions, *rotor[1:]), torques.tolist(), strict=True
+    positions, arm = form.branches(rest, output, math), (-math.sin(output), math.cos(output))
+    inertias = [
+        equations.inertia(position, arm, turning, a3, a4)
+        for position, (*_, a3, a4) in zip(
+            positions, form.rates(positions, *rotor[1:]), strict=True
         )
     ]
-    for name in branches[0]._fields[:-1]:
-        values = [getattr(branch, name) for branch in branches]
+    branches = equations.branches(positions, torques.tolist(), inertias)
+    names = [field.name for field in fields(among)[:-1]]
+    for name, values in zip(names, zip(*branches, strict=True), strict=True):
         np.testing.assert_array_equal(getattr(among, name)[1], values, name)
-    assert among.rotor_torque[1] == equations.rotor_torque(branches, turning)
+    shares = [share for *_, share in inertias]
+    assert among.rotor_torque[1] == equations.rotor_torque(shares, turning, torques.sum())
 
 
 @pytest.mark.parametrize('shape', SHAPES, ids=str)

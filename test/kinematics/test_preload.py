@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from gear_kinematics.kinematics import Branch, Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import (
+    Flanks,
     Preload,
     Stiffness,
     braced,
@@ -85,12 +86,11 @@ def test_split_is_the_equilibrium_of_unilateral_contacts(stiffness, interference
         assert float(abs(Fraction(turn) - (b - start))) <= 1e-14 * softest
         # Out of mesh, arm A is where arm B is; its flank is where the branch would be closed.
         apart = b - Fraction(interference) if not expected_a else 0, -b if not expected_b else 0
-        on_sides = zip(preload.sides, (float(load), -float(load)), strict=True)
-        contacts = [side.contact(M, math) for side, M in on_sides]
-        assert [contact.torque for contact in contacts] == [branch_a, branch_b]
-        for contact, expected in zip(contacts, apart, strict=True):
-            assert float(abs(Fraction(contact.stand_off) - expected)) <= 1e-14 * softest
-            assert not contact.torque * contact.stand_off
+        torques, stand_offs = Flanks(preload).contacts(float(load), math)
+        assert torques == (branch_a, branch_b)
+        for torque, stand_off, expected in zip(torques, stand_offs, apart, strict=True):
+            assert float(abs(Fraction(stand_off) - expected)) <= 1e-14 * softest
+            assert not torque * stand_off
 
 
 @pytest.mark.slow

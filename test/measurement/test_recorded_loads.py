@@ -34,8 +34,8 @@ def record(folder: Path, *, effort: bool = True, overloads=OVERLOADS, period=2.0
         torque[first : first + samples] = value
     stamps = START + np.arange(count) * 1_000_000
     template = JointStateTemplate(['rotor'], velocity=True, effort=effort)
-    arrays = [SPEED * TIME], [SPEED], [torque]
-    messages = encode(template, stamps, *arrays[: 2 + effort])
+    numbers = SPEED * TIME, SPEED, torque
+    messages = encode(template, stamps, numbers[: 2 + effort])
     rows = zip(stamps.tolist(), messages, strict=True)
     return made_bags.folder(
         folder / 'recorded', [('/rotor_state', stamp, data) for stamp, data in rows], 'mcap'

@@ -22,8 +22,7 @@ ADDED = 'measured added compliance out of mesh (rad/(N·m))'
 
 def followed(torques, errors=None):
     """Return the monitor after these torques of the output, N·m, and measured errors, rad."""
-    loads = Loads(PARAMETERS)
-    monitor = PreloadMonitor(loads, 3.0)
+    loads, monitor = Loads(PARAMETERS), PreloadMonitor(PARAMETERS)
     for k, torque in enumerate(torques):
         effort = None if math.isnan(torque) else torque / -19.0
         sample = RotorSample(k * PERIOD, split_turns(0.0), None, effort)

@@ -123,7 +123,7 @@ def _messages(joint: str, samples: Samples):
     columns = [samples.positions, *([] if samples.efforts is None else [samples.efforts])]
     received = samples.stamps if samples.received is None else samples.received
     for at, stamp, *numbers in zip(received, samples.stamps, *columns, strict=True):
-        yield int(at), template.encode(int(stamp), *([float(number)] for number in numbers))
+        yield int(at), template.encode(int(stamp), [*map(float, numbers)])
 
 
 def record_both_encoders(folder: Path, *names: str) -> None:

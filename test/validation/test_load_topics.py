@@ -65,6 +65,20 @@ def test_recording_that_lacks_inputs_passes(braced):
      ('/joint_loads', -48, 'force'), ('/joint_loads', -8, 'couple')],
 )  # fmt: skip
 def test_number_that_differs_is_named(topic, place, field, config):
+    report = of_changed_number(topic, place, config)
+    assert report.verdict == Verdict.FAIL
+    faulty = [f.name for f in topic_of(report, topic).fields if not f.passed]
+    assert faulty == [field]
+
+
+def test_wrench_out_of_the_plane_is_no_message_of_the_topic(config):
+    report = of_changed_number('/joint_loads', -32, config)  # the force along z
+    assert report.verdict == Verdict.FAIL
+    (fault,) = topic_of(report, '/joint_loads').faults
+    assert fault.text.startswith('malformed: 1 message')
+
+
+def of_changed_number(topic, place, config):
     braced = replace(config, preload=1.5, branch_stiffness=(3000.0,))
     messages = loaded(read_bag(BAGS / 'servo_point_to_point'), braced)
     row = next(k for k, m in enumerate(messages) if k > 4000 and m[0] == topic)
@@ -72,10 +86,7 @@ def test_number_that_differs_is_named(topic, place, field, config):
     changed = bytearray(data)
     changed[place + 7 + len(data)] ^= 0x40  # in the exponent of a float64
     messages[row] = name, received, bytes(changed)
-    report = validate(messages, braced)
-    assert report.verdict == Verdict.FAIL
-    faulty = [f.name for f in topic_of(report, topic).fields if not f.passed]
-    assert faulty == [field]
+    return validate(messages, braced)
 
 
 def test_missing_loads_are_found(config):

@@ -58,7 +58,7 @@ def same(left: float, right: float) -> bool:
 
 pose_arrays = st.builds(
     lambda stamp, frame, count: PoseArrayTemplate(frame, count).encode(
-        stamp, *([[0.5 * k for k in range(7 * count)]] if count else [])
+        stamp, [0.5 * k for k in range(7 * count)]
     ),
     st.integers(0, 2**60),
     st.sampled_from(['stator', 'base']),

@@ -208,8 +208,8 @@ def _moving(loads: RecordedLoads, begins: Sequence[int]) -> MovingMechanism:
     kept = np.unique(np.concatenate(rows).astype(int).clip(0, last))
     parameters, turned = loads.parameters, np.degrees(loads.rotor[kept])
     mechanism = parameters.mechanism
-    shares = parameters.sharing.branches(loads.torque[kept], np)
-    torques = np.column_stack([torque for torque, _ in shares])
+    shares, _ = parameters.sharing.branches(loads.torque[kept], np)
+    torques = np.column_stack(shares)
     return MovingMechanism(
         mechanism,
         parameters.module,

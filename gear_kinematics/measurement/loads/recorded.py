@@ -173,8 +173,9 @@ class RecordedLoads:
         Args:
             friction: μ.
         """
-        mechanism, shares = self.parameters.mechanism, self.parameters.sharing
-        couples = sum(abs(torque) for torque, _ in shares.branches(self.torque, np))
+        mechanism = self.parameters.mechanism
+        torques, _ = self.parameters.sharing.branches(self.torque, np)
+        couples = sum(map(abs, torques))
         teeth = mechanism.ring_teeth / mechanism.satellite_teeth
         given, taken = abs(self.torque) @ self.travel, couples @ self.travel
         return float(friction * 4.0 / math.pi * teeth * taken / given)
@@ -196,16 +197,17 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
             joint = only_joint(bag, topic, parameters.rotor_joint)
             parameters = replace(parameters, rotor_joint=joint)
         rotor, loads = RotorInput(parameters), Loads(parameters)
-        lacking = 'effort or acceleration missing' if loads.needs_motion else 'effort missing'
+        lacking = (
+            'effort missing' if parameters.loads.without_mass else 'effort or acceleration missing'
+        )
         try:
             for batch in bag.batches([topic], progress):
                 messages = by_topic(batch, [topic])[topic]
                 samples = rotor.accept_batch(messages.data, messages.received)
                 found = loads.follow_batch(samples)
                 rows = [TURN * samples.turns + samples.angle, found.torque]
-                for branch in found.branches:
-                    rows += np.hypot(*branch.mesh_force), np.hypot(*branch.cam_force)
-                    rows.append(np.abs(branch.satellite_couple))
+                for _, mesh, cam, _, _, couple, _ in found.branches:
+                    rows += np.hypot(*mesh), np.hypot(*cam), np.abs(couple)
                 known = np.isfinite(found.torque)
                 stamps.append(samples.stamp[known])
                 tables.append(np.stack(rows)[:, known])
