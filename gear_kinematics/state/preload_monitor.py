@@ -15,7 +15,6 @@ from gear_kinematics.state.diagnostics import OK, WARN, Report
 from gear_kinematics.state.loads import SampleLoads
 from gear_kinematics.wire.cdr import SECOND
 
-_ADVICE = 'Raise the preload (gearkin preload) or lower the torque of the output.'
 _LEAST_ERRORS = 10  # measured between two crossings, for a compliance
 _MOST_ERRORS = 2000  # that are kept between two crossings
 _LEAST_EPISODES = 4  # out of mesh, for a standard deviation
@@ -31,9 +30,8 @@ class PreloadMonitor:
     def __init__(self, parameters: NodeParameters) -> None:
         """Start for a mechanism with a preload."""
         self._sharing, self._preload = parameters.sharing, abs(parameters.preload)
-        self._needed = 'no effort'
-        if not parameters.loads.without_mass:
-            self._needed += ' or no velocity'
+        massless = parameters.loads.without_mass
+        self._lacking = 'no effort' if massless else 'no effort or no velocity'
         self._margin = self._torque = math.nan
         self._in_mesh: bool | None = None
         self._errors: deque[tuple[float, float]] = deque(maxlen=_MOST_ERRORS)
@@ -44,7 +42,7 @@ class PreloadMonitor:
 
     def _clear(self) -> None:
         self._least = math.inf
-        self._received = self._known = self._seen = self._lost = 0
+        self._received = self._seen = self._lost = 0
 
     def follow(self, sample: RotorSample, loads: SampleLoads) -> None:
         """Take the loads at the next sample."""
@@ -56,7 +54,6 @@ class PreloadMonitor:
         in_mesh = None
         if not math.isnan(margin):
             in_mesh = margin > 0.0
-            self._known += 1
             self._margin, self._least = margin, min(self._least, margin)
             self._seen += step
             self._lost += step * (not in_mesh)
@@ -84,11 +81,10 @@ class PreloadMonitor:
 
     def report(self) -> Report:
         """Report on the time since the last report."""
-        least, seen, known = self._least, self._seen, self._known
-        received, lost = self._received, self._lost
+        least, seen, received, lost = self._least, self._seen, self._received, self._lost
         self._clear()
-        if not known:
-            what = f'unknown: {self._needed} in rotor_state' if received else 'no input'
+        if least == math.inf:
+            what = f'unknown: {self._lacking} in rotor_state' if received else 'no input'
             return Report(OK, what, {})
         share = f'{100.0 * lost / seen if seen else 100.0 * (least <= 0.0):.1f}'
         values = {'preload (N·m)': f'{self._preload:.4g}'}
@@ -103,5 +99,5 @@ class PreloadMonitor:
                 values['measured added compliance out of mesh (rad/(N·m))'] = measured
         if least > 0.0:
             return Report(OK, 'ok', values)
-        values['advice'] = _ADVICE
+        values['advice'] = 'Raise the preload (gearkin preload) or lower the torque of the output.'
         return Report(WARN, f'a branch was out of mesh for {share} % of the time', values)
