@@ -161,21 +161,6 @@ def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
     return _only(bag.path, named, OUTPUT_ENCODER) if named else ''
 
 
-def other_topic(bag: Bag, rotor: str, joint: str = '') -> str:
-    """Return the topic of joint states that has a joint, or else the only one beside the rotor's.
-
-    The outputs of the node are left out. An empty text if there is none, or several.
-    """
-    topics = [
-        topic
-        for topic in _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)
-        if topic == rotor or base_name(topic) not in TOPICS
-    ]
-    found = [t for t, heard in joints_on(bag, topics).items() if joint in heard] if joint else []
-    found = found or [topic for topic in topics if topic != rotor]
-    return found[0] if len(found) == 1 else ''
-
-
 def missing_encoder(bag: Bag) -> str:
     """Say that a bag has no topic of the output encoder, and which topics it might be."""
     topics = _of_type(bag.topics, TOPICS[OUTPUT_ENCODER].type)

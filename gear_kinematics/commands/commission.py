@@ -2,34 +2,29 @@
 """`gearkin commission`: the parameters of the node, from recordings of both encoders."""
 
 import argparse
-import sys
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
+from gear_kinematics.bag import Bag
+from gear_kinematics.bag.roles import joints_on
 from gear_kinematics.commands import ExitCode, arguments, bags
 from gear_kinematics.commands.encoders import add_recordings, ratio_text, sources
 from gear_kinematics.commands.joints import choose_joint
-from gear_kinematics.commands.output import (
-    Console,
-    complain,
-    message_progress,
-    warn_of_shared_memory,
-)
+from gear_kinematics.commands.output import Console, message_progress, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.commissioning import Channel, Request, actuator_file, commission
-from gear_kinematics.measurement.commissioning.check import judge
-from gear_kinematics.measurement.commissioning.document import check_document, document
-from gear_kinematics.measurement.commissioning.reading import read_positions
-from gear_kinematics.measurement.recording import Encoders, Recording
+from gear_kinematics.measurement.commissioning import analysis
+from gear_kinematics.measurement.commissioning.document import document
+from gear_kinematics.measurement.commissioning.file import actuator_file
+from gear_kinematics.measurement.csv_files import is_csv
+from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
-from gear_kinematics.report.document import printable
+from gear_kinematics.report.document import Verdict
+from gear_kinematics.wire.topics import JOINT_STATE, TOPICS, base_name
 
-_Heard = tuple[list[tuple[Recording, Encoders]], Request]
-"""Recordings, and the request with the joints that were heard."""
-_WAIT = 4.0  # s; a driver may find this listener only when it announces itself, every 3 s
+_OUTPUTS = {name for name, topic in TOPICS.items() if topic.publisher == 'node'}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -41,23 +36,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='store_true',
         help='hear the drivers now, and guide through turning the output by hand; Enter ends it',
     )
-    recording.add_argument(
-        '--encoder-joint', metavar='NAME', help='of the output (default: the only one)'
-    )
+    recording.add_argument('--encoder-joint', metavar='NAME', help='of the output')
     gear = arguments.group(parser, 'gear')
     known = gear.add_mutually_exclusive_group()
-    known.add_argument(
-        '--ratio',
-        type=ratio_text,
-        metavar='I',
-        help='confirm this exact ratio, such as -19',
-    )
-    known.add_argument(
-        '--teeth', type=_teeth, metavar='ZK/ZS', help='confirm the teeth of ring gear/satellite'
-    )
-    known.add_argument(
-        '--check', type=Path, metavar='FILE', help='judge this parameter file, and write none'
-    )
+    known.add_argument('--ratio', type=ratio_text, metavar='I', help='confirm it, such as -19')
+    known.add_argument('--teeth', type=_teeth, metavar='ZK/ZS', help='confirm them, such as 80/76')
+    known.add_argument('--check', type=Path, metavar='FILE', help='judge this parameter file')
     gear.add_argument(
         '--zero-here',
         type=_moment,
@@ -65,8 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help='the output angle is 0 then, in the last recording; a stamp or time of it, s '
         "(default: at 0 of the output's encoder)",
     )
-    output = arguments.group(parser, 'output')
-    output.add_argument(
+    arguments.group(parser, 'output').add_argument(
         '-o',
         '--output',
         default=default_config().name,
@@ -84,54 +67,59 @@ def run(options: argparse.Namespace) -> ExitCode:
         raise ValueError(f'{path}: exists already; give another name with -o')
     if options.live == bool(options.recordings):
         raise ValueError('name recordings, or --live, which hears the drivers instead')
-    others = {} if options.check else {'-o': options.output}
-    reporter = Reporter(options, others=others, brief=not options.verbose)
+    written = {} if options.check else {'-o': options.output}
+    reporter = Reporter(options, others=written, brief=not options.verbose)
     file = NodeParameters.load(options.check) if options.check else None
-    request = Request(
-        ratio=file.gear.gear_ratio if file else _ratio(options),
-        teeth=options.teeth,
-        zero_here=options.zero_here,
-    )
     if file:
         options.joint = options.joint or file.rotor_joint
         options.encoder_joint = options.encoder_joint or file.output_encoder_joint
-    recordings, request = (_hear if options.live else _read)(options, request)
-    result = commission(recordings, request)
-    if file:
-        judgements = list(judge(result, file))
-        reporter.write(check_document(result, str(options.check), judgements), [options.check])
-        failed = any(each.holds is False for each in judgements)
-        return ExitCode.FAILED if failed else ExitCode.DONE
-    if not result.fault:
+    request = analysis.Request(
+        rotor=analysis.Channel(options.rotor_topic or '', options.joint or ''),
+        output=analysis.Channel(options.encoder_topic or '', options.encoder_joint or ''),
+        ratio=file.gear.gear_ratio if file else _ratio(options),
+        teeth=options.teeth,
+        zero_here=options.zero_here,
+        file=file,
+    )
+    result = _hear(request) if options.live else _read(options, request)
+    if not (file or result.fault):
         write_new(path, actuator_file(result, path.name))
-    elif options.quiet:  # where no report says it
-        complain(result.fault)
-    reporter.write(document(result, options.output))
-    return ExitCode.FAILED if result.fault else ExitCode.DONE
+    report = document(result, str(options.check or path))
+    reporter.write(report, [options.check] if file else [])
+    return ExitCode.FAILED if report.verdict == Verdict.FAIL else ExitCode.DONE
 
 
-def _read(options: argparse.Namespace, request: Request) -> _Heard:
+def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Commissioning:
     """Read the recordings."""
-    joints = options.joint, options.encoder_joint
-    recordings, channels = [], set()
+    parameters, known = NodeParameters.load(), replace(sources(options), raw_counts=True)
+    recordings = []
     for path in options.recordings:
-        with bags.naming(path), message_progress(path.name, quiet=options.quiet) as progress:
-            read = read_positions(path, sources(options), joints, progress)
-        recordings.append(read[:2])
-        channels.add(read[2:])
-    if len(channels) > 1:
-        raise ValueError('the recordings have different topics or joints: are they of one gear?')
-    [(rotor, output)] = channels
-    return recordings, replace(request, rotor=rotor, output=output)
+        with bags.naming(path):
+            request = request if is_csv(path) else _chosen(_recorded(path), request)
+        rotor, output = request.rotor, request.output
+        joints = replace(parameters, rotor_joint=rotor.joint, output_encoder_joint=output.joint)
+        topics = replace(known, rotor_topic=rotor.topic, encoder_topic=output.topic)
+        with message_progress(path.name, quiet=options.quiet) as progress:
+            recordings.append(read_encoders(path, joints, topics, progress))
+    return analysis.commission(recordings, request)
 
 
-def _hear(options: argparse.Namespace, request: Request) -> _Heard:
-    """Hear both encoders until they tell what is needed, or the user ends it.
+def _recorded(path: Path) -> list[analysis.Channel]:
+    """The joints of drivers in a bag."""
+    with Bag(path) as bag:
+        states = [topic for topic, kind in bag.topics.items() if kind == JOINT_STATE]
+        heard = joints_on(bag, [topic for topic in states if base_name(topic) not in _OUTPUTS])
+    return [analysis.Channel(topic, joint) for topic, joints in heard.items() for joint in joints]
 
-    Raises:
-        KeyboardInterrupt: on SIGINT or SIGTERM.
-        ValueError: if there is nothing to hear.
-    """
+
+def _chosen(joints: list[analysis.Channel], request: analysis.Request) -> analysis.Request:
+    rotor = choose_joint(joints, request.rotor, 'rotor')
+    output = choose_joint([each for each in joints if each != rotor], request.output, 'output')
+    return replace(request, rotor=rotor, output=output)
+
+
+def _hear(request: analysis.Request) -> analysis.Commissioning:
+    """Hear both encoders until they tell what is needed, or the user ends it."""
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
     from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
@@ -140,15 +128,10 @@ def _hear(options: argparse.Namespace, request: Request) -> _Heard:
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
     from gear_kinematics.watch.text import guide, list_drivers  # noqa: PLC0415
 
-    console, drivers = Console(stderr=True), listen(_WAIT)
+    console, drivers = Console(stderr=True), listen()
     list_drivers(drivers, console)
-    given = options.rotor_topic, options.joint
-    rotor = choose_joint(drivers, given, 'rotor', '--rotor-topic and --joint')
-    given = options.encoder_topic, options.encoder_joint
-    output = choose_joint(drivers, given, 'output', '--encoder-topic and --encoder-joint', rotor)
-    chosen = 'rotor: {1} on {0}; output: {3} on {2}'.format(*rotor, *output)
-    print(printable(chosen), file=sys.stderr)
-    request = replace(request, rotor=Channel(*rotor), output=Channel(*output))
+    joints = [analysis.Channel(d.topic, joint) for d in drivers for joint in d.joints]
+    request = _chosen(joints, request)
     with stopped_by_signals() as stopped, replay_node('') as node:
         live = LiveCommissioning(node, request, once=True)
         with closing(live):
@@ -158,7 +141,7 @@ def _hear(options: argparse.Namespace, request: Request) -> _Heard:
         live.finish()
     if not live.collected:
         raise ValueError(live.fault)
-    return [live.collected], live.request
+    return analysis.commission([live.collected], live.request)
 
 
 def _ratio(options: argparse.Namespace) -> GearRatio | None:

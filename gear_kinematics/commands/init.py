@@ -7,6 +7,7 @@ from pathlib import Path
 from gear_kinematics.commands import ExitCode
 from gear_kinematics.commands.joints import choose_joint
 from gear_kinematics.commands.output import Console, warn_of_shared_memory
+from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.parameters import default_config
 from gear_kinematics.parameters.new_config import new_config, start_command, write_new
 from gear_kinematics.report.document import printable
@@ -38,8 +39,9 @@ def run(options: argparse.Namespace) -> ExitCode:
 
     drivers = listen()
     list_drivers(drivers, Console())
-    given = options.topic, options.joint
-    topic, joint = choose_joint(drivers, given, 'rotor', '--topic and --joint')
+    joints = [Channel(driver.topic, joint) for driver in drivers for joint in driver.joints]
+    given = Channel(options.topic or '', options.joint or '')
+    topic, joint = choose_joint(joints, given, 'rotor')
     write_new(path, new_config(topic, joint, str(path)))
     print(f'{path} is for the joint {printable(joint)} on {topic}. Start the node:')
     print(f'    {start_command(topic, str(path))}')

@@ -1,60 +1,45 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The choice of a joint among those that are heard."""
+"""The choice of a joint among those that are heard or recorded."""
 
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Literal
 
+from gear_kinematics.measurement.commissioning.analysis import Channel
 from gear_kinematics.report.document import printable
-from gear_kinematics.wire.nearest import nearest
+from gear_kinematics.wire.nearest import listed
+from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
 
-if TYPE_CHECKING:
-    from gear_kinematics.watch.drivers import Driver
+_USUAL = {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}
+"""Names of topics."""
 
 
 def choose_joint(
-    drivers: Sequence['Driver'],
-    given: tuple[str | None, str | None],
-    role: str,
-    options: str,
-    taken: tuple[str, str] | None = None,
-) -> tuple[str, str]:
-    """Return the topic and the joint that are given, the only ones, or those that the user names.
+    joints: Sequence[Channel], given: Channel, role: Literal['rotor', 'output']
+) -> Channel:
+    """Return the joint that is given, the only one on its usual topic, or the one the user names.
 
     Args:
-        drivers: that are heard.
-        given: topic and joint, where options name them.
+        joints: that are there.
+        given: what is known of it.
         role: of the joint.
-        options: that name them, for messages.
-        taken: topic and joint of another role.
 
     Raises:
         ValueError: if there is none, or there are several and nobody to ask.
     """
-    topic, name = given
-    if topic:
-        topic = f'/{topic.removeprefix("/")}'
-        known = [driver.topic for driver in drivers]
-        if topic not in known:
-            raise ValueError(f'no topic {topic} of type JointState{nearest(topic, known)}')
-        drivers = [driver for driver in drivers if driver.topic == topic]
-    joints = [(driver.topic, joint) for driver in drivers for joint in driver.joints]
-    joints = [joint for joint in joints if joint != taken]
-    if name:
-        known = [joint for _, joint in joints]
-        if name not in known:
-            hint = nearest(name, known)
-            raise ValueError(f'no joint {name}{hint}; there are: {", ".join(known)}')
-        joints = [(topic, joint) for topic, joint in joints if joint == name]
-    if len(joints) == 1:
-        return joints[0]
-    if not joints:
-        raise ValueError(f'no message with a joint for the {role} was heard')
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        raise ValueError(f'which joint is the {role}? Choose with {options}')
-    for number, (topic, joint) in enumerate(joints, 1):
-        print(f'{number:3}  {printable(joint)} on {topic}')
+    topic = given.topic and f'/{given.topic.removeprefix("/")}'
+    found = [j for j in joints if topic in {'', j.topic} and given.joint in {'', j.joint}]
+    usual = [joint for joint in found if base_name(joint.topic) == _USUAL[role]]
+    found = usual or [joint for joint in found if base_name(joint.topic) not in TOPICS] or found
+    if len(found) == 1:
+        return found[0]
+    names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]
+    if not (found and sys.stdin.isatty() and sys.stdout.isatty()):
+        there = listed(names) or 'none is there'
+        raise ValueError(f'which joint is the {role}? Name its topic and joint: {there}')
+    for number, name in enumerate(names, 1):
+        print(f'{number:3}  {name}')
     answer = input(f'Number of the joint of the {role}: ')
-    if not (answer.isdecimal() and 1 <= int(answer) <= len(joints)):
-        raise ValueError(f'{answer!r} is no number from 1 to {len(joints)}')
-    return joints[int(answer) - 1]
+    if not (answer.isdecimal() and 1 <= int(answer) <= len(found)):
+        raise ValueError(f'{answer!r} is no number from 1 to {len(found)}')
+    return found[int(answer) - 1]

@@ -1,22 +1,21 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The gear ratio from recorded angles of rotor and output, and the gears that may have it."""
+"""The gear ratio from recorded angles of rotor and output."""
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from fractions import Fraction
-from itertools import islice
+from itertools import count, islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gear_kinematics.correction.transmission_error import Direction
 from gear_kinematics.correction.uncertainty import Component, Estimate, combined, pseudo_values
-from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction, tooth_pairs
+from gear_kinematics.kinematics.gear_ratio import GearRatio, simplest_fraction
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Encoders, RecordingError
 from gear_kinematics.measurement.wording import plus_minus
-from gear_kinematics.report.document import number
 
 Array = NDArray[np.float64]
 
@@ -42,18 +41,14 @@ _LEAST_NOISE = 1e-9
 """rad: less than the step of any encoder."""
 _STEP = 0.01
 """s around a sample, for its speed; of a row without times."""
-_ONE_TURN, _MOST_ADVISED = 390, 36_000
-"""deg of the output: more than a turn, as hardly anything repeats in just one; and the most that
-is advised."""
+_ONE_TURN = 390
+"""deg of the output: more than a turn, as hardly anything repeats in just one."""
 _BY_CHANCE = 0.05
 """Probability below which a simple fraction in the interval is no coincidence."""
 _MAX_DISTANCE = 2
-"""Expanded uncertainties within which a fraction or a tooth pair may be the true ratio: of 20
-recordings, one has it beyond a single one."""
-_MOST_TEETH = 200
-"""Of the ring gears that are considered; any pair can be multiplied."""
-_SHOWN, _COMPLEX = 10, 20
-"""Candidates and tooth pairs that are named; denominators of others over that of the simplest."""
+"""Expanded uncertainties within which a fraction may be the true ratio: of 20 recordings, one has
+it beyond a single one."""
+_CANDIDATES = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,50 +57,21 @@ class RatioEstimate:
 
     measured: Estimate
     candidates: tuple[Fraction, ...]
-    """Fractions within twice the expanded uncertainty by denominator, the nearest first."""
+    """Fractions that may be the ratio by denominator, the nearest first; the one that is taken."""
+    taken: GearRatio | None = None
+    """The simplest fraction, if it is in the interval and no other is as simple around it."""
     advice: str = ''
     """How far to turn the output to tell the ratio; empty if it is taken."""
 
     def fits(self, ratio: Fraction) -> bool:
         """Return whether this may be the true ratio."""
-        low, high = _interval(self.measured)
-        return low <= ratio <= high
-
-    @property
-    def simplest(self) -> Fraction:
-        """The first candidate."""
-        return self.candidates[0]
-
-    @property
-    def taken(self) -> GearRatio | None:
-        """The simplest fraction, if it is in the interval and no other is as simple around it."""
         spread = self.measured.uncertainty or 0.0
-        inside = abs(self.measured.value - self.simplest) <= spread
-        return GearRatio(self.simplest) if inside and spread < self.enough else None
-
-    @property
-    def enough(self) -> float:
-        """Expanded uncertainty below which the simplest fraction is no coincidence."""
-        # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
-        q = self.simplest.denominator
-        return _BY_CHANCE / (_MAX_DISTANCE * q * (q + 1))
+        return abs(self.measured.value - ratio) <= _MAX_DISTANCE * spread
 
     @property
     def plus_minus(self) -> str:
         """The measured ratio ± its expanded uncertainty."""
         return plus_minus(self.measured)
-
-    @property
-    def tooth_pairs(self) -> tuple[tuple[int, int], ...]:
-        """Teeth (zk, zs) of ring gear and satellite that may have the ratio, by rising zk."""
-        low, high = _interval(self.measured)
-        return tuple(tooth_pairs(low, high, _MOST_TEETH)) if high < 0 else ()
-
-    @property
-    def teeth(self) -> str:
-        """The first tooth pairs of the simplest ratio, in words; empty without any."""
-        pairs = ((zk, zs) for zk, zs in self.tooth_pairs if zs == self.simplest * (zs - zk))
-        return ', '.join(f'{zk}/{zs}' for zk, zs in islice(pairs, _SHOWN))
 
 
 def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
@@ -116,10 +82,8 @@ def check_ratio(encoders: Encoders, assumed: GearRatio) -> str:
     """
     error, wrong = encoders.error(assumed), wrong_ratio(encoders, assumed)
     if float(np.ptp(np.remainder(error - error[0] + 0.5 * TURN, TURN))) >= 0.5 * TURN:
-        raise RecordingError(
-            'the measured output angle does not follow the rotor: the errors cover a whole turn; '
-            f'{wrong or "the ratio is wrong, or an encoder counts backwards"}'
-        )
+        why = wrong or 'the ratio is wrong, or an encoder counts backwards'
+        raise RecordingError(f'the output does not follow the rotor: {why}')
     return f'The recording does not have the ratio {assumed}: {wrong}.' if wrong else ''
 
 
@@ -141,7 +105,7 @@ def wrong_ratio(encoders: Encoders, assumed: Fraction) -> str:
     if found.fits(-assumed):
         return f'{measured}: an encoder counts backwards, or --ratio={-assumed} is right'
     such = '' if found.taken else ' it, such as'
-    return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.simplest}'
+    return f'{measured}; gearkin commission finds it, or give{such} --ratio={found.candidates[0]}'
 
 
 def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> RatioEstimate:
@@ -182,19 +146,17 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         early, at, after = (np.interp(when, times, rotor) for when in around)
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
         columns = _columns(at, slope, way[kept], slope * (after - early))
-        fit = _Fit(columns, output[kept] - slope * at)
+        terms, spread, scatter = _fitted(columns, output[kept] - slope * at)
         travel = float(np.ptp(at))
-        slope, late = slope + fit.slope / travel, late - fit.delay
-    parts = Component(fit.spread / travel), Component(fit.scatter / travel, _BLOCKS - 1)
+        slope, late = slope + terms[0] / travel, late - _DELAY * terms[3]
+    parts = Component(spread / travel), Component(scatter / travel, _BLOCKS - 1)
     measured = Estimate(slope, *combined(parts), _BLOCKS)
     if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):
-        error = f'for errors of {number(math.degrees(ENCODER_ERROR))}°'
-        raise RecordingError(f'the output does not follow the rotor, or turns too little {error}')
+        raise RecordingError('the output does not follow the rotor, or turns too little')
     measured = measured.inverse()
     if abs(measured.value) + (measured.uncertainty or 0.0) < 1.0:
         raise RecordingError('the output turns more than the rotor: exchange the two')
-    found = RatioEstimate(measured, tuple(islice(_fractions(measured), _SHOWN)))
-    return found if found.taken else replace(found, advice=_advice(found, abs(slope) * travel))
+    return _judged(measured, math.degrees(abs(slope) * travel))
 
 
 def _columns(rotor: Array, slope: float, way: Array, step: Array) -> Array:
@@ -209,23 +171,23 @@ def _columns(rotor: Array, slope: float, way: Array, step: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
-class _Fit:
-    """Terms fitted by least squares, each expected to be about as large as it may be."""
+def _fitted(columns: Array, rest: Array) -> tuple[list[float], float, float]:
+    """Fit terms by least squares, each expected to be about as large as it may be.
 
-    def __init__(self, columns: Array, rest: Array) -> None:
-        rest, self.samples = rest - np.mean(rest), len(rest)
-        blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
-        sums = np.array([block.T @ block for block in blocks])
-        whole, left = sums.sum(axis=0), rest
-        for _ in range(5):  # with the noise that the one before left; with 3, ± is 50 % off
-            self.noise = max(_noise(left), _LEAST_NOISE**2)
-            fitted, self.spread = _solve(whole, self.noise)
-            left = rest - columns @ fitted
-        without = (_solve(whole - block, self.noise)[0][0] for block in sums)
-        values = pseudo_values([fitted[0], *without])
-        # Of the output over the whole travel, rad; spread is by noise and what terms leave open.
-        self.slope, self.delay = float(fitted[0]), _DELAY * float(fitted[3])
-        self.scatter = float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
+    The standard uncertainty of the first is that by noise and what terms leave open, and that by
+    the scatter between blocks.
+    """
+    rest = left = rest - np.mean(rest)
+    blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
+    sums = np.array([block.T @ block for block in blocks])
+    whole = sums.sum(axis=0)
+    for _ in range(5):  # with the noise that the one before left; with 3, ± is 50 % off
+        noise = max(_noise(left), _LEAST_NOISE**2)
+        fitted, spread = _solve(whole, noise)
+        left = rest - columns @ fitted
+    without = (_solve(whole - block, noise)[0][0] for block in sums)
+    values = pseudo_values([fitted[0], *without])
+    return fitted.tolist(), spread, float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
 
 
 def _solve(sums: Array, noise: float) -> tuple[Array, float]:
@@ -245,31 +207,28 @@ def _noise(residual: Array) -> float:
     return most
 
 
-def _advice(found: RatioEstimate, travel: float) -> str:
-    """How far to turn the output so that the simplest candidate would be alone."""
-    degrees = _ONE_TURN
-    if (turned := math.degrees(travel)) >= _ONE_TURN:  # then the uncertainty falls as it grows
-        more = (found.measured.uncertainty or 0.0) / found.enough
-        degrees = 90 * math.ceil(more * turned / 90.0)
-    if degrees > _MOST_ADVISED:
-        return 'confirm its nameplate ratio, as no motion will tell it'
-    return (
-        f'turn the output by {degrees}° or more (a gear with stops: confirm its nameplate ratio)'
-    )
+def _judged(measured: Estimate, turned: float) -> RatioEstimate:
+    """Take the simplest fraction that may be the ratio, or say by how many degrees to turn."""
+    value, spread = measured.value, measured.uncertainty or 0.0
+    around = _MAX_DISTANCE * spread
+    low, high = Fraction(value - around), Fraction(value + around)
+    simplest = simplest_fraction(low, high)
+    # Fewer than q (q + 1)/2 fractions per unit have a denominator of at most q.
+    q = simplest.denominator
+    enough = _BY_CHANCE / (_MAX_DISTANCE * q * (q + 1))
+    if abs(value - simplest) <= spread < enough:
+        return RatioEstimate(measured, (simplest,), GearRatio(simplest))
+    # Over a turn, the uncertainty falls as it grows.
+    more = 90 * math.ceil(spread / enough * turned / 90.0)
+    advice = f'turn the output by {more if turned >= _ONE_TURN else _ONE_TURN}° or more'
+    candidates = islice(_fractions(low, high, q, value), _CANDIDATES)
+    return RatioEstimate(measured, tuple(candidates), advice=advice)
 
 
-def _fractions(measured: Estimate) -> Iterator[Fraction]:
-    """Fractions that may be a ratio, the simplest and nearest first."""
-    low, high = _interval(measured)
-    least = simplest_fraction(low, high).denominator
-    for q in range(least, _COMPLEX * least):
+def _fractions(low: Fraction, high: Fraction, least: int, value: float) -> Iterator[Fraction]:
+    """Fractions in an interval by denominator, the nearest to a value first."""
+    for q in count(least):
         whole = range(math.ceil(low * q), math.floor(high * q) + 1)
-        for p in sorted(whole, key=lambda p: abs(p - measured.value * q)):
+        for p in sorted(whole, key=lambda p: abs(p - value * q)):
             if math.gcd(p, q) == 1:
                 yield Fraction(p, q)
-
-
-def _interval(measured: Estimate) -> tuple[Fraction, Fraction]:
-    """Where the true ratio may be: the value and twice its expanded uncertainty around it."""
-    value, spread = Fraction(measured.value), Fraction(measured.uncertainty or 0.0)
-    return value - _MAX_DISTANCE * spread, value + _MAX_DISTANCE * spread

@@ -15,8 +15,9 @@ from hypothesis import strategies as st
 from simulated_encoders import TURN, Drive, ramped_strokes, stamps
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio
-from gear_kinematics.measurement.commissioning import Request, actuator_file, commission
-from gear_kinematics.measurement.commissioning.check import judge
+from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
+from gear_kinematics.measurement.commissioning.document import document
+from gear_kinematics.measurement.commissioning.file import actuator_file
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 
@@ -55,7 +56,8 @@ def readings(
 
 
 def commissioned(*recordings, **request):
-    return commission(recordings, Request(**request))
+    nowhere = Channel('', '')
+    return commission(recordings, Request(rotor=nowhere, output=nowhere, **request))
 
 
 def parameters(result, folder):
@@ -142,19 +144,15 @@ def test_less_than_a_rotor_turn_leaves_the_kind_open():
         (lambda r, o: (np.degrees(r), o), r'rotor are degrees .*1/2\^14 turn.*by 0.0174532925'),
         (lambda r, o: (r, np.degrees(o) % 360.0), r'output are degrees .*\d+ wraps at 360'),
         (lambda r, o: (np.round(r / TURN * 2**14) / 2**14, o), r'turns .*1/2\^14 .*by 6.28318531'),
+        (lambda r, o: (np.floor(r / TURN % 1.0 * 4096), o), r'counts .*\d+ wraps at 4096'),
         (lambda r, o: (np.floor(r / TURN % 1.0 * 4000), o), 'counts .*unknown number'),
         (lambda r, o: (np.floor(r / TURN * 4096), o), 'counts .*whole numbers.*unknown number'),
     ],
 )
-def test_positions_in_another_unit_are_told_and_give_no_file(unit, said):
+def test_positions_in_another_unit_are_told(unit, said):
     times, *angles = readings()
-    result = commissioned(recorded(*unit(*angles), times))
-    assert not result.between
-    assert all(each.advice for each in result.open)
-    with pytest.raises(ValueError, match=said):
-        actuator_file(result)
-    if result.ratio:  # in the right unit, it is that of the gear
-        assert result.ratio.measured.value == pytest.approx(-19.0, abs=0.01)
+    with pytest.raises(RecordingError, match=said):
+        commissioned(recorded(*unit(*angles), times))
 
 
 @pytest.mark.parametrize('moment', ['START', 'END', 1_700_000_004.0])
@@ -170,7 +168,7 @@ def test_zero_is_where_it_is_named(moment):
 
 def test_zero_outside_of_the_recording_is_refused():
     times, rotor, output = readings()
-    with pytest.raises(RecordingError, match=r'no sample at 50 s; it is from 1700000000 to 17'):
+    with pytest.raises(RecordingError, match='50 s is not in 1700000000 to 17'):
         commissioned(recorded(rotor, output, times), zero_here=50.0)
 
 
@@ -200,9 +198,11 @@ def test_greatest_speed_is_allowed_twice():
     [
         ({}, set()),
         ({'rotor_direction': -1}, {'rotor_direction'}),
-        ({'gear_ratio': '-18'}, {'gear_ratio'}),
-        ({'rotor_encoder': 'multi_turn'}, {'rotor_encoder', 'rotor_zero'}),
+        ({'gear_ratio': '-18'}, set()),  # a fault
+        ({'rotor_encoder': 'multi_turn'}, {'rotor_encoder'}),
         ({'rotor_zero': 3.5}, {'rotor_zero'}),
+        ({'rotor_zero': 3.5, 'output_encoder_reference': 'absolute'}, set()),  # found at the start
+        ({'rotor_zero': 2.5 + 19.0 * 0.3}, set()),  # another turn of a single-turn encoder
         ({'output_encoder_zero': 0.1}, {'rotor_zero'}),
         ({'max_rotor_speed': 3.0}, {'max_rotor_speed'}),
     ],
@@ -213,6 +213,7 @@ def test_check_names_what_a_new_recording_contradicts(change, contradicted, tmp_
     times, rotor, output = readings(
         zeros=(2.5, 0.3), wraps=(True, True), profile=ramped_strokes(9.0, 7.0, 1.0)
     )
-    result = commissioned(recorded(rotor, output, times))
-    judged = list(judge(result, replace(file, **change)))
-    assert {each.name for each in judged if each.holds is False} == contradicted
+    file = replace(file, **change)
+    result = commissioned(recorded(rotor, output, times), ratio=file.gear.gear_ratio, file=file)
+    assert set(document(result, 'a.yaml').data['contradicted']) == contradicted
+    assert bool(result.fault) == (change == {'gear_ratio': '-18'})

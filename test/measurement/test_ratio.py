@@ -47,7 +47,7 @@ def angles(ratio, turns, *, seed=0, count=4000, noise=1e-4, there_and_back=False
 )
 def test_ratio_is_found_exactly(ratio, turns):
     found = estimate_ratio(*angles(ratio, turns, noise=1e-5))
-    assert found.taken == found.simplest == ratio
+    assert (found.taken, found.candidates) == (ratio, (ratio,))
     assert isinstance(found.taken, GearRatio)
     assert found.advice == ''
 
@@ -90,10 +90,7 @@ def test_less_than_a_turn_is_left_open_and_the_advice_is_enough():
         )
         found = estimate_ratio(*joint)
         assert (found.taken, ratio in found.candidates) == (None, True)
-        degrees, stops = re.fullmatch(
-            r'turn the output by (\d+)° or more(.*)', found.advice
-        ).groups()
-        assert stops == ' (a gear with stops: confirm its nameplate ratio)'
+        [degrees] = re.fullmatch(r'turn the output by (\d+)° or more', found.advice).groups()
         joint = simulated_joint.recorded(
             ratio,
             math.radians(int(degrees)),

@@ -84,7 +84,7 @@ def hear(monkeypatch, degrees, ratio='', *, seconds=8.0, lost=0, most=40_000):
     [
         (0.0, '', GUIDE, 0.0),
         (40.0, '121', GUIDE, 0.5 * 40.0 / 60.0 + 0.5),
-        (40.0, '', r'Go on: turn the output by 390° or more .*', 0.5 * 40.0 / 60.0 + 0.25),
+        (40.0, '', r'Go on: turn the output by 390° or more, .*', 0.5 * 40.0 / 60.0 + 0.25),
         (90.0, '', r'Go on: turn the output by .*, or give the ratio on the nameplate\.', 0.75),
         (90.0, '100', 'The given ratio 100 does not agree with the measured -12.*', 0.75),
         (90.0, '121', r'All is known that is needed: The gear has the ratio 121 .*', 1.0),

@@ -318,16 +318,19 @@ def listening(monkeypatch, tmp_path):
     return tmp_path
 
 
+JOINTS = (
+    'which joint is the rotor? Name its topic and joint: '
+    'brake on /motor/joint_states, m1 on /motor/joint_states'
+)
+
+
 @pytest.mark.parametrize(
     ('arguments', 'cause'),
     [
-        ([], 'which joint is the rotor? Choose with --topic and --joint'),
-        (['--joint', 'm11'], 'no joint m11; did you mean `m1`?; there are: brake, m1'),
-        (
-            ['--topic', 'motor/joint_state'],
-            'no topic /motor/joint_state of type JointState; did you mean `/motor/joint_states`?',
-        ),
-        (['--topic', '/odd'], 'no message with a joint for the rotor was heard'),
+        ([], JOINTS),
+        (['--joint', 'm11'], JOINTS),
+        (['--topic', 'motor/joint_state'], JOINTS),
+        (['--topic', '/odd'], JOINTS),
         (['-o', 'nowhere/a.yaml', '--joint', 'm1'], 'nowhere/a.yaml: No such file or directory'),
     ],
 )

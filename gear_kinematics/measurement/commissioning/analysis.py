@@ -8,48 +8,51 @@ backwards.
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from fractions import Fraction
+from itertools import islice
+from typing import Literal, NamedTuple
 
 import numpy as np
 
-from gear_kinematics.correction.uncertainty import Estimate
-from gear_kinematics.kinematics.gear_ratio import GearRatio
+from gear_kinematics.kinematics.gear_ratio import GearRatio, tooth_pairs
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.joint import Joint
-from gear_kinematics.measurement.commissioning.positions import COUNTED
-from gear_kinematics.measurement.ratio import RatioEstimate, estimate_ratio
+from gear_kinematics.measurement.ratio import ENCODER_ERROR, RatioEstimate, estimate_ratio
 from gear_kinematics.measurement.recording import Encoders, Recording, RecordingError
 from gear_kinematics.measurement.transmission import transmission_figures
 from gear_kinematics.measurement.wording import plus_minus
-from gear_kinematics.parameters.node_parameters import default_value
-from gear_kinematics.report.document import number
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.report.document import counted, number
 
 _FASTER = 2.0
 """The speed that is allowed / the greatest seen, which is hardly the greatest that there is."""
-_MILLI = 1e3
+_ONE_TURN = 1.05
+"""Turns beyond which positions count turns: one, and room for noise."""
+_MOST_TEETH, _SHOWN = 200, 10
+"""Of the ring gears that are named, as any pair can be multiplied; and pairs."""
 
 
-@dataclass(frozen=True, slots=True)
-class Channel:
+class Channel(NamedTuple):
     """Where an encoder is heard; without names in a CSV file."""
 
-    topic: str = ''
-    joint: str = ''
+    topic: str
+    joint: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
     """What is known, and what is asked for."""
 
-    rotor: Channel = Channel()
-    output: Channel = Channel()
+    rotor: Channel
+    output: Channel
     ratio: GearRatio | None = None
     """Of the gear, with its sign, to be confirmed."""
     teeth: tuple[int, int] | None = None
     """Of ring gear and satellite, which have this ratio."""
     zero_here: float | Literal['START', 'END'] | None = None
-    """When the output is at its angle 0, by the stamps of the last recording, s; None: at 0 of its
-    encoder."""
+    """When the output is at its angle 0, by the stamps of the last recording, s."""
+    file: NodeParameters | None = None
+    """To be judged: its zeros are kept where they agree."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,25 +91,12 @@ class Commissioning:
     """The exact ratio between the encoders; None where it is open."""
     fault: str
     """Why there is no file, in a sentence; else empty."""
+    answer: str
+    """The result in a sentence."""
     values: tuple[Value, ...]
     open: tuple[Open, ...]
     notes: tuple[str, ...]
     """Sentences on what is no parameter."""
-    delay: Estimate | None
-    """s, by which the stamps of the output are late."""
-
-    @property
-    def travel(self) -> float:
-        """Of the output, rad."""
-        return self.longest.travel
-
-    @property
-    def answer(self) -> str:
-        """The result in a sentence."""
-        if self.fault or self.ratio is None:
-            return self.fault
-        given = self.request.ratio
-        return f'The gear has the ratio {given or self.between} ({_agreement(self.ratio, given)}).'
 
 
 def commission(
@@ -120,145 +110,114 @@ def commission(
         request: what else is known.
 
     Raises:
-        RecordingError: if a recording has too few samples, no times, or no sample at `zero_here`.
+        RecordingError: if a recording has too few samples, no times, positions in another unit
+            than rad, or no sample at `zero_here`.
     """
     joints = tuple(Joint.of(*recording) for recording in recordings)
     longest = max(joints, key=lambda joint: joint.travel)
-    encoders = longest.encoders
-    ratio, between, delay, fault = None, None, None, longest.unit_fault
-    if longest.rotor.turn and longest.output.turn:
-        try:
-            ratio = estimate_ratio(longest.turned, encoders.measured, encoders.seconds)
-        except RecordingError as why:
-            fault = fault or f'The ratio is open: {why}.'
-        else:
-            fault = fault or _doubt(ratio, longest.travel, request.ratio)
-    found: list[Value | Open | str] = list(_names(request))
-    known = request.ratio or (ratio and ratio.taken)
-    if ratio and known and not fault:
-        between = GearRatio(abs(known) if ratio.measured.value > 0.0 else -abs(known))
-        found += _ratio(ratio, between, request)
-        travel = default_value('transmission_error_travel')
-        delay = transmission_figures(encoders, between, travel).delay
-    elif ratio and ratio.advice:
-        found.append(Open('ratio', f'{ratio.plus_minus}{_candidates(ratio)}', ratio.advice))
-    found.append(_kind(joints))
+    ratio, between, evidence = _decided(longest, request.ratio)
+    fault = answer = evidence
+    encoders, known = longest.encoders, request.file or NodeParameters.load()
+    speed = float(np.max(np.abs(encoders.speed(Fraction(1)))))
+    both = encoders.rotor.seconds, encoders.seconds
+    rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
+    reached = f'The rotor turned at up to {number(speed)} rad/s'
+    notes = [f'{reached}. Rates: {rotor} of the rotor, {output} of the output.']
+    named = ('rotor_joint', request.rotor), ('output_encoder_joint', request.output)
+    names = (Value(name, joint, f'a joint of {topic}') for name, (topic, joint) in named if topic)
+    found: list[Value | Open] = [*(() if request.file else names), _kind(joints)]
     if between:
-        single = any(joint.rotor.wraps for joint in joints)
-        found += _zeros(joints[-1], between, request.zero_here, single=single)
-    found += _motion(longest, delay)
+        fault, answer = '', f'The gear has the ratio {request.ratio or between} ({evidence}).'
+        found += _ratio(between, evidence, request)
+        found += _zeros(joints, between, request)
+        travel = known.transmission_error_travel
+        if delay := transmission_figures(encoders, between, travel).delay:
+            notes.append(f'The stamps of the output are late by {plus_minus(delay, 1e3)} ms.')
+        else:
+            advice = 'turn the output there and back three times, at different speeds'
+            found.append(Open('delay', 'it is not told from hysteresis', advice))
+    elif ratio and ratio.advice:
+        found.append(Open('ratio', ratio.plus_minus, ratio.advice))
+    if speed > known.max_rotor_speed:
+        found.append(Value('max_rotor_speed', _FASTER * speed, reached))
+    values = tuple(each for each in found if isinstance(each, Value))
+    left = tuple(each for each in found if isinstance(each, Open))
     return Commissioning(
-        request,
-        joints,
-        longest,
-        ratio,
-        between,
-        fault,
-        tuple(each for each in found if isinstance(each, Value)),
-        tuple(each for each in found if isinstance(each, Open)),
-        tuple(each for each in found if isinstance(each, str)),
-        delay,
+        request, joints, longest, ratio, between, fault, answer, values, left, tuple(notes)
     )
 
 
-def agrees(given: GearRatio, ratio: RatioEstimate) -> bool:
-    """Return whether a ratio may be the measured one, but for its sign."""
-    return ratio.fits(given) or ratio.fits(-given)
-
-
-def _doubt(ratio: RatioEstimate, travel: float, given: GearRatio | None) -> str:
-    """Why the exact ratio is not known, in a sentence; else empty."""
-    seen = ratio.plus_minus
-    if given:
-        wrong = f'The given ratio {given} does not agree with the measured {seen}'
-        return '' if agrees(given, ratio) else f'{wrong}{_candidates(ratio)}.'
-    if ratio.taken:
-        return ''
-    return (
-        f'The ratio is open: {seen} after {number(math.degrees(travel))}° of the output; '
-        f'{ratio.advice}, or confirm with --ratio.'
-    )
-
-
-def _candidates(ratio: RatioEstimate) -> str:
-    """The simple fractions that fit, and the teeth, as the end of a clause."""
-    fitting = f', such as {", ".join(map(str, ratio.candidates))}'
-    return fitting + (f', or teeth such as {ratio.teeth}' if ratio.teeth else '')
-
-
-def _agreement(ratio: RatioEstimate, given: GearRatio | None) -> str:
-    """Why the exact ratio is the right one, as a clause."""
-    seen = ratio.plus_minus
-    return f'given, and agrees with {seen}' if given else f'{seen}, the only simple fraction'
-
-
-def _names(request: Request) -> Iterator[Value]:
-    rotor, output = request.rotor, request.output
-    for name, channel in (('rotor_joint', rotor), ('output_encoder_joint', output)):
-        if channel.joint:
-            yield Value(name, channel.joint, f'a joint of {channel.topic}')
-
-
-def _ratio(ratio: RatioEstimate, between: GearRatio, request: Request) -> Iterator[Value]:
-    given, evidence, same = request.ratio, _agreement(ratio, request.ratio), 1
-    if given:
-        same = 1 if given == between else -1
-        says = f'the encoders turn {"as" if same > 0 else "against"} the sign of the ratio {given}'
-    else:
-        evidence += f', that of {ratio.teeth} teeth, for example' if ratio.teeth else ''
-        says = 'by convention; only a given ratio tells which of both encoders counts backwards'
-    if request.teeth:
-        yield Value('ring_teeth', request.teeth[0], evidence)
-        yield Value('satellite_teeth', request.teeth[1], evidence)
-    else:
-        yield Value('gear_ratio', str(given or between), evidence)
-    yield Value('rotor_direction', same, says)
-    yield Value('output_encoder_direction', 1, 'the sense of the encoder is kept')
+def _decided(
+    longest: Joint, given: GearRatio | None
+) -> tuple[RatioEstimate | None, GearRatio | None, str]:
+    """The ratio between the encoders, the exact one, and why it is that one, or why it is open."""
+    encoders = longest.encoders
+    try:
+        ratio = estimate_ratio(longest.turned, encoders.measured, encoders.seconds)
+    except RecordingError as error:
+        return None, None, f'The ratio is open: {error}.'
+    seen = f'{ratio.plus_minus} after {math.degrees(longest.travel):.1f}° of the output'
+    if not (exact := given or ratio.taken):
+        such = ', '.join(map(str, ratio.candidates))
+        advice = f'{ratio.advice}, or confirm with --ratio'
+        return ratio, None, f'The ratio is open: {seen}, such as {such}; {advice}.'
+    for between in (exact, -exact):
+        if ratio.fits(between):
+            why = 'which the given one fits' if given else 'the only simple fraction'
+            return ratio, GearRatio(between), f'{seen}, {why}'
+    return ratio, None, f'The given ratio {exact} does not agree with the measured {seen}.'
 
 
 def _kind(joints: Sequence[Joint]) -> Value | Open:
     """The kind of the rotor's encoder."""
-    most = max((joint.rotor for joint in joints), key=lambda rotor: (rotor.wraps, rotor.turns))
-    if most.wraps:
-        return Value('rotor_encoder', 'single_turn', most.evidence)
-    seen = f'the rotor turned {number(most.turns)} turns'
-    if most.turns <= COUNTED:
+    if wraps := sum(joint.rotor_wraps for joint in joints):
+        return Value('rotor_encoder', 'single_turn', f'{counted(wraps, "wrap")} of a turn')
+    turns = max(float(np.ptp(joint.turned)) for joint in joints) / TURN
+    seen = f'the rotor turned {number(turns)} turns'
+    if turns <= _ONE_TURN:
         return Open('rotor_encoder', seen, 'turn the rotor by more than one')
     return Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap')
 
 
-def _zeros(
-    last: Joint, between: GearRatio, zero_here: float | str | None, *, single: bool
-) -> Iterator[Value]:
-    """Find the zeros with which the output angles of both encoders agree on average."""
-    zero, why = 0.0, 'the zero of the encoder is kept'
-    if zero_here is not None:
-        zero = float(last.encoders.measured[last.row_at(zero_here)])
-        moment = zero_here if isinstance(zero_here, str) else f'{zero_here:.13g} s'
-        why = f'the output angle is 0 at {moment} of {last.recording.name}'
-    shown = math.remainder(zero, TURN) if last.output.wraps else zero
-    yield Value('output_encoder_zero', shown, why)
-    rotor = last.zeros(between) + float(between) * zero
-    mean, spread = float(np.mean(rotor)), float(np.ptp(rotor)) / abs(float(between))
-    evidence = f'both encoders then agree on average, within {number(math.degrees(spread))}°'
-    evidence += ', but for whole turns' if single else '; check it after a power cycle'
-    yield Value('rotor_zero', mean % TURN if single else mean, evidence)
-
-
-def _motion(joint: Joint, delay: Estimate | None) -> Iterator[Value | Open | str]:
-    """Delay, rates and speeds."""
-    if not delay:
-        advice = 'turn the output there and back three times or more, at different speeds'
-        yield Open('delay between the encoders', 'it is not told from hysteresis', advice)
-    elif (late := plus_minus(delay, _MILLI)) != '0 ± 0':
-        yield f'The stamps of the output are late by {late} ms.'
-    both = joint.encoders.rotor.seconds, joint.encoders.seconds
-    rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
-    yield f'Rates: {rotor} of the rotor, {output} of the output.'
-    speed, allowed = joint.greatest_speed, default_value('max_rotor_speed')
-    seen = f'the rotor turned at up to {number(speed)} rad/s'
-    if speed > allowed:
-        evidence = f'{seen}, of which {number(_FASTER)} times as much is allowed'
-        yield Value('max_rotor_speed', _FASTER * speed, evidence)
+def _ratio(between: GearRatio, evidence: str, request: Request) -> Iterator[Value]:
+    """The ratio of the gear, and the senses of both encoders."""
+    ratio = request.ratio or between
+    if request.teeth:
+        yield Value('ring_teeth', request.teeth[0], evidence)
+        yield Value('satellite_teeth', request.teeth[1], evidence)
     else:
-        yield f'{seen.capitalize()}: the default of max_rotor_speed, {number(allowed)}, holds.'
+        pairs = tooth_pairs(ratio, ratio, _MOST_TEETH) if ratio < 0 else ()
+        teeth = ', '.join(f'{ring}/{satellite}' for ring, satellite in islice(pairs, _SHOWN))
+        evidence += f'; teeth such as {teeth}' if teeth else ''
+        yield Value('gear_ratio', str(ratio), evidence)
+    sense = request.file.output_encoder_direction if request.file else 1
+    which = 'the same sense' if between > 0 else 'opposite senses'
+    which += '' if request.ratio else ', which gives the ratio its sign'
+    direction = sense if ratio == between else -sense
+    yield Value('rotor_direction', direction, f'the encoders count in {which}')
+    yield Value('output_encoder_direction', sense, 'the sense of the encoder is kept')
+
+
+def _zeros(joints: Sequence[Joint], between: GearRatio, request: Request) -> Iterator[Value]:
+    """Find the zeros with which the output angles of both encoders agree on average."""
+    last, ratio, file, moment = joints[-1], float(between), request.file, request.zero_here
+    zero = shown = file.output_encoder_zero if file else 0.0
+    why, turn = 'the zero of the encoder is kept', TURN if last.output_wraps else math.inf
+    if moment is not None:
+        zero = float(last.encoders.measured[last.row_at(moment)])
+        shown = math.remainder(zero, turn)
+        why = f'the output angle is 0 at {moment} of {last.recording.name}'
+    zeros = last.turned - ratio * (last.encoders.measured - zero)
+    mean, spread = float(np.mean(zeros)), float(np.ptp(zeros / ratio))
+    period, error = abs(ratio) * turn, max(spread, ENCODER_ERROR)
+    if any(joint.rotor_wraps for joint in joints) or (file and file.single_turn):
+        mean, period = mean % TURN, TURN / between.denominator
+    if file:
+        if abs(math.remainder(file.output_encoder_zero - shown, turn)) <= error:
+            shown = file.output_encoder_zero
+        off = math.remainder(file.rotor_zero - mean, period) / ratio
+        if file.absolute or abs(off) <= error:  # with a reference, the node finds it
+            mean = file.rotor_zero
+    yield Value('output_encoder_zero', shown, why)
+    degrees = number(math.degrees(spread))
+    yield Value('rotor_zero', mean, f'both encoders agree within {degrees}° of the output')

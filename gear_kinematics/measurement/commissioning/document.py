@@ -1,17 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The reports on the commissioning of a gear, and on the check of a parameter file."""
-
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+"""The report on the commissioning of a gear, or on the check of a parameter file."""
 
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning
-from gear_kinematics.measurement.commissioning.check import Judgement
 from gear_kinematics.measurement.envelope import envelope
 from gear_kinematics.measurement.wording import plain
 from gear_kinematics.report.document import (
+    Cell,
     Document,
     Figure,
     Finding,
@@ -24,121 +21,72 @@ from gear_kinematics.report.document import (
     printable,
 )
 
-_STATES = {True: 'holds', False: 'contradicted', None: 'open'}
-
 
 def document(result: Commissioning, target: str) -> Document:
-    """Return the document on a commissioning, whose file is the target."""
-    answer = result.answer
-    if not result.fault:
-        answer = f'{answer.removesuffix(".")}: written to {target}.'
-    values = Table.of_items(
-        {
-            'parameter': lambda value: value.name,
-            'value': lambda value: _shown(value.value),
-            'evidence': lambda value: printable(value.evidence),
-        },
-        result.values,
-        ('', 'value', 'evidence'),
-    )
-    left = Table.of_items(
-        {
-            'open': lambda each: each.what,
-            'known': lambda each: each.known,
-            'what to do': lambda each: each.advice,
-        },
-        result.open,
-        ('', 'known', 'what to do'),
-    )
-    return _document('gearkin commission', result, answer, (values, left))
-
-
-def check_document(result: Commissioning, file: str, judgements: Sequence[Judgement]) -> Document:
-    """Return the document on the check of a parameter file."""
-    wrong = [each for each in judgements if each.holds is False]
-    left = ', '.join(each.name for each in judgements if each.holds is None)
-    answer = f'{file} agrees with the recording.'
+    """Return the document on a commissioning, whose file is the target, or which judges it."""
+    file, ratio, answer = result.request.file, result.ratio, result.answer
+    written = file.values() | {'gear_ratio': str(file.gear.gear_ratio)} if file else {}
+    wrong = [each for each in result.values if written.get(each.name, each.value) != each.value]
     if wrong:
-        what = '; '.join(f'{each.name} is {each.written}, but {each.found}' for each in wrong)
-        answer = f'{file} is contradicted: {what}.'
-    answer += f' Left open: {left}.' if left else ''
-    table = Table.of_items(
-        {
-            'parameter': lambda each: each.name,
-            'file': lambda each: printable(each.written),
-            'recording': lambda each: printable(each.found),
-            'state': lambda each: _STATES[each.holds],
-        },
-        judgements,
-        ('', 'file', 'recording', 'state'),
+        said = (f'{v.name} is {_shown(written[v.name])}, not {_shown(v.value)}' for v in wrong)
+        answer = f'{target} is contradicted: {"; ".join(said)}.'
+    elif not result.fault:
+        answer += f' {target} agrees.' if file else f' It is written to {target}.'
+    rows = [(v.name, v.value, written.get(v.name, ''), v.evidence) for v in result.values]
+    rows += [(each.what, 'open', '', f'{each.known}; {each.advice}') for each in result.open]
+    columns = 'parameter', 'value', 'file', 'evidence'
+    table = Table(
+        columns, tuple(tuple(Cell(_shown(each)) for each in row) for row in rows), ('', *columns)
     )
-    verdict = Verdict.FAIL if wrong else Verdict.PASS
-    made = _document('gearkin commission --check', result, answer, (table,), verdict)
-    return replace(made, data={**made.data, 'judgements': plain(tuple(judgements))})
-
-
-def _document(
-    title: str,
-    result: Commissioning,
-    answer: str,
-    tables: tuple[Table, ...],
-    verdict: Verdict | None = None,
-) -> Document:
-    recordings = [joint.recording for joint in result.joints]
-    remarks = list(result.notes)
-    for recording in recordings:
-        remarks += [f'{recording.name}: {sentence}' for sentence in recording.sentences]
-    names = [recording.name for recording in recordings]
+    remarks, names = [*result.notes], [joint.recording.name for joint in result.joints]
+    for joint in result.joints:
+        remarks += [f'{joint.recording.name}: {what}' for what in joint.recording.sentences]
+    verdict = Verdict.FAIL if wrong or result.fault else None
     section = Section(
         printable(', '.join(names)),
-        tables,
-        None,  # the finding says it, and why
+        (table,),
+        verdict,
         (Finding('finding', printable(answer)),),
         tuple(map(printable, remarks)),
-        Figure(tuple(_panels(result))),
+        _figure(result),
     )
-    ratio = result.ratio
     data = {
         'schema': 'gear_kinematics/commissioning',
-        'version': 1,
+        'version': 2,
         'answer': answer,
-        'ratio': plain(ratio.measured) if ratio else None,
-        'gear_ratio': plain(result.request.ratio or result.between) if result.between else None,
-        'candidates': plain(ratio.candidates) if ratio else [],
-        'tooth_pairs': plain(ratio.tooth_pairs) if ratio else [],
-        'travel': result.travel,
+        'ratio': plain(ratio and ratio.measured),
+        'candidates': plain(ratio.candidates if ratio else ()),
+        'gear_ratio': plain(result.between and (result.request.ratio or result.between)),
+        'travel': result.longest.travel,
         'values': plain(result.values),
         'open': plain(result.open),
-        'delay': plain(result.delay),
+        'contradicted': [each.name for each in wrong],
         'remarks': remarks,
-        'recordings': names,
     }
-    return Document(title, (section,), data, verdict)
+    return Document('gearkin commission', (section,), data, verdict)
 
 
 def _shown(value: str | float) -> str:
     return f'{value:.6f}' if isinstance(value, float) else printable(str(value))
 
 
-def _panels(result: Commissioning) -> Iterator[Panel]:
-    """Draw the rotor over the output with the fitted line, and what is left over it."""
+def _figure(result: Commissioning) -> Figure | None:
+    """The rotor over the output with the fitted line, and what is left over it."""
     joint, ratio, label = result.longest, result.ratio, 'output angle [°]'
+    if not ratio:
+        return None
     output, rotor = np.degrees(joint.encoders.measured), joint.turned / TURN
-    lines = [Line('recorded', Pen.THIRD, *envelope(output, rotor))]
-    if ratio:
-        slope = float(result.between or ratio.measured.value) / 360.0  # turns per degree
-        zero = np.mean(rotor - slope * output)
-        ends = np.array([output.min(), output.max()])
-        name = f'ratio {result.between or ratio.plus_minus}'
-        lines.append(Line(name, Pen.MODEL, ends, slope * ends + zero))
-    yield Panel('rotor over output', label, 'rotor [turns]', tuple(lines))
-    if ratio:
-        error, forward = output - (rotor - zero) / slope, np.gradient(rotor) * slope >= 0.0
-        ways = ('forward', Pen.FIRST, forward), ('backward', Pen.SECOND, ~forward)
-        errors = (
-            Line(name, pen, *envelope(output[rows], error[rows]))
-            for name, pen, rows in ways
-            if rows.any()
+    slope = float(result.between or ratio.measured.value) / 360.0  # turns per degree
+    zero = np.mean(rotor - slope * output)
+    ends = np.array([output.min(), output.max()])
+    recorded = Line('recorded', Pen.THIRD, *envelope(output, rotor))
+    name = f'ratio {result.between or ratio.plus_minus}'
+    fitted = Line(name, Pen.MODEL, ends, slope * ends + zero)
+    error = Line('error', Pen.FIRST, *envelope(output, output - (rotor - zero) / slope))
+    left = 'measured less computed output [°]'
+    return Figure(
+        (
+            Panel('rotor over output', label, 'rotor [turns]', (recorded, fitted)),
+            Panel('error about the line', label, left, (error,)),
         )
-        title = 'measured less computed output [°]'
-        yield Panel('error about the line', label, title, tuple(errors))
+    )

@@ -1,20 +1,37 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Both encoders of a gear in one recording, without wraps."""
 
+import math
 from dataclasses import dataclass, replace
-from fractions import Fraction
+from typing import Literal
 
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN, split_turns
-from gear_kinematics.measurement.commissioning.positions import Positions, positions_of
+from gear_kinematics.measurement.encoder_step import Step
 from gear_kinematics.measurement.recording import Array, Encoders, Recording, RecordingError
+from gear_kinematics.report.document import counted
 from gear_kinematics.wire.cdr import SECOND
 
-_MIN_SAMPLES = 3
-"""Of which anything can be said."""
 _NEAR = 0.1
 """s between a moment that is named and the sample that is taken for it."""
+_TURNS = {'degrees': 360.0, 'turns': 1.0}
+"""A turn in the units that positions may have in place of rad."""
+_UNCLEAR = 0.3, 0.7
+"""Turns between samples that may be a motion or a wrap."""
+_MOST_UNCLEAR = 0.05
+"""Of such steps, as a share of the wraps, as in gaps: with more, there is no wrap at all."""
+_MOST_SPAN = 1.001
+"""Turns within which positions are that wrap, with room for noise and rounding."""
+_SAME_COUNTS = 0.02
+"""Share by which counts that wraps show in a turn may differ from a power of two, as the speed
+changes; 4000 differ from 4096 by 0.023."""
+_MIN_LEVELS, _ROUNDING = 4, 1e-5
+"""Whole numbers that show counts, as fewer may be chance; and the distance from them, of counts up
+to 10^10 that were divided into turns and a rest."""
+_MIN_BITS, _POWER = 6, 1e-4
+"""Of an encoder with 2^n steps in a turn: least n, and its distance from a whole number, so that a
+step is by chance such a one in another unit with a probability of 4e-4."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -24,54 +41,45 @@ class Joint:
     recording: Recording
     encoders: Encoders
     """Angles without wraps, rad."""
-    rotor: Positions
-    output: Positions
     turned: Array
     """(n,), rad, of the rotor, at the output's angles `encoders.measured`."""
+    rotor_wraps: int
+    output_wraps: int
 
     @classmethod
     def of(cls, recording: Recording, encoders: Encoders) -> 'Joint':
         """Take the wraps out of a recording of positions as they are.
 
         Raises:
-            RecordingError: if there are too few samples, or no times.
+            RecordingError: if there are too few samples, no times, or another unit than rad.
         """
-        motion = encoders.rotor
-        if (seen := len(encoders.measured)) < _MIN_SAMPLES:
-            raise RecordingError(f'{recording.path}: only {seen} samples of both encoders')
+        motion, measured, path = encoders.rotor, encoders.measured, recording.path
+        if len(measured) <= 1:
+            raise RecordingError(f'{path}: only one sample of both encoders')
         if not encoders.timed:
-            raise RecordingError(f'{recording.path}: no column of times, such as time_s')
-        rotor = positions_of(motion.turns * TURN + motion.angle, encoders.rotor_step)
-        output = positions_of(encoders.measured, encoders.output_step)
-        turns, angle = split_turns(rotor.angle)
+            raise RecordingError(f'{path}: no column of times, such as time_s')
+        rotor = motion.turns * TURN + motion.angle
+        for body, values, step in (
+            ('rotor', rotor, encoders.rotor_step),
+            ('output', measured, encoders.output_step),
+        ):
+            if unit := _other_unit(values, step):
+                hint = 'of a CSV, --angle-unit, --rotor-counts and --output-counts tell the unit'
+                raise RecordingError(f'{path}: the positions of the {body} are {unit}; {hint}')
+        wraps = _wraps(rotor, TURN), _wraps(measured, TURN)
+        rotor = np.unwrap(rotor) if wraps[0] else rotor
+        measured = np.unwrap(measured) if wraps[1] else measured
+        turns, angle = split_turns(rotor)
         motion = motion._replace(turns=turns, angle=angle)
-        unwrapped = replace(encoders, rotor=motion, measured=output.angle)
-        return cls(recording, unwrapped, rotor, output, unwrapped.at_measured(rotor.angle))
+        unwrapped = replace(encoders, rotor=motion, measured=measured)
+        return cls(recording, unwrapped, unwrapped.at_measured(rotor), *wraps)
 
     @property
     def travel(self) -> float:
         """rad at the output."""
         return float(np.ptp(self.encoders.measured))
 
-    @property
-    def greatest_speed(self) -> float:
-        """Of the rotor, rad/s."""
-        return float(np.max(np.abs(self.encoders.speed(Fraction(1)))))
-
-    @property
-    def unit_fault(self) -> str:
-        """Which positions are not in rad, in a sentence; else empty."""
-        sides = ('rotor', self.rotor), ('output', self.output)
-        faults = [f'the positions of the {side} are {at.fault}' for side, at in sides if at.fault]
-        hint = 'of a CSV, --angle-unit, --rotor-counts and --output-counts tell the unit'
-        return f'No file is possible: {"; ".join(faults)}; {hint}.' if faults else ''
-
-    def zeros(self, ratio: Fraction) -> Array:
-        """(n,), rad: the rotor at 0 of the output's encoder, by each sample and a ratio."""
-        zeros: Array = self.turned - float(ratio) * self.encoders.measured
-        return zeros
-
-    def row_at(self, moment: float | str) -> int:
+    def row_at(self, moment: float | Literal['START', 'END']) -> int:
         """Find the sample at START, END, or a time of the recording, s.
 
         Raises:
@@ -82,8 +90,34 @@ class Joint:
         seconds = float(self.encoders.rotor.stamp[0]) / SECOND + self.encoders.seconds
         row = int(np.argmin(np.abs(seconds - moment)))
         if abs(seconds[row] - moment) > _NEAR:
-            raise RecordingError(
-                f'{self.recording.path}: no sample at {moment:.13g} s; it is from '
-                f'{seconds[0]:.13g} to {seconds[-1]:.13g} s'
-            )
+            span = f'{seconds[0]:.13g} to {seconds[-1]:.13g} s'
+            raise RecordingError(f'{self.recording.path}: {moment:.13g} s is not in {span}')
         return row
+
+
+def _wraps(values: Array, turn: float, error: float = 1.0) -> int:
+    """Count the wraps of positions (n,), in the order of time, in a unit; error: of its turn."""
+    size = np.abs(np.diff(values)) / turn
+    low, high = _UNCLEAR
+    wraps = np.flatnonzero(size >= high)
+    unclear = np.count_nonzero((size > low) & (size < high))
+    if not len(wraps) or unclear > _MOST_UNCLEAR * len(wraps):
+        return 0
+    motion = np.abs(size - np.round(size))[np.maximum(wraps - 1, 0)]  # goes on in the wrap
+    same = abs(float(np.median(size[wraps] + motion)) - 1.0) < error
+    return len(wraps) if same and np.ptp(values) <= _MOST_SPAN * turn else 0
+
+
+def _other_unit(values: Array, step: Step) -> str:
+    """The unit of positions with a step, what shows it and what to do, if it is not rad."""
+    rounded, units = np.round(values), dict(_TURNS)
+    whole = np.abs(values - rounded).max() < _ROUNDING and len(np.unique(rounded)) >= _MIN_LEVELS
+    if whole:
+        units['counts'] = 2.0 ** math.ceil(math.log2(np.ptp(values) + 1.0))
+    for unit, turn in units.items():
+        bits = math.log2(turn / step.size) if step.seen and not whole else 0.0
+        if wraps := _wraps(values, turn, _SAME_COUNTS if unit == 'counts' else 1.0):
+            return f'{unit} ({counted(wraps, "wrap")} at {turn:g}): multiply by {TURN / turn:.9g}'
+        if round(bits) >= _MIN_BITS and abs(bits - round(bits)) < _POWER:
+            return f'{unit} (steps of 1/2^{round(bits)} turn): multiply by {TURN / turn:.9g}'
+    return 'counts (whole numbers), of which a turn has an unknown number' if whole else ''
