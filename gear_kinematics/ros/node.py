@@ -240,8 +240,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._outputs.send(self._loads.encode(sample.stamp, loads, wanted))
 
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
-        if self._preload:
-            self._preload.compare(samples)
         for topic in self._subscribed_errors:
             self._outputs.send((topic, self._messages.transmission_error(s)) for s in samples)
 

@@ -191,24 +191,5 @@ class Acceleration:
 
     def follow_batch(self, stamps: Array, velocities: Array, segments: Array) -> Array:
         """Return the accelerations at the next samples, (n,), as `follow` does one by one."""
-        found = np.full(len(stamps), np.nan)
-        borders = np.flatnonzero(np.diff(segments)) + 1
-        for rows in np.split(np.arange(len(stamps)), borders):
-            if not len(rows):
-                continue
-            if segments[rows[0]] != self._segment:
-                self._segment = int(segments[rows[0]])
-                self._velocities.clear()
-            earlier = len(self._velocities)
-            kept = np.array(self._velocities, 'i8, f8')
-            time = np.concatenate([kept['f0'], stamps[rows]])
-            speed = np.concatenate([kept['f1'], velocities[rows]])
-            then = np.searchsorted(time, time - _WINDOW, side='right') - 1
-            span = time - time[then]
-            change = (speed - speed[then]) * SECOND / np.maximum(span, 1)
-            known = (then >= 0) & (span <= _LONGEST)
-            found[rows] = np.where(known, change, np.nan)[earlier:]
-            first = max(int(then[-1]), 0)
-            pairs = zip(time[first:].tolist(), speed[first:].tolist(), strict=True)
-            self._velocities = deque(pairs)
-        return found
+        samples = zip(stamps.tolist(), velocities.tolist(), segments.tolist(), strict=True)
+        return np.array([self.follow(*sample) for sample in samples])

@@ -1,15 +1,10 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The diagnostics of the preload: margin, time out of mesh, and what the encoder confirms."""
+"""The diagnostics of the preload: margin, and time out of mesh."""
 
 import math
 from dataclasses import replace
 
-import numpy as np
-import pytest
-
-from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import RotorSample, split_turns
-from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN
 from gear_kinematics.state.loads import Loads
@@ -17,19 +12,15 @@ from gear_kinematics.state.preload_monitor import PreloadMonitor
 
 PARAMETERS = replace(NodeParameters.load(), preload=3.0, branch_stiffness=(2000.0,))
 PERIOD = 1_000_000  # ns
-ADDED = 'measured added compliance out of mesh (rad/(N·m))'
 
 
-def followed(torques, errors=None):
-    """Return the monitor after these torques of the output, N·m, and measured errors, rad."""
+def followed(torques):
+    """Return the monitor after these torques of the output, N·m."""
     loads, monitor = Loads(PARAMETERS), PreloadMonitor(PARAMETERS)
     for k, torque in enumerate(torques):
         effort = None if math.isnan(torque) else torque / -19.0
         sample = RotorSample(k * PERIOD, split_turns(0.0), None, effort)
         monitor.follow(sample, loads.follow(sample, 0, whole=False))
-        if errors is not None:
-            error = ErrorSample(k * PERIOD, errors[k], 0, 0.0, 1, 0.1, 0.0, 1e-4)
-            monitor.compare([error])
     return monitor
 
 
@@ -55,21 +46,3 @@ def test_time_out_of_mesh_is_a_warning_until_the_next_report():
 def test_without_effort_the_margin_is_unknown_and_no_warning():
     report = followed([math.nan, math.nan]).report()
     assert (report.level, report.message) == (OK, 'unknown: no effort in rotor_state')
-
-
-@pytest.mark.parametrize('noise', [0.0, 1e-5])
-def test_encoder_confirms_the_loss_of_mesh_by_the_added_compliance(noise):
-    """An output that turns as `Preload.split` says, under a load that it gives the torque for."""
-    preload = Preload.from_torque(Stiffness(2000.0, 2000.0, math.inf), 3.0)
-    torques = 9.0 * np.sin(np.arange(4000) * math.tau / 500.0)
-    turns = preload.split(-torques).output_turn
-    errors = turns + noise * np.random.default_rng(7).standard_normal(4000)
-    values = followed(torques, errors).report().values
-    value, spread = map(float, values[ADDED].split(' ± '))
-    assert abs(value - (1 / 2000 - 1 / 4000)) <= spread + 1e-12
-
-
-def test_encoder_that_cannot_tell_says_nothing():
-    torques = 9.0 * np.sin(np.arange(4000) * math.tau / 500.0)
-    errors = 1e-3 * np.random.default_rng(7).standard_normal(4000)
-    assert ADDED not in followed(torques, errors).report().values
