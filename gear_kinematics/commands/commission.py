@@ -2,7 +2,6 @@
 """`gearkin commission`: the parameters of the node, from recordings of both encoders."""
 
 import argparse
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -122,7 +121,6 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
     """Hear both encoders until they tell what is needed, or the user ends it."""
     warn_of_shared_memory(participants=1)
     # These need ROS, unlike most commands.
-    from gear_kinematics.ros.live import replay_node  # noqa: PLC0415
     from gear_kinematics.ros.replay import stopped_by_signals  # noqa: PLC0415
     from gear_kinematics.watch.commissioning import LiveCommissioning  # noqa: PLC0415
     from gear_kinematics.watch.drivers import listen  # noqa: PLC0415
@@ -132,16 +130,12 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
     list_drivers(drivers, console)
     joints = [analysis.Channel(d.topic, joint) for d in drivers for joint in d.joints]
     request = _chosen(joints, request)
-    with stopped_by_signals() as stopped, replay_node('') as node:
-        live = LiveCommissioning(node, request, once=True)
-        with closing(live):
-            guide(live, console, stopped)
+    live = LiveCommissioning(request)
+    with stopped_by_signals() as stopped:
+        guide(live, console, stopped)
         if stopped():
             raise KeyboardInterrupt
-        live.finish()
-    if not live.collected:
-        raise ValueError(live.fault)
-    return analysis.commission([live.collected], live.request)
+    return analysis.commission([live.recording()], request)
 
 
 def _ratio(options: argparse.Namespace) -> GearRatio | None:

@@ -13,14 +13,14 @@ from std_srvs.srv import Trigger
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.parameters.atomic_file import replace_file
-from gear_kinematics.parameters.home_file import home_text, read_home
+from gear_kinematics.parameters.home_file import read_home, write_home
 from gear_kinematics.state.diagnostics import InputMonitor
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.wire import topics
+from gear_kinematics.wire.cdr import SECOND
 
-_SPEED_SPAN = 100_000_000
-"""ns between the positions that give a speed, at least: of messages at 1 kHz, one step of an
+_SPEED_SPAN = 0.1
+"""s between the positions that give a speed, at least: of messages at 1 kHz, one step of an
 encoder with 4096 counts per turn would be 1.5 rad/s, and 0.08 rad/s at an output that rests."""
 
 
@@ -28,17 +28,13 @@ def restored(node: Node, path: Path, parameters: NodeParameters) -> NodeParamete
     """Set the zero of the home file, if there is one; returns the parameters with it.
 
     Raises:
-        HomeFileError: if the file cannot be used.
+        ConfigError: if the file cannot be used.
     """
     if not (home := read_home(path, parameters)):
         return parameters
     zero, homed = home
     node.set_parameters([Parameter('rotor_zero', value=zero)])
-    given = parameters.rotor_zero
-    instead = '' if given == zero else f'; that of the parameters, {given:g} rad, is not used'
-    node.get_logger().info(
-        f'rotor_zero {zero:.3f} rad restored from {path}, homed {homed}{instead}'
-    )
+    node.get_logger().info(f'rotor_zero {zero:.3f} rad restored from {path}, homed {homed}')
     return replace(parameters, rotor_zero=zero)
 
 
@@ -54,30 +50,37 @@ class Homing:
         if path:
             monitor.zero_kept = f'kept in {path}' if path.exists() else 'not kept: not homed yet'
         self._seen = 0.0  # time of the last valid input; s of a steady clock
-        self._earlier: tuple[RotorSample, ...] = ()  # the last one or two, `_SPEED_SPAN` apart
-        self._segment = 0  # of these
+        self._before: RotorSample | None = None  # where `_speed` was measured
+        self._segment = 0  # of that
+        self._speed = 0.0  # of the rotor, rad/s
         node.create_service(Trigger, '~/home', self.answer)
 
     def note(self, sample: RotorSample) -> None:
-        """Take note of a valid input, which says where the shaft is, and how fast it turns."""
+        """Take note of a valid input: where the shaft is, and how fast the rotor turns.
+
+        Without a velocity that is the mean over `_SPEED_SPAN`; 0 until there is one.
+        """
         self._seen = time.monotonic()
-        if self._segment != self._input.segment:  # other turns, or another zero
-            self._segment, self._earlier = self._input.segment, ()
-        if not self._earlier:
-            self._earlier = (sample,)
-        elif sample.stamp - self._earlier[-1].stamp >= _SPEED_SPAN:
-            self._earlier = self._earlier[-1], sample
+        if not self._before or self._segment != self._input.segment:  # other turns or zero
+            self._before, self._segment, self._speed = sample, self._input.segment, 0.0
+        elapsed = (sample.stamp - self._before.stamp) / SECOND
+        if elapsed >= _SPEED_SPAN:
+            turns, angle = (
+                b - a for a, b in zip(self._before.position, sample.position, strict=True)
+            )
+            self._before, self._speed = sample, (TURN * turns + angle) / elapsed
+        if sample.velocity is not None:
+            self._speed = sample.velocity
 
     def keep(self) -> None:
         """Write the zero that was set to the home file."""
         if not self._path:
             return
         try:
-            replace_file(self._path, home_text(self._input.parameters).encode())
+            write_home(self._path, self._input.parameters)
             self._monitor.zero_kept = f'kept in {self._path}'
         except OSError as error:  # the zero holds until the node ends
             self._monitor.zero_kept = f'not kept: {self._path}: {error.strerror}'
-            self._node.get_logger().error(f'rotor_zero is {self._monitor.zero_kept}')
 
     def answer(self, _request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Declare that the output shaft is at `home_angle` now, or tell why not."""
@@ -86,49 +89,24 @@ class Homing:
 
     def _home(self) -> tuple[bool, str]:
         parameters, last = self._input.parameters, self._input.last
-        ratio = parameters.gear.gear_ratio
+        ratio, limit = parameters.gear.gear_ratio, parameters.home_max_speed
         rotor_angle = ratio.rotor_angle(parameters.home_angle)
         try:
             zero = self._input.zero_for(rotor_angle)
-        except RuntimeError:
+        except RuntimeError:  # after the joint was changed, too
             last = None
         if last is None:
             return False, f'there was no valid {topics.ROTOR_STATE} yet'
-        if refusal := self._refusal(parameters, last):
-            return False, refusal
+        if (age := time.monotonic() - self._seen) > parameters.input_timeout:
+            return False, f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
+        if (speed := abs(ratio.output_rate(self._speed))) > limit:
+            turns = f'the shaft turns at {speed:.3g} rad/s'
+            return False, f'{turns}; home_max_speed is {limit:g} rad/s'
         whole, rest = ratio.output_angle(*last.position, math)
         result = self._node.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
         if not result.successful:
             return False, result.reason
         self._input.home(rotor_angle)
-        was, now = _degrees(TURN * whole + rest), _degrees(parameters.home_angle)
+        was, now = math.degrees(TURN * whole + rest), math.degrees(parameters.home_angle)
         kept = f'rotor_zero {zero:.3f} rad, {self._monitor.zero_kept}'
-        return True, f'the shaft was at {was} and is now {now} ({kept})'
-
-    def _refusal(self, parameters: NodeParameters, last: RotorSample) -> str:
-        """Why the output shaft is not known to be where it is said to be; '' if it is."""
-        age = time.monotonic() - self._seen
-        if age > parameters.input_timeout:
-            came = f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
-            return f'{came}: where the shaft is now is not known'
-        speed = abs(parameters.gear.gear_ratio.output_rate(self._speed(last)))
-        limit = parameters.home_max_speed
-        if speed > limit:
-            return f'the shaft turns at {speed:.3g} rad/s; home_max_speed is {limit:g} rad/s'
-        return ''
-
-    def _speed(self, last: RotorSample) -> float:
-        """Speed of the rotor, rad/s: the last velocity, or the mean since an earlier position.
-
-        That is the last one that is at least `_SPEED_SPAN` older; in the beginning the first one.
-        Of a single message nothing says that the shaft turns, nor of one with another zero.
-        """
-        [earlier, *_] = self._earlier if self._segment == self._input.segment else [last]
-        if last.velocity is not None or last.stamp == earlier.stamp:
-            return last.velocity or 0.0
-        turns, angle = (b - a for a, b in zip(earlier.position, last.position, strict=True))
-        return (TURN * turns + angle) / (1e-9 * (last.stamp - earlier.stamp))
-
-
-def _degrees(angle: float) -> str:
-    return f'{round(math.degrees(angle), 1) + 0.0:.1f}°'  # no -0.0
+        return True, f'the shaft was at {was:z.1f}° and is now {now:z.1f}° ({kept})'

@@ -155,7 +155,6 @@ class Replay:
         namespace: str = '',
         alive: Callable[[], bool] = lambda: True,
         outputs: Collection[str] = _TOPICS[1:],
-        inputs: Collection[str] = _TOPICS[:1],
     ) -> None:
         """Open the topics in a namespace; `alive` returns whether the node can still answer."""
         self.received: list[Message] = []
@@ -170,10 +169,11 @@ class Replay:
         self._executor.add_node(self._node)
         qos = QoSProfile(depth=DEPTH)
         self._publishers = {
-            topic: self._node.create_publisher(JointState, topic[1:], qos) for topic in inputs
+            topic: self._node.create_publisher(JointState, topic[1:], qos)
+            for topic in (_TOPICS.rotor, _ENCODER)
         }
         self._topics = {_TOPICS.rotor, *outputs}
-        for topic in self._topics | set(inputs):
+        for topic in self._topics | {_ENCODER}:
             message_type = PoseArray if topic == _TOPICS.poses else JointState
             self._node.create_subscription(
                 message_type, topic[1:], self._recorder(topic), qos, raw=True
@@ -299,7 +299,6 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
                 namespace,
                 alive=lambda: process.poll() is None,
                 outputs=outputs_of(parameters),
-                inputs=(_TOPICS.rotor, *([_ENCODER] if parameters.absolute else [])),
             ) as replay,
         ):
             try:

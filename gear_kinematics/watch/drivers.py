@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from rclpy.node import Node
 
+from gear_kinematics.bag import Message
 from gear_kinematics.ros.diagnostics import full_name
 from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.polled import Polled
@@ -30,10 +31,7 @@ class Graph:
     def __init__(self, node: Node) -> None:
         """Look at the graph."""
         self._publishers = {
-            topic: {
-                (full_name(end), bytes(end.endpoint_gid))
-                for end in node.get_publishers_info_by_topic(topic)
-            }
+            topic: node.get_publishers_info_by_topic(topic)
             for topic, types in node.get_topic_names_and_types()
             if topics.JOINT_STATE in types
         }
@@ -52,7 +50,7 @@ class Graph:
         outputs = {
             topics.base_name(topic): topic
             for topic, publishers in self._publishers.items()
-            if any(name == gear for name, _ in publishers)
+            if any(full_name(end) == gear for end in publishers)
         }
         unknown = outputs.keys() - _PUBLISHED
         if topics.OUTPUT_STATE not in outputs and len(unknown) == 1 < len(outputs):
@@ -62,14 +60,15 @@ class Graph:
     def publishers_of(self, gear: str) -> set[bytes]:
         """Identify the publishers of a gear's `output_state`: a node that restarts has others."""
         topic = self.outputs_of(gear).get(topics.OUTPUT_STATE, '')
-        return {gid for name, gid in self._publishers.get(topic, ()) if name == gear}
+        ends = self._publishers.get(topic, ())
+        return {bytes(end.endpoint_gid) for end in ends if full_name(end) == gear}
 
     def drivers(self) -> list[str]:
         """Find the topics that somebody else than the nodes of gears publishes."""
         return sorted(
             topic
             for topic, publishers in self._publishers.items()
-            if any(name not in self.gears for name, _ in publishers)
+            if any(full_name(end) not in self.gears for end in publishers)
         )
 
 
@@ -82,31 +81,34 @@ class Driver:
     rate: float  # messages per second
 
 
-class Drivers:
-    """Listens to all JointState topics of drivers."""
+class Listener:
+    """Listens to topics of type JointState."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
-        self._heard: dict[str, Polled] = {}
+        self.heard: dict[str, Polled] = {}
 
     def look(self, found: Iterable[str]) -> None:
         """Listen to the topics that there are now."""
         found = set(found)
-        for topic in self._heard.keys() - found:
-            self._heard.pop(topic).close()
-        for topic in found - self._heard.keys():
-            self._heard[topic] = Polled(self._node, topic)
+        for topic in self.heard.keys() - found:
+            self.heard.pop(topic).close()
+        for topic in found - self.heard.keys():
+            self.heard[topic] = Polled(self._node, topic)
 
-    def poll(self) -> None:
+    def poll(self) -> list[Message]:
         """Take what has come."""
-        for heard in self._heard.values():
-            heard.take()
+        return [
+            (topic, received, data)
+            for topic, heard in self.heard.items()
+            for data, received in heard.take()
+        ]
 
-    def found(self) -> list[Driver]:
+    def drivers(self) -> list[Driver]:
         """List the topics by name."""
         return [
             Driver(topic, _joints(heard), heard.rate)
-            for topic, heard in sorted(self._heard.items())
+            for topic, heard in sorted(self.heard.items())
         ]
 
 
@@ -120,14 +122,14 @@ def _joints(heard: Polled) -> tuple[str, ...]:
 def listen(seconds: float = _WAIT) -> list[Driver]:
     """Find the drivers in a time of some seconds, and hear each in as many more."""
     with replay_node('') as node:
-        drivers = Drivers(node)
+        listener = Listener(node)
         found: list[Driver] = []
         end = time.monotonic() + seconds
         while (now := time.monotonic()) < end or (
             now < end + seconds and not all(driver.joints for driver in found)
         ):
-            drivers.look(Graph(node).drivers())
-            drivers.poll()
-            found = drivers.found()
+            listener.look(Graph(node).drivers())
+            listener.poll()
+            found = listener.drivers()
             time.sleep(_PERIOD)
         return found

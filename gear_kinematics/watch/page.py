@@ -30,17 +30,17 @@ _BODY = """\
 <summary>Commission: find the parameters of a gear with an encoder at rotor and output</summary>
 <form><label>rotor <select name="rotor"></select></label>
 <label>output <select name="output"></select></label>
-<label>ratio, if known <input name="ratio" maxlength="40" placeholder="121"></label>
+<label>ratio, if known <input name="ratio" maxlength="40" size="8" placeholder="121"></label>
+<label>output is at 0 <select name="zero"><option value="">as its encoder</option>
+<option value="END">where it stands</option></select></label>
 <button>Start</button></form>
-<div id="guide" hidden><p role="status"></p><progress></progress><p class="detail"></p>
-<dl></dl><div class="steps">
-<button type="button" value="zero_here">Output angle is 0 here</button>
+<div id="guide" hidden><p role="status"></p><progress></progress><dl></dl><div class="steps">
 <button type="button" value="write">Write actuator.yaml</button>
 <button type="button" value="take">Take into the running node</button>
 <button type="button" value="end">End</button></div></div></details></section>
-</main><div id="messages">
-<p id="question" role="group" aria-label="home" hidden><span></span>
-<button type="button">Cancel</button> <button type="button">Set it</button></p>
+</main><dialog id="question" aria-label="home"><form method="dialog"><p></p>
+<button value="">Cancel</button> <button value="home">Set it</button></form></dialog>
+<div id="messages">
 <p id="answer" role="status"></p>
 <p id="undo" hidden><button type="button">Undo</button> <span></span></p>
 </div>

@@ -10,8 +10,6 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 
 from gear_kinematics.ros.drivers import DEPTH
-from gear_kinematics.state.losses import Losses
-from gear_kinematics.wire.cdr import SECOND
 
 _SPAN = 1.0  # s, over which rates are measured
 
@@ -27,7 +25,7 @@ class NeverExecuted(CallbackGroup):  # type: ignore[misc]  # rclpy has no types
 class Taken(NamedTuple):
     """A message as it came."""
 
-    data: Any  # CDR, or the message
+    data: bytes  # CDR
     received: int  # ns
 
 
@@ -37,30 +35,20 @@ class Polled:
     Best effort is compatible with every publisher, and asks for no acknowledgements.
     """
 
-    def __init__(
-        self,
-        node: Node,
-        topic: str,
-        message_type: type = JointState,
-        *,
-        reliability: ReliabilityPolicy = ReliabilityPolicy.BEST_EFFORT,
-        raw: bool = True,
-    ) -> None:
-        """Subscribe; messages that are not `raw` are decoded."""
+    def __init__(self, node: Node, topic: str, message_type: type = JointState) -> None:
+        """Subscribe."""
         self._node = node
         self._subscription = node.create_subscription(
             message_type,
             topic,
             lambda _: None,  # never called
-            QoSProfile(depth=DEPTH, reliability=reliability),
-            raw=raw,
+            QoSProfile(depth=DEPTH, reliability=ReliabilityPolicy.BEST_EFFORT),
+            raw=True,
             callback_group=NeverExecuted(),
         )
-        self.topic = topic
         self.last: Taken | None = None
-        self.count = 0
-        self.losses = Losses()
         self.rate = 0.0  # messages per second, over the last second
+        self._count = 0
         self._before = time.monotonic(), 0  # s, and the count then
 
     def take(self) -> list[Taken]:
@@ -72,19 +60,14 @@ class Polled:
                 if (taken := source.handle.take_message(source.msg_type, source.raw)) is None:
                     break
                 data, about = taken
-                self.losses.note(about['publication_sequence_number'])
                 new.append(Taken(data, about['received_timestamp'] or time.time_ns()))
         self.last = new[-1] if new else self.last
-        self.count += len(new)
+        self._count += len(new)
         now, (before, count) = time.monotonic(), self._before
         if now >= before + _SPAN:
-            self.rate, self._before = (self.count - count) / (now - before), (now, self.count)
+            self.rate = (self._count - count) / (now - before)
+            self._before = now, self._count
         return new
-
-    @property
-    def age(self) -> float | None:
-        """Time since the last message, s; None before the first."""
-        return (time.time_ns() - self.last.received) / SECOND if self.last else None
 
     def close(self) -> None:
         """Unsubscribe."""

@@ -17,9 +17,8 @@ from tornado.httpserver import HTTPServer
 from tornado.web import Application, HTTPError, RequestHandler
 from tornado.websocket import WebSocketClosedError, WebSocketHandler
 
-from gear_kinematics.measurement.commissioning.analysis import Channel, Request
+from gear_kinematics.watch.gear import Answer
 from gear_kinematics.watch.page import drawing, watch_page
-from gear_kinematics.watch.view import Answer
 from gear_kinematics.watch.watcher import PERIOD, Watcher
 
 HOST = '127.0.0.1'
@@ -27,6 +26,7 @@ _NAMES = (HOST, 'localhost')
 """Host names of requests. A page elsewhere whose name is made to lead here (DNS rebinding) has
 another one; a forwarded port has another number."""
 _LARGEST = 4096  # bytes of a request's body, and of a command
+_ANSWER = 5.0  # s to wait for the answer of the node
 
 
 def serve(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> None:
@@ -119,21 +119,13 @@ class _Live(_Guarded, WebSocketHandler):
 
     async def on_message(self, message: str | bytes) -> None:
         """Do what a button asks for, and answer in words."""
-        watcher = self._watcher
         try:
-            command = json.loads(message)
-            match command['do']:
-                case 'commission':
-                    rotor, output = (Channel(*map(str, command[of])) for of in ('rotor', 'output'))
-                    request = Request(rotor=rotor, output=output)
-                    asked = watcher.commission(request, str(command['ratio']))
-                case 'home' | 'undo' | 'zero_here' | 'write' | 'take' | 'end' as name:
-                    asked = watcher.ask(name)
-                case other:
-                    raise ValueError(other)
-            answer = await asyncio.wrap_future(asked)
-        except (ValueError, KeyError, TypeError, RecursionError):
+            asked = asyncio.wrap_future(self._watcher.ask(json.loads(message)))
+            answer = await asyncio.wait_for(asked, _ANSWER)
+        except (ValueError, RecursionError):
             answer = Answer('There is no such command.', done=False)
+        except TimeoutError:
+            answer = Answer('The node does not answer.', done=False)
         await self.write_message({'answer': answer._asdict()})
 
     async def _send(self) -> None:

@@ -18,9 +18,11 @@ from rich.table import Table
 from rich.text import Text
 
 from gear_kinematics.report.document import printable
+from gear_kinematics.ros.live import replay_node
 from gear_kinematics.watch.commissioning import LiveCommissioning
-from gear_kinematics.watch.drivers import Driver
-from gear_kinematics.watch.view import Answer, Entry, View
+from gear_kinematics.watch.drivers import Driver, Listener
+from gear_kinematics.watch.gear import Answer
+from gear_kinematics.watch.view import Entry, View
 from gear_kinematics.watch.watcher import Watcher
 
 _REFRESH = 0.1  # s
@@ -50,14 +52,22 @@ def show(watcher: Watcher, console: Console, stopped: Callable[[], bool]) -> Non
         nonlocal asked, asking
         view = watcher.view
         if pressed == 'u':
-            asked = watcher.ask('undo')
+            asked = watcher.ask({'do': 'undo'})
         elif (asking and pressed == 'y') or (pressed == 'h' and not view.question):
-            asked = watcher.ask('home')  # without a question it is refused, and why
+            asked = watcher.ask({'do': 'home'})  # without a question it is refused, and why
         asking = bool(view.question) and (pressed == 'h' or (asking and not pressed))
         rows = rows_of(view)
-        if console.is_terminal:
-            answer = asked.result() if asked and asked.done() else None
-            rows += _rows_of_keys(view, answer, asking=asking)
+        if not console.is_terminal:
+            return rows, True
+        if view.state == 'no node':
+            rows += [Entry(d.topic, ', '.join(d.joints), f'{d.rate:.0f} Hz') for d in view.drivers]
+        if asked and asked.done():
+            text, done = asked.result()
+            rows.append(Entry('', text, '', '' if done else 'bad'))
+        if asking:
+            rows.append(Entry('', f'{view.question}   y yes   n no'))
+        undo = f'   u undo: {view.undo} again' if view.undo else ''
+        rows.append(Entry('', '', f'h home{undo}   q end'))
         return rows, pressed != 'q'
 
     _show(console, stopped, frame)
@@ -69,35 +79,22 @@ def rows_of(view: View) -> list[Entry]:
     return [state, *view.values, *view.diagnostics]
 
 
-def _rows_of_keys(view: View, answer: Answer | None, *, asking: bool) -> Iterator[Entry]:
-    """Give the drivers where there is no node, what came of a key, and what keys there are."""
-    if view.state == 'no node':
-        for driver in view.drivers:
-            yield Entry(driver.topic, ', '.join(driver.joints), f'{driver.rate:.0f} Hz')
-    if answer:
-        yield Entry('', answer.text, '', '' if answer.done else 'bad')
-    if asking:
-        yield Entry('', f'{view.question}   y yes   n no')
-    undo = f'   u undo: {view.undo} again' if view.undo else ''
-    yield Entry('', '', f'h home{undo}   q end')
-
-
 def guide(live: LiveCommissioning, console: Console, stopped: Callable[[], bool]) -> None:
     """Guide through commissioning until nothing is open, or a key or a signal ends it."""
 
     def frame(pressed: str) -> tuple[list[Entry], bool]:
-        live.poll()
-        if pressed == 'z':
-            live.zero_here()
+        live.take(listener.poll())
         shown = live.shown
-        rows = [Entry(f'{shown.known:.0%}', shown.advice), Entry('', '', shown.heard)]
+        rows = [Entry(f'{shown.known:.0%}', shown.advice), *shown.entries[:1]]
         if console.is_terminal:
             rows.insert(1, Entry('', f'{"━" * round(_BAR * shown.known):─<{_BAR}}'))
-            rows += shown.entries
-            rows.append(Entry('', '', 'z the output angle is 0 here   Enter end'))
+            rows += [*shown.entries[1:], Entry('', '', 'Enter end')]
         return rows, shown.known < 1.0 and pressed not in {'q', '\n'}
 
-    _show(console, stopped, frame)
+    with replay_node('') as node:
+        listener = Listener(node)
+        listener.look([live.request.rotor.topic, live.request.output.topic])
+        _show(console, stopped, frame)
 
 
 def _show(

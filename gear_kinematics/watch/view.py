@@ -5,9 +5,8 @@ import math
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, Literal, NamedTuple
+from typing import Literal
 
-from gear_kinematics.kinematics import Gear
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.angles import arc
@@ -36,20 +35,12 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True)
-class Commission:
+class Guide:
     """What two encoders have told of a gear so far."""
 
-    heard: str
     advice: str  # what to do now
     known: float = 0.0  # share of what a parameter file needs
-    entries: tuple[Entry, ...] = ()  # parameters with their evidence, and what is open
-
-
-class Answer(NamedTuple):
-    """What came of a command."""
-
-    text: str
-    done: bool
+    entries: tuple[Entry, ...] = ()  # what was heard, parameters with their evidence, what is open
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +59,7 @@ class View:
     margin: float | None = None  # what is left of the preload, as a share of it
     question: str = ''  # to ask before homing; '' where there is nothing to home
     undo: str = ''  # parameters before their last change, to go back to; '' where there is none
-    commission: Commission | None = None  # while a gear is commissioned
+    guide: Guide | None = None  # while a gear is commissioned
 
 
 def view_of(gear: GearNode | None) -> View:
@@ -78,16 +69,22 @@ def view_of(gear: GearNode | None) -> View:
     if not gear:
         return view
     statuses = tuple(status_entry(s, time.monotonic()) for s in gear.statuses.values())
-    view = replace(view, diagnostics=statuses, margin=_margin(gear), **_motion_of(gear))
-    return replace(view, values=tuple(values_of(gear)))
-
-
-def _margin(gear: GearNode) -> float | None:
-    status = gear.statuses.get('preload')
-    if not status or time.monotonic() - status.at > _MAX_STATUS_AGE:
-        return None
-    percent = status.values.get('margin (% of the preload)')
-    return float(percent) / 100.0 if percent else None
+    percent = _told(gear, 'preload', 'margin (% of the preload)')
+    margin = float(percent) / 100.0 if percent else None
+    view = replace(view, values=tuple(values_of(gear)), diagnostics=statuses, margin=margin)
+    output, parameters = gear.joint(topics.OUTPUT_STATE), gear.parameters
+    if state != 'connected' or not (output and parameters):
+        return view
+    # Homing forgets the turns of a single-turn encoder.
+    earlier = {} if parameters.single_turn else gear.earlier
+    angle, home = _degrees(output.position, 1), _degrees(parameters.home_angle, 1)
+    return replace(
+        view,
+        rotor=math.degrees(parameters.gear.gear_ratio.rotor_angle(output.position)),
+        output=math.degrees(output.position),
+        question=f'The output is at {angle}. Set it to {home}?',
+        undo=', '.join(f'{name} {shown(value)}' for name, value in earlier.items()),
+    )
 
 
 def _state_of(gear: GearNode | None) -> tuple[str, str]:
@@ -100,7 +97,7 @@ def _state_of(gear: GearNode | None) -> tuple[str, str]:
         return 'ended', f'{gear.name} has ended. Waiting for it to start again.'
     if gear.fault:
         return 'fault', f'Its parameters cannot be used: {gear.fault}'
-    if not gear.parameters or not gear.known:
+    if not gear.parameters:
         return 'connecting', ''
     output = gear.joint(topics.OUTPUT_STATE)
     if not output:
@@ -110,23 +107,6 @@ def _state_of(gear: GearNode | None) -> tuple[str, str]:
     return 'connected', ''
 
 
-def _motion_of(gear: GearNode) -> dict[str, Any]:
-    """Give the angles of the drawing, and what can be asked and undone."""
-    parameters, output = gear.parameters, gear.joint(topics.OUTPUT_STATE)
-    if not (gear.running and gear.known and gear.gear and parameters):
-        return {}
-    angles, where = {}, 'Set the output'
-    if output and not _freshness(output, parameters):
-        rotor = gear.gear.gear_ratio.rotor_angle(output.position)
-        angles = {'rotor': math.degrees(rotor), 'output': math.degrees(output.position)}
-        where = f'The output is at {_degrees(output.position, 1)}. Set it'
-    earlier = ', '.join(f'{name} {shown(value)}' for name, value in gear.earlier.items())
-    # Homing forgets the turns of a single-turn encoder.
-    undo = '' if parameters.single_turn else earlier
-    question = f'{where} to {_degrees(parameters.home_angle, 1)}?'
-    return {**angles, 'question': question, 'undo': undo}
-
-
 def shown(value: str | float) -> str:
     """Write the value of a parameter."""
     return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
@@ -134,27 +114,37 @@ def shown(value: str | float) -> str:
 
 def values_of(gear: GearNode) -> Iterator[Entry]:
     """Describe the latest values."""
-    if not (gear.parameters and gear.gear):
+    if not (parameters := gear.parameters):
         return
     if output := gear.joint(topics.OUTPUT_STATE):
-        yield from _motion(output, gear.gear, _freshness(output, gear.parameters))
-        yield Entry('output rate', f'{gear.rate:.0f} Hz')
-    yield _zero(gear, gear.parameters.rotor_zero)
-    if (margin := _margin(gear)) is not None:
-        values = gear.statuses['preload'].values
-        detail = f'least {values["least margin (N·m)"]} N·m in the last second'
-        tone: Tone = 'bad' if margin <= 0.0 else ''
-        yield Entry('preload left', f'{values["margin (N·m)"]} N·m', detail, tone)
+        ratio, angle = parameters.gear.gear_ratio, output.position
+        tone = _freshness(output, parameters)
+        rotor = ratio.rotor_angle(angle)
+        yield Entry('output angle', _degrees(angle), f'{angle:.5f} rad', tone)
+        yield Entry('rotor angle', _degrees(rotor), f'{rotor / TURN:.3f} turns', tone)
+        if output.velocity is not None:
+            speed = _RPM * output.velocity
+            detail = f'rotor {ratio.rotor_angle(speed):.1f} rpm'
+            yield Entry('output speed', f'{speed:.2f} rpm', detail, tone)
+        yield Entry('output rate', f'{output.rate:.0f} Hz')
+    zero, homed = parameters.rotor_zero, gear.homed_zero
+    kept = _told(gear, 'rotor input', 'home file')
+    if lost := homed not in (None, zero):
+        kept = f'homed before; the zero is lost: it was {homed:.3f} rad; {kept}'
+    yield Entry('zero', f'{zero:.3f} rad', kept, 'notable' if lost else '')
+    if left := _told(gear, 'preload', 'margin (N·m)'):
+        least = _told(gear, 'preload', 'least margin (N·m)')
+        detail = f'least {least} N·m in the last second'
+        yield Entry('preload left', f'{left} N·m', detail, 'bad' if float(left) <= 0.0 else '')
     if corrected := gear.joint(topics.CORRECTED_STATE):
         interval = gear.joint(topics.CORRECTED_INTERVAL)
         detail = f'± {arc(interval.position)} (95 %)' if interval else ''
-        tone = _freshness(corrected, gear.parameters)
+        tone = _freshness(corrected, parameters)
         yield Entry('corrected angle', _degrees(corrected.position), detail, tone)
     if error := gear.joint(topics.TRANSMISSION_ERROR):
-        status = gear.statuses.get('transmission error')
-        peak = status.values.get('peak to peak (rad)', '') if status else ''
+        peak = _told(gear, 'transmission error', 'peak to peak (rad)')
         detail = f'peak to peak {peak} rad' if peak else ''
-        tone = _freshness(error, gear.parameters)
+        tone = _freshness(error, parameters)
         yield Entry('transmission error', arc(error.position), detail, tone)
 
 
@@ -170,24 +160,11 @@ def status_entry(status: Status, now: float) -> Entry:
     return Entry(status.subject, f'{level}: {status.message}', advice, tone)
 
 
-def _motion(output: Joint, gear: Gear, tone: Tone) -> Iterator[Entry]:
-    ratio, angle = gear.gear_ratio, output.position
-    rotor = ratio.rotor_angle(angle)
-    yield Entry('output angle', _degrees(angle), f'{angle:.5f} rad', tone)
-    yield Entry('rotor angle', _degrees(rotor), f'{rotor / TURN:.3f} turns', tone)
-    if output.velocity is not None:
-        speed = _RPM * output.velocity
-        detail = f'rotor {ratio.rotor_angle(speed):.1f} rpm'
-        yield Entry('output speed', f'{speed:.2f} rpm', detail, tone)
-
-
-def _zero(gear: GearNode, zero: float) -> Entry:
-    status = gear.statuses.get('rotor input')
-    kept = status.values.get('home file', '') if status else ''
-    if gear.homed_zero in (None, zero):
-        return Entry('zero', f'{zero:.3f} rad', kept)
-    lost = f'homed before; the zero is lost: it was {gear.homed_zero:.3f} rad; {kept}'
-    return Entry('zero', f'{zero:.3f} rad', lost, 'notable')
+def _told(gear: GearNode, subject: str, key: str) -> str:
+    """A value of the diagnostics; '' where there is none, or it is out of date."""
+    status = gear.statuses.get(subject)
+    known = status and time.monotonic() - status.at <= _MAX_STATUS_AGE
+    return status.values.get(key, '') if status and known else ''
 
 
 def _freshness(joint: Joint, parameters: NodeParameters) -> Tone:
@@ -195,4 +172,4 @@ def _freshness(joint: Joint, parameters: NodeParameters) -> Tone:
 
 
 def _degrees(angle: float, digits: int = 3) -> str:
-    return f'{round(math.degrees(angle), digits) + 0.0:.{digits}f}°'  # no -0.0
+    return f'{math.degrees(angle):z.{digits}f}°'

@@ -16,16 +16,10 @@
     if (element.className !== className) element.className = className;
   }
 
-  function make(tag, ...children) {
-    const element = document.createElement(tag);
-    element.append(...children);
-    return element;
-  }
-
   function showEntries(list, entries) {
     while (list.children.length > entries.length) list.lastElementChild.remove();
     while (list.children.length < entries.length) {
-      list.append(make('div', make('dt'), make('dd'), make('dd')));
+      list.insertAdjacentHTML('beforeend', '<div><dt></dt><dd></dd><dd></dd></div>');
     }
     entries.forEach(({name, value, detail, tone}, k) => {
       const [title, text, more] = list.children[k].children;
@@ -65,13 +59,12 @@
     });
   }
 
-  function showCommission(now) {
+  function showGuide(now) {
     guide.hidden = !now;
     set(form.querySelector('button'), now ? 'Change' : 'Start');
     if (!now) return;
     set(guide.firstElementChild, now.advice, now.known === 1 ? 'pass' : '');
     guide.querySelector('progress').value = now.known;
-    set(guide.querySelector('.detail'), now.heard, 'detail');
     showEntries(guide.querySelector('dl'), now.entries);
   }
 
@@ -91,18 +84,22 @@
     find('margin').lastElementChild.value = now.margin ?? 0;
     showState(now.state, now.tone, now.message);
     set(find('node'), now.node);
-    home.disabled = !now.question;
-    undo.hidden = !now.undo;
-    set(undo.lastElementChild, `sets ${now.undo} again`);
-    if (home.disabled) question.hidden = true;
-    else set(question.firstElementChild, now.question);
+    allow(now.question, now.undo);
     showEntries(find('values'), now.values);
     showEntries(find('diagnostics'), now.diagnostics);
     showCurve(now.output);
     showEntries(find('drivers').lastElementChild, now.drivers.map(({topic, joints, rate}) =>
       ({name: topic, value: joints.join(', '), detail: `${rate.toFixed(0)} Hz`, tone: ''})));
     showJoints(now.drivers);
-    showCommission(now.commission);
+    showGuide(now.guide);
+  }
+
+  function allow(homing, undoing) {
+    home.disabled = !homing;
+    undo.hidden = !undoing;
+    set(undo.lastElementChild, `sets ${undoing} again`);
+    if (homing) set(question.querySelector('p'), homing);
+    else question.close();
   }
 
   function showAnswer({text, done}) {
@@ -123,33 +120,22 @@
     });
     server.addEventListener('close', () => {
       showState('no connection', 'fail', 'gearkin watch has ended, or cannot be reached. Trying again.');
-      home.disabled = question.hidden = undo.hidden = true;
+      allow('', '');
       setTimeout(connect, RETRY);
     });
   }
 
-  const [, cancel, confirm] = question.children;
-
-  function ask(asking) {
-    question.hidden = !asking;
-    if (asking) showAnswer({text: '', done: true});
-    (asking ? cancel : home).focus(); // a key held down homes nothing
-  }
-
-  home.addEventListener('click', () => ask(true));
-  cancel.addEventListener('click', () => ask(false));
-  confirm.addEventListener('click', () => {
-    ask(false);
-    send({do: 'home'});
+  home.addEventListener('click', () => {
+    showAnswer({text: '', done: true});
+    question.returnValue = '';
+    question.showModal(); // Cancel is focused: a key held down homes nothing
   });
-  question.addEventListener('keydown', ({key}) => {
-    if (key === 'Escape') ask(false);
-  });
+  question.addEventListener('close', () => question.returnValue && send({do: 'home'}));
   undo.firstElementChild.addEventListener('click', () => send({do: 'undo'}));
   form.addEventListener('submit', event => {
     event.preventDefault();
     const [rotor, output] = [form.rotor, form.output].map(select => JSON.parse(select.value));
-    send({do: 'commission', rotor, output, ratio: form.ratio.value});
+    send({do: 'commission', rotor, output, ratio: form.ratio.value, zero: form.zero.value});
   });
   guide.addEventListener('click', ({target}) => target.value && send({do: target.value}));
   connect();

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 from gear_kinematics.kinematics import Branch, Mechanism
 from gear_kinematics.ros.live import running_node
+from gear_kinematics.watch.gear import Answer
 from gear_kinematics.watch.view import View
-from gear_kinematics.watch.watcher import Answer
 
 ROOT = Path(__file__).resolve().parents[2]
 NAMESPACE = f'/watched_{os.getpid()}'
@@ -94,11 +94,11 @@ class WatcherStandIn:
         """Take the view."""
         self.view = view
         self.drawn = Mechanism(80, 76, 0.0011, (Branch('a'),)), 0.0005
-        self.asked: list[tuple] = []
+        self.asked: list = []
 
-    def ask(self, *command) -> Future:
+    def ask(self, command) -> Future:
         """Answer a command with its name."""
         self.asked.append(command)
         answer: Future = Future()
-        answer.set_result(Answer(f'{command[0]}.', done=True))
+        answer.set_result(Answer(f'{command["do"]}.', done=True))
         return answer

@@ -22,7 +22,7 @@ from watching import (
 )
 
 from gear_kinematics.watch.drivers import Driver
-from gear_kinematics.watch.view import Commission, Entry, View
+from gear_kinematics.watch.view import Entry, Guide, View
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
@@ -190,7 +190,7 @@ def test_home_is_asked_called_and_undone_with_the_keyboard(connected):
     connected.get_by_role('button', name='Undo').focus()
     connected.keyboard.press('Enter')
     expect(answer).to_have_text('Undone: rotor_zero 0 again.')
-    expect(connected.locator('#undo')).to_be_hidden()
+    expect(connected.locator('#undo')).not_to_have_text('Undo sets rotor_zero 0 again')
     assert rotor_zero() == 0.0
 
 
@@ -247,7 +247,7 @@ def test_names_are_text_on_the_page(connected, browser):
         values=(Entry(hostile, hostile, hostile),),
         diagnostics=(Entry(hostile, hostile),),
         drivers=(Driver(hostile, (hostile, 'b'), 1.0),),
-        commission=Commission(hostile, hostile, 0.5, (Entry(hostile, hostile),)),
+        guide=Guide(hostile, 0.5, (Entry(hostile, hostile, hostile),)),
     )
     from gear_kinematics.watch.server import Server  # noqa: PLC0415, needs an extra
 
@@ -283,7 +283,7 @@ def test_page_connects_again_after_the_node_was_restarted(connected, folder):
     expect = connected.expect
     connected.locator('#home').click()
     connected.get_by_role('button', name='Set it').click()
-    expect(connected.locator('#undo')).to_be_visible()
+    expect(connected.locator('#undo')).to_have_text('Undo sets rotor_zero 0 again')
     connected.node.terminate()
     expect(connected.locator('#state')).to_have_text('ended')
     expect(connected.locator('#message')).to_contain_text('Waiting for it to start again.')

@@ -19,20 +19,20 @@ from rich.console import Console
 from watching import WatcherStandIn
 
 from gear_kinematics.commands.cli import main
-from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.watch import drivers
 from gear_kinematics.watch.drivers import Driver, Graph
-from gear_kinematics.watch.gear import GearNode, Joint, Status
+from gear_kinematics.watch.gear import Answer, GearNode, Joint, Status
 from gear_kinematics.watch.page import drawing
 from gear_kinematics.watch.text import line, list_drivers, rows_of, table
-from gear_kinematics.watch.view import Answer, Entry, View, status_entry, values_of, view_of
+from gear_kinematics.watch.view import Entry, View, status_entry, values_of, view_of
 from gear_kinematics.watch.watcher import Watcher
 from gear_kinematics.wire import topics
 
 tornado_websocket = pytest.importorskip('tornado.websocket', reason='no tornado is installed')
 from tornado.httpclient import AsyncHTTPClient, HTTPRequest  # noqa: E402, an extra
 
+from gear_kinematics.watch import server  # noqa: E402, needs it
 from gear_kinematics.watch.server import Server  # noqa: E402, needs it
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -79,7 +79,7 @@ def test_node_of_a_gear_is_known_by_its_topics(own, output):
 def gear_node(**changes):
     """Stand in for a node that has told everything."""
     joints = {
-        topics.OUTPUT_STATE: Joint(math.radians(-370.0), -1.0, 0.001),
+        topics.OUTPUT_STATE: Joint(math.radians(-370.0), -1.0, 0.001, 999.6),
         topics.CORRECTED_STATE: Joint(math.radians(-370.25), None, 0.001),
         topics.CORRECTED_INTERVAL: Joint(math.radians(0.5 / 60.0), None, 0.001),
         topics.TRANSMISSION_ERROR: Joint(math.radians(-1.5 / 60.0), None, 0.001),
@@ -89,11 +89,8 @@ def gear_node(**changes):
     node = {
         'name': '/left/gear_state_publisher',
         'running': True,
-        'known': True,
         'seen': True,
-        'rate': 999.6,
         'fault': '',
-        'gear': GearRatio(-19),
         'parameters': NodeParameters.load(),
         'statuses': {
             'rotor input': Status('rotor input', 0, 'ok', kept, time.monotonic()),
@@ -142,7 +139,7 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
     view = view_of(silent)
     assert [entry.tone for entry in view.values[:2]] == ['stale', 'stale']
     assert view.rotor is None
-    assert view.question == 'Set the output to 0.0°?'
+    assert view.question == ''
     view = view_of(gear_node())
     assert (view.output, view.rotor) == pytest.approx((-370.0, 7030.0))
     assert view_of(gear_node(joint={}.get)).rotor is None
@@ -155,7 +152,7 @@ def test_values_that_are_out_of_date_say_so_and_move_nothing():
         (gear_node(seen=False, running=False), 'no node', 'is not running. gearkin init'),
         (gear_node(running=False), 'ended', 'has ended. Waiting'),
         (gear_node(fault='module must be'), 'fault', 'cannot be used: module must be'),
-        (gear_node(known=False), 'connecting', ''),
+        (gear_node(parameters=None), 'connecting', ''),
         (gear_node(), 'connected', ''),
         (gear_node(joint={}.get), 'no output', 'There was none yet.'),
         (gear_node(joint={topics.OUTPUT_STATE: Joint(0.0, 0.0, 5.74)}.get), 'no output', '5.7 s'),
@@ -169,10 +166,10 @@ def test_state_of_the_node_is_told(gear, state, words):
 
 def test_parameters_of_an_odd_type_are_a_fault():
     node = object.__new__(GearNode)
-    node.known = False
+    node.parameters = None
     node._take_parameters({'module': 'thick', 'output_joint': 'output'})
     assert node.fault == "module must be of type float, not 'thick'"
-    assert not node.known
+    assert not node.parameters
 
 
 @pytest.mark.parametrize(
@@ -180,7 +177,7 @@ def test_parameters_of_an_odd_type_are_a_fault():
     [
         ([0.0], None, None),
         ([0.0, 28.969], 0.0, None),
-        ([0.0, 28.969, 0.0], None, None),  # undone
+        ([0.0, 28.969, 0.0], 28.969, None),  # undone, which can be undone
         ([0.0, 28.969, None, 0.0], None, 28.969),
         ([0.0, 28.969, None, 28.969], None, None),  # kept
         ([0.0, 28.969, None, 0.0, None, 0.0], None, 28.969),
@@ -191,11 +188,11 @@ def test_parameters_of_an_odd_type_are_a_fault():
 def test_zero_that_a_node_has_lost_is_known(zeros, earlier, lost):
     """Zeros as they are read, and None where the node starts again."""
     node = object.__new__(GearNode)
-    node.known, node.parameters = False, None
-    node.homed_zero, node.earlier = None, {}
+    node.parameters, node.homed_zero, node.earlier = None, None, {}
     for zero in zeros:
-        node.known = zero is not None and node.known
-        if zero is not None:
+        if zero is None:
+            node.parameters, node.earlier = None, {}
+        else:
             node._take_parameters({'rotor_zero': zero})
     assert node.earlier == ({} if earlier is None else {'rotor_zero': earlier})
     shown = {'earlier': node.earlier, 'homed_zero': node.homed_zero, 'parameters': node.parameters}
@@ -211,7 +208,7 @@ def test_question_before_homing_says_where_the_output_is():
     parameters = replace(NodeParameters.load(), home_angle=math.radians(12.25))
     question = view_of(gear_node(parameters=parameters)).question
     assert question == 'The output is at -370.0°. Set it to 12.2°?'
-    assert view_of(gear_node(known=False)).question == ''
+    assert view_of(gear_node(parameters=None)).question == ''
     single = replace(parameters, rotor_encoder='single_turn')
     assert not view_of(gear_node(parameters=single, earlier={'rotor_zero': 0.0})).undo
 
@@ -287,6 +284,12 @@ def test_watcher_goes_on_after_what_it_cannot_show(monkeypatch):
         wait_until(lambda: going_on.view.state == 'no node', 'its end')
 
 
+@pytest.fixture(scope='module')
+def running():
+    with Watcher() as watcher:
+        yield watcher
+
+
 @pytest.mark.live
 def test_watcher_tells_what_has_ended_it(monkeypatch):
     def broken(_):
@@ -305,6 +308,28 @@ def test_watcher_that_cannot_join_says_why(monkeypatch):
     monkeypatch.setattr('gear_kinematics.watch.watcher.replay_node', broken)
     with pytest.raises(RuntimeError, match='no shared memory'), Watcher():
         pass
+
+
+JOINTS = {'rotor': ['/j', 'm'], 'output': ['/j', 'o']}
+
+
+@pytest.mark.live
+@pytest.mark.parametrize(
+    ('command', 'answer'),
+    [
+        ({'do': 'home'}, 'There is no node that is ready.'),
+        ({'do': 'undo'}, 'There is no such command now.'),
+        ({'do': 'write'}, 'There is no such command now.'),
+        ({'do': 'exit'}, 'There is no such command now.'),
+        ({'do': 'commission', **JOINTS, 'output': []}, 'There is no such command now.'),
+        ([], 'There is no such command now.'),
+        ({'do': 'commission', **JOINTS, 'output': ['/j', 'm']}, 'Choose two joints: that of'),
+        ({'do': 'commission', **JOINTS, 'ratio': 'x'}, 'a gear ratio must be an integer'),
+    ],
+)
+def test_what_cannot_be_done_is_answered(running, command, answer):
+    text, done = running.ask(command).result(20.0)
+    assert (text[: len(answer)], done) == (answer, False)
 
 
 # gearkin init
@@ -495,21 +520,7 @@ async def test_views_come_at_most_thirty_times_a_second_after_the_drawing(addres
 
 
 def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
-    commands = {
-        '{"do": "home"}': ('home',),
-        '{"do": "undo"}': ('undo',),
-        '{"do": "take"}': ('take',),
-    }
-    unknown = [
-        '',
-        '[]',
-        '{}',
-        '{"do": "exit"}',
-        '{"do": "commission", "rotor": ["/a", "m", "x"], "output": [], "ratio": ""}',
-        '"home"',
-        b'\xff',
-        4000 * '[',
-    ]
+    home = {'do': 'home'}
 
     async def run():
         async with serving(watcher) as address, connected(address) as connection:
@@ -520,16 +531,11 @@ def test_buttons_ask_the_watcher_and_show_its_answer(watcher):
                     pass
                 return message['answer']
 
-            for command, asked in commands.items():
-                assert await answer_to(command) == {
-                    'text': f'{asked[0]}.',
-                    'done': True,
-                }
-                assert watcher.asked[-1] == asked
-            for command in unknown:
+            assert await answer_to(json.dumps(home)) == {'text': 'home.', 'done': True}
+            for command in ('', b'\xff', 4000 * '['):
                 answer = await answer_to(command)
-                assert (answer['text'], answer['done']) == ('There is no such command.', False)
-            assert len(watcher.asked) == len(commands)
+                assert answer == {'text': 'There is no such command.', 'done': False}
+            assert watcher.asked == [home]
             await connection.write_message(json.dumps({'do': 5000 * 'x'}))
             while await connection.read_message() is not None:
                 pass
@@ -545,6 +551,20 @@ async def test_large_body_is_refused_before_it_is_read(address):
     writer.write(b'POST /wrong/ HTTP/1.1\r\nHost: localhost\r\nContent-Length: 5000\r\n\r\n')
     assert (await reader.read()).startswith(b'HTTP/1.1 400')
     writer.close()
+
+
+def test_node_that_does_not_answer_is_said(watcher, monkeypatch):
+    monkeypatch.setattr(server, '_ANSWER', 0.1)
+    watcher.ask = lambda _: Future()
+
+    async def run():
+        async with serving(watcher) as address, connected(address) as connection:
+            await connection.write_message('{"do": "home"}')
+            while 'answer' not in (message := json.loads(await connection.read_message())):
+                pass
+            assert message['answer'] == {'text': 'The node does not answer.', 'done': False}
+
+    asyncio.run(run())
 
 
 def test_page_that_is_closed_before_the_answer_leaves_no_trace(watcher, caplog):
