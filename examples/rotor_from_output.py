@@ -12,10 +12,13 @@ angle = np.pi / 6.0 * (1.0 - np.cos(np.pi * time))  # rad: from 0° to 60° in a
 velocity = np.pi**2 / 6.0 * np.sin(np.pi * time)  # rad/s
 effort = np.full(5, 38.0)  # N·m
 
-rotor = rotor_state_for(actuator, angle, velocity, effort, direction=direction, zero=zero)
-for t, *state in zip(time, rotor.position, rotor.velocity, rotor.effort, strict=True):
+rotor = rotor_state_for(actuator, angle, velocity, effort)
+position = zero + direction * rotor.position  # of the driver
+for t, *state in zip(
+    time, position, direction * rotor.velocity, direction * rotor.effort, strict=True
+):
     print('{:.2f} s: {:.4f} rad, {:.4f} rad/s, {:.2f} N·m'.format(t, *state))
 
-turned = direction * (rotor.position - zero)
-error = np.abs(solve(actuator, turned).output_angle - angle).max()
+state = solve(actuator, rotor.angle, rotor_turns=rotor.turns)
+error = np.abs(state.output_angle - angle).max()
 print(f'back at the output within {error:.0e} rad')

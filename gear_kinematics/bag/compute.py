@@ -90,17 +90,14 @@ def compute(
     from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, needs an extra
 
     messages_of = state_messages(parameters)
-    referenced = None
-    if encoder_topic:
-        referenced = ReferencedInput(parameters, calibration)
-    rotor_input = referenced.rotor if referenced else RotorInput(parameters)
-    rotor_topic = topics.rotor
+    rotor_input, rotor_topic = RotorInput(parameters), topics.rotor
     topic_of = {OUTPUT_STATE: topics.output, BODY_POSES: topics.poses}
     topic_of = {state: topic_of[state] for state in topic_of if state in messages_of.topics}
     corrector = None
     if calibration:
         corrector = Corrector(calibration, parameters.max_rotor_acceleration)
         topic_of |= beside(CORRECTED_TOPICS, topics.output)
+    referenced = ReferencedInput(rotor_input, corrector) if encoder_topic else None
     loads = Loads(parameters) if parameters.preload else None
     if loads:
         topic_of |= beside(LOAD_TOPICS, topics.output)
@@ -130,17 +127,14 @@ def compute(
             messages, correction = [each for each in batch if each[0] not in outputs], None
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
             if referenced:
-                samples, correction = referenced.take_batch(
-                    (topic == rotor_topic, received, data)
-                    for topic, received, data in messages
-                    if topic in inputs
-                )
+                samples, correction = referenced.take_batch(messages, rotor_topic, encoder_topic)
+                answered = samples.row.tolist()
             else:
                 samples = rotor_input.accept_batch(
                     [messages[place][2] for place in rotor],
                     [messages[place][1] for place in rotor],
                 )
-            answered = [rotor[row] for row in samples.row.tolist()]
+                answered = [rotor[row] for row in samples.row.tolist()]
             computed += len(answered)
             copied += len(messages) - len(rotor)
             encoded_outputs = messages_of.encode_outputs(samples)

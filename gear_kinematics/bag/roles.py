@@ -154,10 +154,9 @@ def find_encoder_topic(bag: Bag, rotor: str, given: str | None = None) -> str:
     if given:
         bag.type_of(given, wanted)
         return given
+    if found := find_beside(bag, [OUTPUT_ENCODER], rotor):
+        return found[OUTPUT_ENCODER]
     named = [topic for topic in _of_type(bag.topics, wanted) if base_name(topic) == OUTPUT_ENCODER]
-    beside = f'{rotor.rpartition("/")[0]}/{OUTPUT_ENCODER}'
-    if beside in named:
-        return beside
     return _only(bag.path, named, OUTPUT_ENCODER) if named else ''
 
 

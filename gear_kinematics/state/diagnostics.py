@@ -24,10 +24,9 @@ _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
 _UNSEEN = 'Lower max_rotor_speed to what the motor reaches, or let its driver send more often.'
-_SLOW = 'Let output_encoder send more often, or raise transmission_error_max_gap.'
 _AMBIGUOUS = 'Calibrate the gear, or lower transmission_error_limit to what it keeps.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
-_NOT_COMPARED = 'Check that both drivers are running, and that their clocks agree.'
+_NOT_COMPARED = 'Check that both drivers send often, and that their clocks agree.'
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
 
@@ -139,14 +138,10 @@ class InputMonitor(DriverMonitor):
             reference = None
         if not rotor_input.referenced:
             errors.append(_not_referenced(reference, gaps, encoder_heard=self.encoder_heard))
-        elif reference and reference.disagreement:
-            encoder, rotor = (f'{math.degrees(angle):.2f}°' for angle in reference.disagreement)
-            what = f'output_encoder disagrees: {encoder} by the encoder, {rotor} by the rotor'
-            errors.append(Fault(what, _DISAGREES))
+        elif reference and reference.decision and reference.decision.disagreement:
+            errors.append(Fault(reference.decision.disagreement, _DISAGREES))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
-        if rotor_input.referenced and reference and reference.too_slow:
-            warnings.append(Fault(f'turns not watched: {reference.too_slow}', _SLOW))
         if newly_unsent:
             advice = 'Look for a listener that is stuck.'
             warnings.append(Fault(f'not sent {newly_unsent}', advice))
@@ -169,7 +164,7 @@ class InputMonitor(DriverMonitor):
             'referenced': str(rotor_input.referenced).lower(),
             'rotor zero (rad)': f'{rotor_input.zero:.9g}',
             'home file': self.zero_kept,
-            **({'reference': reference.origin} if reference else {}),
+            **({'reference': rotor_input.known_from} if reference else {}),
             'loop-closure residual (m)': _residual(rotor_input),
         }
         return self._report(errors, warnings, values)
@@ -237,13 +232,10 @@ def _not_referenced(reference: TurnReference | None, gaps: int, *, encoder_heard
     decision = reference.decision
     if gaps > 1:
         cause, advice = f'{gaps} gaps could hide half a turn', _UNSEEN
-    elif reference.too_slow:
-        cause, advice = reference.too_slow, _SLOW
     elif not encoder_heard:
         cause, advice = 'output_encoder is silent', _NO_INPUT
     elif decision is None:
-        cause = f'{reference.compared} of {SAMPLES} samples of output_encoder compared'
-        advice = _NOT_COMPARED
+        cause, advice = f'no {SAMPLES} samples of output_encoder in a row', _NOT_COMPARED
     else:
         used, margin = (f'{math.degrees(x):.3g}°' for x in (decision.used, decision.margin))
         cause, advice = f'{used} of {margin} margin', _AMBIGUOUS

@@ -81,6 +81,7 @@ class RotorInput:
         self._reader = JointReader(parameters.rotor_joint)
         self.zero = parameters.rotor_zero
         """The one in use, rad: `rotor_zero`, or what a reference put in its place."""
+        self._origin = 'none'
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
         self._turns = RotorTurns(
@@ -118,6 +119,11 @@ class RotorInput:
     def referenced(self) -> bool:
         """Whether the rotor's turn count is known."""
         return self._turns.referenced
+
+    @property
+    def known_from(self) -> str:
+        """What has told the turns since they were unknown."""
+        return self._origin if self.referenced else 'none'
 
     @property
     def unseen_travel(self) -> float:
@@ -175,16 +181,18 @@ class RotorInput:
         """
         direction = self._parameters.rotor_direction
         self.zero = self._turns.home(rotor_angle, direction)
+        self._origin = 'homed'
         self._restarts += 1
         if self.last:
             self.last = self.last._replace(position=self._turns.relative_to(self.zero, direction))
         return self.zero
 
-    def refer(self, turns: int, angle: float = 0.0) -> None:
+    def refer(self, origin: str, turns: int = 0, angle: float = 0.0) -> None:
         """Add 2π `turns` + `angle`, rad, to the rotor angle from the next message on.
 
-        The turns are known then, and a new segment begins; `parameters` remain.
+        The turns are known then, from an origin, and a new segment begins; `parameters` remain.
         """
+        self._origin = origin
         direction = self._parameters.rotor_direction
         self._turns.refer(direction * turns)
         self.zero -= direction * angle

@@ -11,7 +11,6 @@ from typing import ClassVar
 import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.validation.output_topics import STATE_UNITS, Array, Bounds, JointStateTopic
 from gear_kinematics.validation.recorder import HOLE
 from gear_kinematics.wire.topics import CORRECTED_INTERVAL, CORRECTED_STATE
@@ -24,16 +23,15 @@ class Unbroken:
         self._last: int | None = None
         self._holes = 0
 
-    def segments(self, samples: RotorSamples) -> Array:
+    def segments(self, stamp: Array, segment: Array) -> Array:
         """The segments of the next samples, (n,)."""
-        stamp = samples.stamp
         first = stamp[:1] if self._last is None else self._last
         period = np.diff(stamp, prepend=first)
         after_hole = period > HOLE * np.median(period[period > 0]) if period.any() else period > 0
         holes = self._holes + np.cumsum(after_hole)
         if len(stamp):
             self._last, self._holes = int(stamp[-1]), int(holes[-1])
-        return np.asarray(samples.segment + holes)
+        return np.asarray(segment + holes)
 
 
 class CorrectedState(JointStateTopic):

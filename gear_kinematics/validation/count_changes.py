@@ -2,12 +2,12 @@
 """Samples from which on the recorded outputs count the rotor's angle from elsewhere."""
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from gear_kinematics.kinematics import split_turns
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
+from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.validation.fields import Array, FieldSamples
 from gear_kinematics.validation.report import Finding
@@ -15,194 +15,147 @@ from gear_kinematics.validation.report import Finding
 _MAX_STEPS = 65_536
 """Of which samples that still wait for their outputs need the last few thousand."""
 
+_FEW = 64
+"""Outputs that show another zero from the first one on."""
+
 _STEP = np.dtype(
     [
-        ('number', np.int64),  # of the first sample that has it, in the order of reception
-        ('after', np.int64),  # number of the last sample that is known not to have it
+        ('number', np.int64),  # of the first sample that has it
         ('turns', np.float64),  # the rotor angle is 2π turns + angle more than recomputed
         ('angle', np.float64),  # rad
     ]
 )
 
 
-class Change(NamedTuple):
-    """A change of the count within a segment."""
-
-    stamp: int
-    """Of the first sample that has it, ns."""
-    number: int
-    segment: int
-    homed: bool
-    """Whether homing explains it, and not an encoder at the output."""
-    turns: int
-    angle: float
-    """rad: the rotor angle changes by 2π turns + angle."""
-
-
-class LastOutput(NamedTuple):
-    """The last sample with an output in a segment, and what its count is more by."""
-
-    number: int
-    stamp: int
-    turns: float
-    angle: float
+def first_number(segment: Any) -> Any:
+    """The number from which on the samples of a segment are numbered, above all before it."""
+    return segment << 40
 
 
 class CountChanges:
-    """Learns changes of the count from the output angles, each with its cause.
+    """Learns changes of the count from jumps of the output angle's error, each with its cause.
 
-    - A gap that could hide turns of a single-turn encoder begins a segment, a number of which all
-      its samples have: that of the first one. Within it the turns are certain; they are taken from
-      its first output that differs by whole turns. So are those before the recording.
-    - Homing declares that the output is at `home_angle` at the latest sample, exactly.
+    - A gap that could hide turns of a single-turn encoder begins a segment, of which the first
+      output tells the turns. So does the first output of the recording.
+    - Homing before the recording gave another zero to all outputs; homing during it declares that
+      the output is at `home_angle` at the latest sample, exactly.
     - An absolute encoder at the output adds whole turns, or anything to a rotor that counts from
-      its start.
+      its start, before the recording and once in a segment.
+
+    Any other jump is an error.
     """
 
     def __init__(self, parameters: NodeParameters, tolerance: float, *, homing: bool) -> None:
         """Start without changes; angles agree within a tolerance, rad of the output."""
-        self.found: list[Change] = []
-        """Those within segments."""
-        self.last_outputs: dict[int, LastOutput] = {}
-        """By segment, where an encoder at the output references the rotor."""
+        self.count = 0
+        """Of the changes so far."""
+        self.homed = False
+        """Whether homing was one of them."""
         self._parameters, self._ratio = parameters, parameters.gear.gear_ratio
         self._tolerance, self._homing = tolerance, homing
-        self._rotor_tolerance = tolerance * abs(float(self._ratio))
-        self._steps = np.array([(-1, -1, 0.0, 0.0)], _STEP)  # ascending
-        self._turns_taken = False
-        self._latest: tuple[int, float] | None = None
-        """Number of the last sample with an output, and its angle, rad."""
+        self._steps = np.array([(-1, 0.0, 0.0)], _STEP)  # ascending
+        self._notes = list[Finding]()
+        self._turns_taken = self._last_alone = False
+        self._referenced = -1  # the latest segment in which an encoder has done it
+        self._latest = -1, 0.0, 0.0  # segment, angle and error of the latest output
 
     def move(self, samples: Array) -> None:
         """Move samples, (n,), by the changes so far."""
         if len(self._steps) > 1:
-            count = _step_at(self._steps, samples)
+            count = self._count_at(samples['number'])
             samples['turns'] += count['turns']
             samples['angle'] += count['angle']
 
-    def known(self, samples: Array) -> Array:
-        """Whether the outputs tell the count at samples, (n,)."""
-        parameters, number = self._parameters, samples['number']
-        known = np.ones(len(number), bool)
-        if parameters.single_turn:
-            known &= _step_at(self._steps, samples)['number'] >= samples['segment']
-        if not (parameters.absolute or self._homing):
-            return known
-        if self._latest is None:
-            return known & (not parameters.absolute)
-        # A change can lie between two outputs, and after the latest one.
-        after = np.append(self._steps['after'], self._latest[0])
-        following = np.searchsorted(self._steps['number'], number, 'right')
-        return np.asarray(known & (number <= after[following]))
-
     def learn(self, samples: Array, position: FieldSamples) -> bool:
-        """Learn from output angles at samples, (n,), and move these by what is found.
+        """Learn from output angles at moved samples, (n,), and move these by what is found.
 
         Returns:
             Whether something is, so that the expected angles are others.
         """
-        if not len(samples):
+        rows = np.argsort(samples['number'], kind='stable')
+        rows = rows[np.isfinite(position.error[rows])]
+        if not len(rows):
             return False
-        steps = self._steps
-        if not (self._parameters.single_turn and self._learn_gaps(samples, position.error)):
-            self._learn_changes(samples, position)
-        if self._steps is steps:
+        error, angle = position.error[rows], position.recorded[rows]
+        before, angle_before, error_before = self._latest
+        jumps = np.abs(np.diff(error, prepend=error_before)) > self._tolerance
+        constant = not jumps[1:_FEW].any()
+        if not self._parameters.single_turn:  # no gap changes the count, so that it stays
+            jumps[:-1] &= ~jumps[1:]
+        steps, moved, turns, rest = [], 0.0, 0.0, 0.0
+        self._last_alone = False
+        for k in np.flatnonzero(jumps).tolist():
+            sample, jump = samples[rows[k]], float(error[k]) - moved
+            if k:
+                before, angle_before = int(samples['segment'][rows[k - 1]]), float(angle[k - 1])
+            rotor_angle = self._ratio.rotor_angle(jump)
+            if abs(jump) <= self._tolerance or abs(rotor_angle) > LARGEST_ANGLE:
+                continue
+            more_turns, more = split_turns(rotor_angle)
+            if abs(more) <= self._tolerance * abs(float(self._ratio)):
+                more = 0.0
+            number = self._explain(
+                sample, before, angle_before, jump, whole=not more, constant=constant
+            )
+            if number is None:
+                continue
+            self._last_alone = bool(more) and self._parameters.absolute and k == len(rows) - 1
+            moved, turns, rest = moved + jump, turns + more_turns, rest + more
+            count = self._count_at(sample['number'])
+            steps.append((number, count['turns'] + turns, count['angle'] + rest))
+        latest = samples[rows[-1]]
+        self._latest = int(latest['segment']), float(angle[-1]), float(error[-1]) - moved
+        if not steps:
             return False
-        before, count = _step_at(steps, samples), _step_at(self._steps, samples)
-        samples['turns'] += count['turns'] - before['turns']
-        samples['angle'] += count['angle'] - before['angle']
+        self.count += len(steps)
+        earlier = self._count_at(samples['number'])
+        found = np.concatenate([self._steps, np.array(steps, _STEP)])
+        # An output can come late.
+        self._steps = found[np.argsort(found['number'], kind='stable')][-_MAX_STEPS:]
+        count = self._count_at(samples['number'])
+        samples['turns'] += count['turns'] - earlier['turns']
+        samples['angle'] += count['angle'] - earlier['angle']
         return True
 
-    def note(self, samples: Array, angle: Array) -> None:
-        """Note output angles at samples, (n,), from which everything is learnt, rad."""
-        if not len(samples):
-            return
-        number = samples['number']
-        if self._parameters.absolute and not self._parameters.single_turn and not self._latest:
-            self._add(number[:1], -1, 0.0, 0.0)  # the zero before is unknown
-        self._latest = int(number[-1]), float(angle[-1])
-        if self._parameters.absolute:
-            count = _step_at(self._steps, samples)
-            last = np.flatnonzero(np.diff(samples['segment'], append=-1))
-            of = samples['segment'], number, samples['stamp'], count['turns'], count['angle']
-            for segment, *row in zip(*(each[last].tolist() for each in of), strict=True):
-                self.last_outputs[segment] = LastOutput(*row)
-
-    def notes(self, parameters: NodeParameters) -> Iterator[Finding]:
+    def notes(self) -> Iterator[Finding]:
         """Say with what the outputs are compared."""
-        zero = parameters.rotor_zero
-        for change in filter(lambda change: change.homed, self.found):
-            before = zero
-            zero -= parameters.rotor_direction * (TURN * change.turns + change.angle)
-            yield Finding(
-                f'compared with rotor_zero {zero:.12g} instead of {before:.12g}, as after homing',
-                stamp=change.stamp,
-                when='from',
-            )
+        yield from self._notes
+        if self._last_alone:
+            yield Finding('the last output alone is off', fails=True)
         if self._turns_taken:
             yield Finding('the turns of the single-turn encoder are taken from the outputs')
 
-    def _add(self, number: Array, after: Any, turns: Any, angle: Any) -> None:
-        new = np.empty(len(number), _STEP)
-        new['number'], new['after'], new['turns'], new['angle'] = number, after, turns, angle
-        steps = np.concatenate([self._steps, new])
-        steps = steps[np.argsort(steps['number'], kind='stable')]  # an output can come late
-        self._steps = steps[-_MAX_STEPS:]
-
-    def _learn_gaps(self, samples: Array, error: Array) -> bool:
-        """Learn the turns of segments from their first outputs that are off by whole turns."""
-        count, segment = _step_at(self._steps, samples), samples['segment']
-        turns = error * float(self._ratio) / TURN
-        whole = np.round(turns)
-        # Numbers too large to have a fraction are garbage.
-        wrong = np.maximum(np.abs(turns - whole), np.spacing(np.abs(turns)))
-        fits = (wrong <= self._rotor_tolerance / TURN) & (count['number'] < segment)
-        segments, rows = np.unique(segment[fits], return_index=True)
-        if not len(segments):
-            return False
-        count, whole = count[fits][rows], whole[fits][rows]
-        self._turns_taken |= bool(whole.any())
-        self._add(segments, segments - 1, count['turns'] + whole, count['angle'])
-        return True
-
-    def _learn_changes(self, samples: Array, position: FieldSamples) -> None:
-        """Learn the changes within segments, each from the first output that is off by it."""
-        number, expected, error = samples['number'], position.expected, position.error
-        moved = np.zeros(len(error))
-        while (wrong := ~(np.abs(error - moved) <= self._tolerance)).any():
-            first = int(np.argmax(wrong))
-            last = first - 1
-            latest = (int(number[last]), expected[last] + moved[last]) if first else self._latest
-            offset = float(error[first] - moved[first])
-            change = self._explain(samples[first], latest, offset)
-            if not (change and latest):
-                break
-            count = _step_at(self._steps, samples[first])
-            turns, angle = count['turns'] + change.turns, count['angle'] + change.angle
-            self._add(number[first : first + 1], latest[0], turns, angle)
-            self.found.append(change)
-            moved += offset * (_step_at(self._steps, samples)['number'] == change.number)
-
     def _explain(
-        self, sample: Any, latest: tuple[int, float] | None, offset: float
-    ) -> Change | None:
-        """The change at a sample whose output is off, rad, and the latest one is not; if any."""
-        parameters, segment = self._parameters, int(sample['segment'])
-        rotor_angle = self._ratio.rotor_angle(offset)
-        if not (latest and abs(rotor_angle) <= LARGEST_ANGLE):
+        self, sample: Any, before: int, angle: float, jump: float, *, whole: bool, constant: bool
+    ) -> int | None:
+        """The number of the first sample that a jump moves, rad; None if nothing explains it.
+
+        `sample` is the first one whose output shows it; `before` (-1: none) and `angle`, rad, are
+        segment and angle of the output before. The jump is `whole` turns of the rotor, or stays
+        `constant` over many outputs.
+        """
+        single_turn, absolute = self._parameters.single_turn, self._parameters.absolute
+        segment = int(sample['segment'])
+        if single_turn and whole and segment != before:
+            self._turns_taken = True
+            return int(first_number(segment))
+        if before < 0 and constant and (self._homing or absolute):
+            way = 'by the output encoder' if absolute else 'as after homing'
+            text = f'all output angles are moved by {jump:.12g} rad, {way}'
+            self._notes.append(Finding(text))
+            return 0
+        at_home = abs(angle + jump - self._parameters.home_angle) <= self._tolerance
+        if self._homing and at_home:
+            self.homed = True
+            stamp = int(sample['stamp'])
+            self._notes.append(Finding('compared as after homing', stamp=stamp, when='from'))
+        elif absolute and segment != self._referenced and (whole or not single_turn):
+            self._referenced = segment
+        else:
             return None
-        turns, angle = split_turns(rotor_angle)
-        homed = abs(latest[1] + offset - parameters.home_angle) <= self._tolerance
-        if not (homed and self._homing):
-            homed, whole = False, abs(angle) <= self._rotor_tolerance
-            # More than two in a segment, of which the second is a fault already, are noise.
-            noise = [(c.segment, c.homed) for c in self.found[-2:]] == 2 * [(segment, False)]
-            if not parameters.absolute or noise or (parameters.single_turn and not whole):
-                return None
-            angle = 0.0 if whole else angle
-        return Change(int(sample['stamp']), int(sample['number']), segment, homed, turns, angle)
+        return int(sample['number'])
 
-
-def _step_at(steps: Array, samples: Array) -> Array:
-    """The step of each sample, (n,)."""
-    return steps[np.maximum(np.searchsorted(steps['number'], samples['number'], 'right') - 1, 0)]
+    def _count_at(self, number: Array) -> Array:
+        """The step of each sample, (n,), by its number."""
+        steps = self._steps
+        return steps[np.maximum(np.searchsorted(steps['number'], number, 'right') - 1, 0)]

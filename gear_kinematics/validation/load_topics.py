@@ -56,8 +56,7 @@ class LoadTopic(OutputTopic):
         loads = self._loads.at(samples['turns'], samples['angle'], samples['effort'], motion)
         expected = np.broadcast_arrays(samples['turns'], *NUMBERS[self._topic](loads))[1:]
         error = finite_or_infinite(np.abs(self._numbers[rows] - np.stack(expected, axis=-1)))
-        known = self._changes.known(samples) & ~np.isnan(samples['acceleration'])
-        error[~known] = np.nan
+        error[~samples['told'] | np.isnan(samples['acceleration'])] = np.nan
         # Of all branches the one and the other, or of each joint the force and the couple.
         second = np.repeat([False, True], len(expected) // 2)
         if self._topic == JOINT_LOADS:

@@ -34,11 +34,14 @@ WINDOW = 16_384
 """Samples kept for late messages; even later ones count as extra."""
 
 SAMPLES = [
-    *((name, np.int64) for name in ('number', 'stamp', 'received', 'segment')),
+    ('number', np.int64),
+    ('told', np.bool_),
+    *((name, np.int64) for name in ('stamp', 'received', 'segment')),
     *((name, np.float64) for name in ('turns', 'angle', 'velocity', 'effort')),
 ]
-"""Columns of the samples with which outputs are compared: their numbers from 0 on, that of the
-first one of their segment, and those of `RotorSamples`."""
+"""Columns of the samples with which outputs are compared: their numbers in the order of
+reception; whether their count is told, by an output if it can change unseen; and those of
+`RotorSamples`."""
 
 
 class Expectation(NamedTuple):

@@ -105,12 +105,11 @@ class OutputState(JointStateTopic):
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
         position, *others = super()._compare(rows, samples)
-        while self._changes.learn(samples, position):
+        if self._changes.learn(samples, position):
             expected = self._ideal_angle(samples)
             error = finite_or_infinite(position.recorded - expected)
             error[np.isnan(position.error)] = np.nan
             position = position._replace(expected=expected, error=error)
-        self._changes.note(samples, position.expected)
         for factor, field in zip(self._factors.values(), others, strict=True):
             factor.update(field.recorded, field.expected)
         error = position.recorded - position.expected
@@ -161,7 +160,6 @@ class BodyPoses(OutputTopic):
                 fault = f'frame {frame_id.decode(errors="replace")!r}, not {self.label!r}'
                 self._faults[fault].add(stamp[arrays.frame[rows] == k])
         poses = arrays.poses[rows] if len(rows) < len(arrays.poses) else arrays.poses
-        known = self._changes.known(samples)
         state = self._solver(self._mechanism, samples['angle'], rotor_turns=samples['turns'])
         centres = np.concatenate([state.satellite_centre, state.oldham_centre], axis=1)
         axial = np.broadcast_to(self._axial, (*centres.shape[:2], 1))
@@ -170,7 +168,7 @@ class BodyPoses(OutputTopic):
         position = np.hypot(np.hypot(x, y), z).max(axis=1)
         orientation = _orientation_error(poses[..., 3:], state.output_turn_angle[:, np.newaxis])
         return [
-            FieldSamples(np.where(known, finite_or_infinite(error), np.nan))
+            FieldSamples(np.where(samples['told'], finite_or_infinite(error), np.nan))
             for error in (position, orientation)
         ]
 

@@ -13,8 +13,7 @@ from gear_kinematics.bag import Message, TopicMessages, by_topic
 from gear_kinematics.bag.roles import Topics
 from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.kinematics import Mechanism, solve
-from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE, TURN
-from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.state.loads import Loads
 from gear_kinematics.state.rotor_input import RotorInput
@@ -24,7 +23,7 @@ from gear_kinematics.validation.corrected_topics import (
     Unbroken,
     why_unjudged,
 )
-from gear_kinematics.validation.count_changes import CountChanges
+from gear_kinematics.validation.count_changes import CountChanges, first_number
 from gear_kinematics.validation.fields import Array
 from gear_kinematics.validation.load_topics import LoadTopic
 from gear_kinematics.validation.matching import (
@@ -44,7 +43,6 @@ from gear_kinematics.wire.topics import LOAD_TOPICS
 
 _FRAME = 'stator'
 _TOPICS = Topics()
-_FEW = 64  # outputs that show the zero, which can change in a batch
 _NONE: Mapping[str, str] = MappingProxyType({})
 _Batch = Mapping[str, TopicMessages]
 """Messages by the names of their topics."""
@@ -90,7 +88,6 @@ class Validator:
             self._references = TurnReferences(parameters, task.calibration)
         self._expectation = Expectation(gear, task.tolerances, solver, self._changes)
         self._samples = 0
-        self._segment = -1, 0  # the latest one, and the number of its first sample
         self._groups: list[tuple[Completeness, Sequence[OutputTopic]]] = []
         joint = parameters.frame_prefix + parameters.output_joint
         self.output = OutputState(topics.output, joint, self._expectation)
@@ -118,7 +115,6 @@ class Validator:
         self._window = np.zeros(0, columns)
         """The latest samples."""
         self._prefix_open = not parameters.frame_prefix
-        self._zero_open = not task.strict or parameters.absolute
         self._findings: list[Finding] = []
 
     def feed(self, batches: Iterable[Sequence[Message]]) -> None:
@@ -142,7 +138,7 @@ class Validator:
         self._drop(len(self._window))
         for group, _ in self._groups:
             group.close()
-        if self._changes.found:  # which the correction knows nothing of
+        if self._changes.homed:  # which the correction knows nothing of
             why = 'the zero of the rotor changes during the recording'
             self._corrector, self._why_unjudged = None, self._why_unjudged or why
         unjudged = () if self._corrector else self._corrected
@@ -190,35 +186,35 @@ class Validator:
 
     @np.errstate(all='ignore')
     def _take(self, batch: _Batch) -> None:
-        there = any(messages.data for messages in batch.values())
-        if self._prefix_open and there:
+        if self._prefix_open and any(messages.data for messages in batch.values()):
             self._find_prefix(batch)
-        if self._zero_open and there:
-            self._find_zero(batch)
         for topic, messages in batch.items():
             if messages.received:
                 self._begun.setdefault(topic, messages.received[0])
-        self._add_samples(batch)
+        segments = self._add_samples(batch)
         for output in self._outputs:
             messages = batch[output.name]
             output.take(messages.data, messages.received, self._window, self._inputs)
+            if output is self.output:
+                self._window['told'] |= output.matcher.matched
+                self._correct(segments)
         done = np.all([output.answered(self._window) for output in self._outputs], axis=0)
         answered = len(done) if done.all() else int(np.argmin(done))
         self._drop(max(answered, len(done) - WINDOW))
 
-    def _add_samples(self, batch: _Batch) -> None:
-        """Add the rotor's samples to the window."""
+    def _add_samples(self, batch: _Batch) -> Array:
+        """Add the rotor's samples to the window, and return their unbroken segments, (n,)."""
         messages = batch[self._topics.rotor]
         samples = self._input.accept_batch(messages.data, messages.received)
         self._inputs.update(samples.received, samples.stamp, samples.rejected)
         self._health.update(samples.stamp, TURN * samples.turns + samples.angle)
-        columns = {name: getattr(samples, name) for name, _ in SAMPLES[1:]}
-        columns['number'] = self._samples + np.arange(len(samples.stamp))
-        columns['segment'] = self._firsts(samples.segment, columns['number'])
+        columns = {name: getattr(samples, name) for name, _ in SAMPLES[2:]}
+        columns['number'] = first_number(samples.segment) + self._samples
+        columns['number'] += np.arange(len(samples.stamp))
+        unseen = self._parameters.single_turn or self._parameters.absolute
+        columns['told'] = np.full(len(samples.stamp), not unseen)
         self._samples += len(samples.stamp)
-        segments = self._unbroken.segments(samples)
-        if self._corrector:
-            columns |= self._corrector.correct_batch(*samples[:5], segments)._asdict()
+        segments = self._unbroken.segments(samples.stamp, samples.segment)
         if self._loads:
             found = self._loads.accelerations(samples.stamp, samples.velocity, segments)
             columns['acceleration'] = np.where(np.isnan(samples.effort), np.nan, found)
@@ -226,19 +222,22 @@ class Validator:
         for name, values in columns.items():
             new[name] = values
         if self._references and self._encoder:
-            self._references.take(messages, batch[self._encoder], new)
+            self._references.take_encoder(batch[self._encoder])
         self._window = np.concatenate([self._window, new])
         for output in self._outputs:
             output.matcher.extend(len(new))
+        return segments
 
-    def _firsts(self, segment: Array, number: Array) -> Array:
-        """The number of the first sample of the segment of each new sample, (n,)."""
-        latest, first = self._segment
-        begins = np.diff(segment, prepend=latest) != 0
-        firsts = np.maximum.accumulate(np.where(begins, number, first))
-        if len(segment):
-            self._segment = int(segment[-1]), int(firsts[-1])
-        return firsts
+    def _correct(self, segments: Array) -> None:
+        """Add the correction to the latest samples, whose count the outputs have told."""
+        if self._corrector and len(segments):
+            latest = self._window[-len(segments) :].copy()
+            self._changes.move(latest)
+            latest['segment'] = segments + self._changes.count  # after a change, plays are unknown
+            names = 'stamp', 'turns', 'angle', 'velocity', 'effort', 'segment'
+            found = self._corrector.correct_batch(*(latest[name] for name in names))
+            for name, values in found._asdict().items():
+                self._window[name][-len(segments) :] = values
 
     def _drop(self, count: int) -> None:
         """Drop the oldest samples, whose outputs are there or count as missing."""
@@ -246,6 +245,10 @@ class Validator:
         for group, outputs in self._groups:
             answered = np.column_stack([output.answered(oldest) for output in outputs])
             group.update(oldest['received'], oldest['stamp'], answered, self._begun)
+        if self._references and self._encoder:
+            counted = oldest.copy()
+            self._changes.move(counted)
+            self._references.take_rotor(counted)
         for output in self._outputs:
             output.matcher.drop(count)
         self._window = self._window[count:]
@@ -266,49 +269,6 @@ class Validator:
                         self._findings.append(Finding(text))
                     return
 
-    def _find_zero(self, batch: _Batch) -> None:
-        """Determine the rotor's zero from the first batch with outputs, as homing moves it.
-
-        It moves the poses too: if there are some, and they agree better without that, only the
-        output angle has an offset, which is a fault.
-        """
-        few = {
-            topic: TopicMessages(messages.data[:_FEW], messages.received[:_FEW])
-            for topic, messages in batch.items()
-        }
-        few[self._topics.rotor] = batch[self._topics.rotor]
-        trial = self._trial(few, self._parameters)
-        self._zero_open = not trial.output.fit.count
-        offset = trial.output.fit.offset(self._task.tolerances.angle)
-        if offset is None:
-            return
-        turned = self._parameters.rotor_direction * self._gear.gear_ratio.rotor_angle(offset)
-        zero = self._parameters.rotor_zero - turned
-        if abs(zero) > LARGEST_ANGLE:  # garbage, not homing
-            return
-        moved = replace(self._parameters, rotor_zero=zero)
-        if self._trial(few, moved).position_error <= trial.position_error:
-            self._input.parameters = moved
-            way = 'by the output encoder' if self._references else 'as after homing'
-            text = (
-                f'the recorded output angle is off by a constant {offset:.12g} rad: compared with '
-                f'rotor_zero {zero:.12g} instead of {self._parameters.rotor_zero:.12g}, {way}'
-            )
-            self._findings.append(Finding(text))
-
-    def _trial(self, batch: _Batch, parameters: NodeParameters) -> 'Validator':
-        """Return what validates a batch with other parameters."""
-        parameters = replace(parameters, output_encoder_reference='none')
-        task = replace(self._task, parameters=parameters, strict=True)
-        trial = Validator(task, self._topics, solver=self._expectation.solver)
-        trial._take({name: batch[name] for name in self._topics})
-        return trial
-
-    @property
-    def position_error(self) -> float:
-        """The greatest error of a body's position, m; 0 without poses."""
-        return self.poses.errors[0].report().max_error if self.poses else 0.0
-
     def _sorted(self, messages: Iterable[Message]) -> _Batch:
         return by_topic(messages, (*self._topics, *self._further.values(), self._encoder))
 
@@ -318,9 +278,9 @@ class Validator:
         if isinstance(self._gear, Mechanism) and not self.poses:
             yield Finding(f'no poses are recorded: {self.output.name} alone is compared')
         yield from self._findings
-        yield from self._changes.notes(self._input.parameters)
+        yield from self._changes.notes()
         if self._references:
-            yield from self._references.findings(self._changes)
+            yield self._references.finding()
         for output in self._outputs:
             yield from output.causes()
         if self._input.mostly_rejected and self._input.missing_joint:

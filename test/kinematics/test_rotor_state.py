@@ -9,59 +9,43 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from gear_kinematics.kinematics import GearRatio, RotorTurns, rotor_state_for, solve
+from gear_kinematics.kinematics import GearRatio, rotor_state_for, solve
 
 RATIOS = st.builds(
     lambda numerator, denominator, sign: GearRatio(sign * numerator, denominator),
     st.integers(1, 10_000_000), st.integers(1, 1000), st.sampled_from((-1, 1)),
 )  # fmt: skip
-DRIVERS = {'direction': st.sampled_from((-1, 1)), 'zero': st.floats(-1e6, 1e6)}
 STATES = {
     'ratio': RATIOS,
     'turns': st.integers(-(2**40), 2**40),
     'angle': st.floats(-math.pi, math.pi),
 }
-FAR = {'ratio': GearRatio(1457, 26), 'turns': 2**40, 'angle': 3.0, 'direction': -1, 'zero': 2.5}
-NEAR = {'ratio': GearRatio(-19), 'turns': 0, 'angle': math.pi, 'direction': 1, 'zero': 0.0}
+FAR = {'ratio': GearRatio(1457, 26), 'turns': 2**40, 'angle': 3.0}
+NEAR = {'ratio': GearRatio(-19), 'turns': 0, 'angle': math.pi}
 
 
 def apart(exact, turns, angle) -> float:
     return abs(float(exact - 2 * mpmath.pi * int(turns) - mpmath.mpf(float(angle))))
 
 
-@given(**STATES, **DRIVERS)
+@given(**STATES)
 @example(**FAR)
 @example(**NEAR)
-def test_rotor_is_at_zero_plus_direction_times_the_ratio_times_the_output(
-    ratio, turns, angle, direction, zero
+def test_rotor_is_at_the_ratio_times_the_output_and_forwards_again_at_the_same(
+    ratio, turns, angle
 ):
-    assume(abs(turns * ratio) < 2**52)
-    rotor = rotor_state_for(ratio, angle, turns=turns, direction=direction, zero=zero)
+    assume(abs(turns * ratio) < 2**51)
+    rotor = rotor_state_for(ratio, angle, turns=turns)
+    again = ratio.output_angle(rotor.turns, rotor.angle, math)
     with mpmath.workdps(50):
         output = 2 * mpmath.pi * turns + mpmath.mpf(angle)
-        exact = zero + direction * output * ratio.numerator / ratio.denominator
+        exact = output * ratio.numerator / ratio.denominator
         error = apart(exact, rotor.turns, rotor.angle)
-        rounded = float(exact)
+        error_again, rounded = apart(output, *again), float(exact)
     assert error <= 2e-15 * (1.0 + 2.0 * abs(float(ratio)))  # a last bit of the output, geared up
+    assert error_again <= 4e-15 * (1.0 + 1.0 / abs(float(ratio)))
     assert abs(rotor.angle) <= math.pi * (1.0 + 1e-15)
     assert abs(rotor.position - rounded) <= error + 2.0 * math.ulp(rounded)
-
-
-@given(**STATES, **DRIVERS)
-@example(**FAR)
-@example(**NEAR)
-def test_forwards_again_it_is_the_same_output_to_the_last_bits(
-    ratio, turns, angle, direction, zero
-):
-    """By the driver's zero and direction as the node takes them out."""
-    assume(abs(turns * ratio) < 2**51)
-    rotor = rotor_state_for(ratio, angle, turns=turns, direction=direction, zero=zero)
-    node = RotorTurns(single_turn=False, max_speed=1.0, max_acceleration=1.0)
-    node.position = rotor[:2]
-    again = ratio.output_angle(*node.relative_to(zero, direction), math)
-    with mpmath.workdps(50):
-        error = apart(2 * mpmath.pi * turns + mpmath.mpf(angle), *again)
-    assert error <= 4e-15 * (1.0 + 1.0 / abs(float(ratio)))
 
 
 @pytest.mark.parametrize(
@@ -73,21 +57,18 @@ def test_forwards_again_it_is_the_same_output_to_the_last_bits(
         ('121', (0.0, 0.0), (0.0, 0.0)),
     ],
 )
-@pytest.mark.parametrize('direction', [1, -1])
-def test_velocity_is_geared_up_and_effort_down(ratio, output, rotor, direction):
+def test_velocity_is_geared_up_and_effort_down(ratio, output, rotor):
     assert rotor_state_for(GearRatio.parse(ratio), 0.5)[2:] == (None, None)
-    state = rotor_state_for(GearRatio.parse(ratio), 0.0, *output, direction=direction)
-    assert state[2:] == tuple(direction * value for value in rotor)
+    assert rotor_state_for(GearRatio.parse(ratio), 0.0, *output)[2:] == rotor
 
 
-@given(**STATES, **DRIVERS)
-def test_arrays_give_what_floats_do_to_the_last_bit(ratio, turns, angle, direction, zero):
-    driver = {'direction': direction, 'zero': zero}
+@given(**STATES)
+def test_arrays_give_what_floats_do_to_the_last_bit(ratio, turns, angle):
     many = rotor_state_for(
         ratio, np.array([[0.0, angle]]), np.array([[1.0, angle]]), np.array([[2.0, angle]]),
-        turns=np.array([[0.0, turns]]), **driver,
+        turns=np.array([[0.0, turns]]),
     )  # fmt: skip
-    one = rotor_state_for(ratio, angle, angle, angle, turns=turns, **driver)
+    one = rotor_state_for(ratio, angle, angle, angle, turns=turns)
     assert tuple(values[0, 1] for values in many) == one
     assert many.position[0, 1] == one.position
 

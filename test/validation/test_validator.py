@@ -349,7 +349,8 @@ def test_what_is_wrong_with_all_messages_is_named(recorded, config, topic, edit,
 def test_an_offset_of_the_output_angle_alone_is_named(recorded, config):
     report = validate(change_all(recorded, OUTPUT, add('position', 0.125)), config)
     assert not report.passed
-    assert texts(report) == ['the recorded output angle is off by a constant 0.125 rad']
+    assert texts(report) == ['all output angles are moved by 0.125 rad, as after homing']
+    assert [topic.passed for topic in report.topics] == [True, False]
 
 
 def test_a_prefix_is_that_of_the_parameters_or_the_one_that_all_outputs_have(recorded, config):
@@ -380,8 +381,8 @@ def test_the_offset_that_homing_leaves_passes_and_is_said(recorded, config, chan
     report = validate(recorded, homed)
     assert report.verdict == Verdict.PASS
     [said] = texts(report)
-    assert said.startswith(f'the recorded output angle is off by a constant {-0.75 / 19:.9g}')
-    assert re.search(r'compared with rotor_zero -?[\de.-]+ instead of 0.75, as after homing', said)
+    assert said.startswith(f'all output angles are moved by {-0.75 / 19:.9g}')
+    assert said.endswith(' rad, as after homing')
     failed = validate(recorded, homed, strict=True)
     assert failed.verdict == Verdict.FAIL
     assert not any(topic.passed for topic in failed.topics)
@@ -405,9 +406,7 @@ def test_homing_during_a_recording_passes_and_is_said(recorded, config, encoder,
     zero = position + 19 * 0.25  # there, the output is at the angle of homing
     [said] = [finding.text for finding in findings(report)]
     time = (rotor[place][1] - rotor[0][1]) / SECOND
-    assert said == (
-        f'compared with rotor_zero {zero:.12g} instead of 0, as after homing, from {time:+.3f} s'
-    )
+    assert said == f'compared as after homing, from {time:+.3f} s'
     assert not validate(messages, config, strict=True).passed
     # A step to another angle is no homing, nor is one of the output alone.
     assert not validate(messages, replace(config, home_angle=0.2)).passed

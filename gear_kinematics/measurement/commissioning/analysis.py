@@ -159,7 +159,7 @@ def _decided(
     seen = f'{ratio.plus_minus} after {math.degrees(longest.travel):.1f}° of the output'
     if not (exact := given or ratio.taken):
         such = ', '.join(map(str, ratio.candidates))
-        advice = f'{ratio.advice}, or confirm with --ratio'
+        advice = f'{ratio.advice}, or give the ratio of the nameplate'
         return ratio, None, f'The ratio is open: {seen}, such as {such}; {advice}.'
     for between in (exact, -exact):
         if ratio.fits(between):

@@ -1,24 +1,22 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Turns from the angle of the output: never wrong within the budget, refused beyond it.
+"""A million random starts: turns are never wrong within the budget, and refused beyond it.
 
 The truth is simulated in integers: with i = N/D, T turns of the rotor are TD/N of the output.
 """
 
 import math
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
 
-from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.kinematics.turn_reference import (
-    about_zero,
-    margin,
-    nearest_turns,
-    unambiguous,
-)
+from gear_kinematics.correction.transmission_error import ErrorSample
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.turn_reference import decide
 
 STARTS = 50_000  # for each of 20 ratios
+GAP = 0.1  # s
 _random = np.random.default_rng(36)
 RATIOS = [
     *map(Fraction, ('-19', '36/5', '1457/26', '101', '1/3', '-1457/26', '121', '-1/3', '1', '-1')),
@@ -33,39 +31,42 @@ def within_turn(ratio, turns, angle):
     return math.tau * (sign * d * turns % n) / n + angle * (sign * d / n)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize('ratio', RATIOS, ids=str)
 def test_turns_are_the_true_ones_or_refused(ratio):
     random = np.random.default_rng(ratio.numerator % 1000 + ratio.denominator)
-    gear, n = GearRatio(ratio), abs(ratio.numerator)
-    limit = math.pi / n
-    assert margin(gear) == limit
+    n = abs(ratio.numerator)
+    margin = math.pi / n
+    settings = replace(
+        NodeParameters.load(),
+        gear_ratio=str(ratio),
+        rotor_encoder='single_turn',
+        transmission_error_limit=0.01 * margin,
+        transmission_error_max_gap=GAP,
+    )
     truth, count = random.integers(-5 * n, 5 * n + 1, (2, STARTS)).tolist()
-    budgets = limit * random.uniform(0.01, 1.2, STARTS)
+    scatters, delays = min(margin, math.pi / 2) * random.uniform(0.0, 0.6, (2, STARTS))
+    budgets = 0.01 * margin + scatters + delays
     # Anywhere within the budget, just inside, just outside, and as far as the next turn allows.
     just = 1.0 + random.choice((-1e-6, 1e-6), STARTS)
     sizes = np.where(random.random(STARTS) < 0.5, random.uniform(0.0, 1.0, STARTS), just) * budgets
     beyond = random.random(STARTS) < 0.2
-    sizes[beyond] = random.uniform(budgets, np.maximum(2.0 * limit - budgets, budgets))[beyond]
+    sizes[beyond] = random.uniform(budgets, np.maximum(2.0 * margin - budgets, budgets))[beyond]
     errors = sizes * random.choice((-1.0, 1.0), STARTS)
     errors += math.tau * random.integers(-2, 3, STARTS)
     angles = random.uniform(-math.pi, math.pi, STARTS)
-    columns = (column.tolist() for column in (budgets, sizes, errors, angles))
+    columns = (column.tolist() for column in (budgets, sizes, errors, angles, scatters, delays))
     times_found = 0
-    for true, counted, budget, size, error, angle in zip(truth, count, *columns, strict=True):
+    for true, counted, budget, size, error, angle, scatter, delay in zip(
+        truth, count, *columns, strict=True
+    ):
         moved = within_turn(ratio, true, angle) - within_turn(ratio, counted, angle)
-        turns, distance = nearest_turns(gear, error + moved)
-        found = unambiguous(distance, budget, limit)
-        assert found == (size < budget < limit)
-        assert not found or (turns - (true - counted)) % n == 0
-        times_found += found
-    assert times_found > STARTS // 3
-
-
-@pytest.mark.parametrize('ratio', RATIOS, ids=str)
-def test_turns_about_zero_are_the_same_modulo_the_period(ratio):
-    gear, n = GearRatio(ratio), abs(ratio.numerator)
-    random = np.random.default_rng(n)
-    for counted, turns in random.integers(-5 * n, 5 * n + 1, (1000, 2)).tolist():
-        chosen = about_zero(gear, turns, math.tau * float(counted / ratio))
-        assert (chosen - turns) % n == 0
-        assert abs(counted + chosen) <= n / 2
+        samples = [
+            ErrorSample(0, error + moved + noise, counted, angle, 0, speed)
+            for noise, speed in ((scatter, -delay / GAP), (-scatter, 0.0))
+        ]
+        decision = decide(samples, settings)
+        assert decision.unambiguous == (size < budget < margin)
+        assert not decision.unambiguous or (decision.turns - (true - counted)) % n == 0
+        times_found += decision.unambiguous
+    assert times_found > STARTS // 4
