@@ -84,7 +84,7 @@ def test_shaft_that_turns_is_not_homed(homing, positions, period, velocity, refu
 def test_turns_that_the_output_encoder_adds_are_no_speed(homing):
     node = homing(rotor_encoder='single_turn', output_encoder_reference='absolute')
     answers = []
-    for number in range(1, 400):
+    for number in range(1, 500):
         shaft = rotor_bytes(number * MILLISECOND, ['shaft'], [2.0])
         node._on_output_encoder(shaft)
         drive(node, [-38.0 % math.tau], number * MILLISECOND)
