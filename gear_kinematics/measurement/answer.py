@@ -39,6 +39,11 @@ def answer(report: LostMotion) -> str:
 
 
 def _of_ramps(figures: GearFigures) -> str:
+    if figures.hysteresis.value < -(figures.hysteresis.uncertainty or 0.0):
+        return (
+            f'The hysteresis is negative, {arc_minutes(figures.hysteresis)}′, which no gear has: '
+            'the torque comes later than the angle, as behind a filter or from another clock.'
+        )
     width = f'At zero torque the output rests anywhere within {arc_minutes(figures.hysteresis)}′.'
     backlash, cause = figures.backlash, figures.backlash.cause
     if backlash.high is None:
@@ -89,7 +94,7 @@ class Limits:
 
 def _judged(figure: Measured, limit: float) -> Judgement:
     name = figure.name
-    if not figure.ends:
+    if not figure.ends or max(figure.ends) < 0.0:  # which no gear has
         return Judgement(name, holds=False, text=f'the {name} is not known')
     sign = -1.0 if name == 'stiffness' else 1.0  # the least of it, not the most
     low, high = sorted(sign * end for end in figure.ends)
@@ -115,11 +120,6 @@ def remarks(report: LostMotion) -> Iterator[str]:
         )
         if len(found.ramps) == 1:
             yield 'All ramps have about one amplitude: small ones would separate play better.'
-        if found.hysteresis.value < -(found.hysteresis.uncertainty or 0.0):
-            yield (
-                'The hysteresis is negative, which no gear has: the torque comes later than the '
-                'angle, as behind a filter or from another clock.'
-            )
     if motion := report.transmission:
         if motion.delay and motion.delay.clear:
             yield (

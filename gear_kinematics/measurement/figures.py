@@ -94,14 +94,14 @@ def gear_figures(
     Raises:
         RampError: if the angle does not grow with the torque.
     """
-    small, large = ramps[0], ramps[-1]
-    rated = rated_torque or large.amplitude
-    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in large.loops]
-    if float(np.mean(ways)) <= _still(large, angle_step):
+    if not (moving := [group for group in ramps if _moves(group, angle_step)]):
         raise RampError(
             'the angle does not grow with the torque: it stands still, or one of them has the '
             'wrong sign'
         )
+    ramps = moving  # friction may hold the gear in the others
+    small, large = ramps[0], ramps[-1]
+    rated = rated_torque or large.amplitude
     lines = [middle_lines(group) for group in ramps]
     widths = [_hysteresis(group.loops, angle_step) for group in ramps]
     loaded = stiffness_of(lines[-1], large)
@@ -122,6 +122,12 @@ def gear_figures(
         _stiffness(large, rated, angle_step),
         _overall(large),
     )
+
+
+def _moves(ramps: Ramps, angle_step: float) -> bool:
+    """Whether the angle grows with the torque."""
+    ways = [loop.fall.angle[0] - loop.rise.angle[0] for loop in ramps.loops]
+    return float(np.mean(ways)) > _still(ramps, angle_step)
 
 
 def _still(ramps: Ramps, angle_step: float) -> float:

@@ -87,12 +87,22 @@ def test_remarks_tell_what_a_single_loop_cannot(report_of):
     assert 'to separate them, repeat the ramps five times or more' in answer(report)
 
 
+def test_ramps_in_which_friction_holds_the_gear_tell_nothing(report_of):
+    torque = ramps(*[(4.0, 200)] * 5, *[(40.0, 2000)] * 3)
+    held = Gear(play=0.0, stiffness=300.0, friction=4.5)
+    sentence = answer(report_of(angle=creep(held, torque), torque=torque))
+    within = 2.0 * 4.5 / 300.0 / ARC_MINUTE
+    assert sentence.startswith(f'At zero torque the output rests anywhere within {within:.1f}')
+
+
 @pytest.mark.parametrize('rows', [0, 15])
 def test_a_torque_that_is_later_than_the_angle_makes_the_hysteresis_negative(report_of, rows):
     angle = creep(Gear(play=0.0, stiffness=300.0, friction=0.1), SMALL)
     late = np.concatenate([np.zeros(rows), SMALL])[: len(SMALL)]
-    said = ' '.join(remarks(report_of(angle=angle, torque=late)))
-    assert ('The hysteresis is negative' in said) == (rows > 0)
+    report = report_of(angle=angle, torque=late)
+    assert answer(report).startswith('The hysteresis is negative') == (rows > 0)
+    (judged,) = Limits(hysteresis=1.0).judge(report)
+    assert judged.holds == (rows == 0)
 
 
 def test_figures_that_their_uncertainty_exceeds_stand_out():
