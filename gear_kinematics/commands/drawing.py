@@ -41,7 +41,7 @@ def force_at(options: argparse.Namespace, config: NodeParameters) -> float:
     """F_t on the satellite of the first branch, N, at the torque that the options name."""
     if not options.torque:
         return 0.0
-    (torque, *_), _ = config.sharing.branches(options.torque, math)
+    (torque, *_), _ = config.sharing.branches(options.torque)
     return float(torque / config.mechanism.satellite_rolling_radius)
 
 

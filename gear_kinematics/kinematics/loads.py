@@ -22,15 +22,14 @@ At rest or without mass: N3 = N5 = 0, C3 = -C5 = T, F_t = T/rs and i τ2 = Σ T.
 are those that the named body exerts; the other of the pair takes the opposite ones. The torque of
 the output shaft's own inertia is no part of T: the shaft gives on Σ T less J5 φ5''.
 
-How the branches share the torque of the output is statically indeterminate: `share_torque`.
+How the branches share the torque of the output is statically indeterminate: `TorqueSharing`.
 """
 
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from numbers import Real
-from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -38,7 +37,7 @@ from numpy.typing import ArrayLike
 from gear_kinematics.kinematics.errors import MechanismError
 from gear_kinematics.kinematics.mechanism import Mechanism
 from gear_kinematics.kinematics.motion import Array, BranchPosition, MotionState, read_only
-from gear_kinematics.kinematics.preload import Flanks, Pair, Preload, braced
+from gear_kinematics.kinematics.preload import Pair, Preload, braced
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,18 +203,11 @@ def solve(
         ValueError: if `branch_torques` or the state do not fit the mechanism or each other.
     """
     torques = np.asarray(branch_torques, dtype=np.float64)
-    count, shape = len(mechanism.branches), state.output_angle.shape
-    if state.satellite_slide.shape != (*shape, count):
-        given = state.satellite_slide.shape[-1]
-        raise ValueError(f'the state is of {given} branches, the mechanism has {count}')
-    if torques.shape[-1:] != (count,):
-        fault = f'branch_torques must have {count} torques, one of each branch, on their last axis'
-        raise ValueError(f'{fault}, not the shape {torques.shape}')
-    try:
-        shape = np.broadcast_shapes(shape, torques.shape[:-1])
-    except ValueError:
-        fault = f'branch_torques of shape {torques.shape} do not fit a state of shape {shape}'
-        raise ValueError(fault) from None
+    count, of_state = len(mechanism.branches), state.satellite_slide.shape
+    if not of_state[-1:] == torques.shape[-1:] == (count,):
+        given = f'not of the shapes {of_state} and {torques.shape}'
+        raise ValueError(f'state and branch_torques must be of {count} branches, {given}')
+    shape = np.broadcast_shapes(of_state, torques.shape)[:-1]
     equations = LoadEquations(mechanism, bodies)
     angle = state.output_turn_angle[..., np.newaxis]
     acceleration = state.output_acceleration[..., np.newaxis]
@@ -240,30 +232,15 @@ def solve(
     return Loads(*arrays)  # in the order of the fields
 
 
-class BranchTorques(NamedTuple):
-    """How the branches share the torque of the output, (..., B)."""
+class TorqueSharing:
+    """How the branches share the torque of the output.
 
-    torque: Array
-    """T, N·m, of each branch on the output shaft."""
-    stand_off: Array
-    """rad at the output, at least 0: how far a branch out of mesh stands off; 0 in mesh."""
-
-
-@np.errstate(invalid='ignore')  # values that are not finite give NaN
-def share_torque(
-    mechanism: Mechanism,
-    output_torque: ArrayLike,
-    preload: Preload | None = None,
-    direction: int = 1,
-) -> BranchTorques:
-    """Share the torque of the output between the branches.
-
-    Two branches with a preload have T_A and -T_B of `preload` for the external torque
-    M = -output_torque, also beyond the thresholds; any branches without one have equal shares.
+    Two branches with a preload have T_A and -T_B of `preload` for the external torque -Σ T, also
+    beyond the thresholds; any branches without one have equal shares. Floats and arrays give the
+    same results to the bit.
 
     Args:
         mechanism: for the number of branches.
-        output_torque: Σ T, N·m, of all branches on the output shaft, (...); i × τ2 at rest.
         preload: of two branches.
         direction: 1 if ring gear A is turned against ring gear B in the positive direction, so
             that branch A pushes the output in the positive direction; -1 if in the negative one.
@@ -272,40 +249,35 @@ def share_torque(
         ValueError: if `preload` is given and there are not two branches, or `direction` is
             neither 1 nor -1.
     """
-    torque = np.asarray(output_torque, dtype=np.float64)
-    shares = TorqueSharing(mechanism, preload, direction).branches(torque, np)
-    return BranchTorques(*(_joined(values, torque.shape) for values in shares))
 
-
-class TorqueSharing:
-    """`share_torque` with its constants, for floats and arrays with the same results to the bit.
-
-    Raises:
-        ValueError: as `share_torque`.
-    """
-
-    def __init__(self, mechanism: Mechanism, preload: Preload | None, direction: int) -> None:
+    def __init__(
+        self, mechanism: Mechanism, preload: Preload | None = None, direction: int = 1
+    ) -> None:
         if direction not in (1, -1):
             raise ValueError(f'direction must be 1 or -1, not {direction!r}')
-        self._count, self._flanks = len(mechanism.branches), None
         if preload is not None:
             braced(mechanism)
-            self._flanks = Flanks(preload)
+        self._count, self._preload = len(mechanism.branches), preload
         self._direction = float(direction)
 
-    def branches(self, torque: Any, xp: ModuleType) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
-        """Torques (N·m) and stand-offs (rad) of the branches; `xp` is `math` for floats."""
-        if self._flanks is None:
+    def branches(self, torque: Any) -> tuple[tuple[Any, ...], tuple[Any, ...]]:
+        """Share Σ T, N·m, of all branches on the output shaft: i × τ2 at rest.
+
+        Returns:
+            T of each branch, N·m, and how far it stands off its flank: rad at the output, at
+            least 0; 0 in mesh. Each is of the shape of Σ T.
+        """
+        if self._preload is None:
             return (torque / self._count,) * self._count, (0.0,) * self._count
         sign = self._direction
-        (torque_a, torque_b), stand_offs = self._flanks.contacts(-sign * torque, xp)
+        (torque_a, torque_b), stand_offs = self._preload.contacts(-sign * torque)
         return (sign * torque_a + 0.0, 0.0 - sign * torque_b), stand_offs  # no -0.0
 
     def margin(self, torque: Any) -> Any:
-        """As of `Flanks`, for the torque of the output; NaN without a preload."""
-        if self._flanks is None:
+        """As of `Preload`, for the torque of the output; NaN without a preload."""
+        if self._preload is None:
             return torque * math.nan
-        return self._flanks.margin(-self._direction * torque)
+        return self._preload.margin(-self._direction * torque)
 
 
 def _pair(points: Array) -> Pair:

@@ -26,8 +26,7 @@ the shaft yield beyond the interference (zk/zs) dψ_net, rad at the output:
 """
 
 import math
-from dataclasses import dataclass
-from types import ModuleType
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple, Self
 
 import numpy as np
@@ -181,11 +180,16 @@ class Preload:
     stiffness: Stiffness
     interference: float
     """(zk/zs) dψ_net, rad: the twist of the loop at the arms; if negative, the remaining play."""
+    _constants: tuple[float, ...] = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Refuse an interference that is not finite."""
+        """Refuse an interference that is not finite, and compute what each load needs."""
         if not math.isfinite(self.interference):
             raise MechanismError([f'an interference must be finite, not {self.interference!r}'])
+        cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
+        both = self.stiffness.compliance
+        # Of M, A is relieved by the first share, and B loaded by the second one.
+        object.__setattr__(self, '_constants', (cA, cB, cB / both, cA / both, self.torque))
 
     @classmethod
     def from_ring_turn(
@@ -253,12 +257,32 @@ class Preload:
         """
         M = np.asarray(load, dtype=np.float64)
         cA, cB = self.stiffness.compliance_a, self.stiffness.compliance_b
-        (branch_a, branch_b), _ = Flanks(self).contacts(M, np)
+        (branch_a, branch_b), _ = self.contacts(M)
         elastic = np.where(
             self.threshold_b <= M, cB * (branch_b - self.torque), cA * (self.torque - branch_a)
         )
         free = np.sign(M) * self.play / 2.0
         return TorqueSplit(branch_a, branch_b, elastic + free + 0.0)  # no -0.0
+
+    def contacts(self, M: Any) -> tuple[Pair, Pair]:
+        """Torques of A and B, N·m, and angles between their flanks, rad at the output; all ≥ 0.
+
+        A torque is the greatest of its values with both branches in mesh, with one and with the
+        other. Without load, play is halved. Floats and arrays give the same to the bit.
+        """
+        cA, cB, share_a, share_b, T0 = self._constants
+        larger, interference = _larger(M), self.interference
+        torque_a = larger(larger(T0 - share_a * M, -M), 0.0) + 0.0  # no -0.0
+        torque_b = larger(larger(T0 + share_b * M, M), 0.0) + 0.0
+        out_a, out_b = torque_a == 0.0, torque_b == 0.0  # both: each has half of the play
+        apart_a = abs(cB * M - interference) * (out_a / (1.0 + out_b))  # abs, for rounding
+        apart_b = abs(cA * M + interference) * (out_b / (1.0 + out_a))
+        return (torque_a, torque_b), (apart_a, apart_b)
+
+    def margin(self, M: Any) -> Any:
+        """What a load leaves of T0 in one branch, N·m: below 0 out of mesh."""
+        _, _, share_a, share_b, T0 = self._constants
+        return T0 - _larger(M)(share_a * M, -share_b * M)
 
     @property
     def _twist(self) -> float:
@@ -271,38 +295,8 @@ class Preload:
         return self._twist / compliance if compliance else math.inf
 
 
-class Flanks:
-    """The working flanks of both branches of a preload, with its constants.
-
-    Floats and arrays give the same results to the bit.
-    """
-
-    def __init__(self, preload: Preload) -> None:
-        cA, cB = preload.stiffness.compliance_a, preload.stiffness.compliance_b
-        both = preload.stiffness.compliance
-        self._shares = cB / both, cA / both  # of M, by which A is relieved and B loaded
-        self._preload, self._constants = preload.torque, (cA, cB, preload.interference)
-
-    def contacts(self, M: Any, xp: ModuleType) -> tuple[Pair, Pair]:
-        """Torques of A and B, N·m, and angles between their flanks, rad at the output; all ≥ 0.
-
-        A torque is the greatest of its values with both branches in mesh, with one and with the
-        other. Without load, play is halved. `xp` is `math` for floats.
-        """
-        (share_a, share_b), (cA, cB, interference) = self._shares, self._constants
-        larger: Any = max if xp is math else np.maximum
-        torque_a = larger(larger(self._preload - share_a * M, -M), 0.0) + 0.0  # no -0.0
-        torque_b = larger(larger(self._preload + share_b * M, M), 0.0) + 0.0
-        out_a, out_b = torque_a == 0.0, torque_b == 0.0  # both: each has half of the play
-        apart_a = abs(cB * M - interference) * (out_a / (1.0 + out_b))  # abs, for rounding
-        apart_b = abs(cA * M + interference) * (out_b / (1.0 + out_a))
-        return (torque_a, torque_b), (apart_a, apart_b)
-
-    def margin(self, M: Any) -> Any:
-        """What a load leaves of T0 in one branch, N·m: below 0 out of mesh."""
-        share_a, share_b = self._shares
-        larger: Any = np.maximum if isinstance(M, np.ndarray) else max
-        return self._preload - larger(share_a * M, -share_b * M)
+def _larger(M: Any) -> Any:
+    return np.maximum if isinstance(M, np.ndarray) else max
 
 
 def _not_negative(name: str, value: float) -> float:

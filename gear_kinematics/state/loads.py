@@ -86,9 +86,10 @@ class Loads:
 
     def accelerations(self, stamps: Array, velocities: Array, segments: Array) -> Array:
         """The accelerations that the loads need at the next samples, rad/s², (n,); 0 if none."""
-        if self._acceleration:
-            return self._acceleration.follow_batch(stamps, velocities, segments)
-        return np.zeros(len(stamps))
+        if not self._acceleration:
+            return np.zeros(len(stamps))
+        samples = zip(stamps.tolist(), velocities.tolist(), segments.tolist(), strict=True)
+        return np.array([self._acceleration.follow(*sample) for sample in samples])
 
     def at(
         self,
@@ -126,7 +127,7 @@ class Loads:
             torque = self._torque_ratio * (effort - idle)
         if not whole:
             return SampleLoads(torque)
-        torques, stand_offs = self.sharing.branches(torque, xp)
+        torques, stand_offs = self.sharing.branches(torque)
         branches = equations.branches(positions, torques, inertias)
         return SampleLoads(torque, torques, stand_offs, branches)
 
@@ -188,8 +189,3 @@ class Acceleration:
         if not _WINDOW <= span <= _LONGEST:
             return math.nan
         return (velocity - before) * SECOND / span
-
-    def follow_batch(self, stamps: Array, velocities: Array, segments: Array) -> Array:
-        """Return the accelerations at the next samples, (n,), as `follow` does one by one."""
-        samples = zip(stamps.tolist(), velocities.tolist(), segments.tolist(), strict=True)
-        return np.array([self.follow(*sample) for sample in samples])

@@ -13,7 +13,6 @@ from hypothesis import strategies as st
 
 from gear_kinematics.kinematics import Branch, Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import (
-    Flanks,
     Preload,
     Stiffness,
     braced,
@@ -86,7 +85,7 @@ def test_split_is_the_equilibrium_of_unilateral_contacts(stiffness, interference
         assert float(abs(Fraction(turn) - (b - start))) <= 1e-14 * softest
         # Out of mesh, arm A is where arm B is; its flank is where the branch would be closed.
         apart = b - Fraction(interference) if not expected_a else 0, -b if not expected_b else 0
-        torques, stand_offs = Flanks(preload).contacts(float(load), math)
+        torques, stand_offs = preload.contacts(float(load))
         assert torques == (branch_a, branch_b)
         for torque, stand_off, expected in zip(torques, stand_offs, apart, strict=True):
             assert float(abs(Fraction(stand_off) - expected)) <= 1e-14 * softest

@@ -66,17 +66,16 @@ def report(task: Task, progress: ReportProgress | None = None) -> Report:
     try:
         return _report(task, read_loads(task, progress))
     except (ValueError, OSError) as error:
-        cause = str(error)
+        return _lost(task, str(error))
     except Exception as error:  # noqa: BLE001, the other recordings are worth reporting
-        cause = unexpected(error, debug=task.debug)
-    return _failed(cause if str(task.bag) in cause else f'{task.bag}: {cause}')
+        return _lost(task, unexpected(error, debug=task.debug))
 
 
-def _failed(cause: str) -> Report:
-    return Report(None, {}, cause)
+def _lost(task: Task, cause: str) -> Report:
+    return Report(None, {}, cause if str(task.bag) in cause else f'{task.bag}: {cause}')
 
 
-WORK = fleet.Work(report, lambda task, cause: _failed(f'{task.bag}: {cause}'))
+WORK = fleet.Work(report, _lost)
 """For `fleet.on_this_machine`."""
 
 
@@ -93,7 +92,7 @@ def _report(task: Task, loads: RecordedLoads) -> Report:
         tuple(_findings(answer, moments)),
         tuple(_remarks(task, loads, loss)),
         Figure((_over_time(loads),), stacked=True),
-        _moving(loads, [moment.sample for moment in moments[:_MOST_MOMENTS]]),
+        _moving(loads, [moment.stamp for moment in moments[:_MOST_MOMENTS]]),
         below=Figure(tuple(_over_angle(forces)), columns=2),
     )
     data = {
@@ -202,13 +201,14 @@ def _over_angle(forces: Sequence[Force]) -> Iterator[Panel]:
 
 
 def _moving(loads: RecordedLoads, begins: Sequence[int]) -> MovingMechanism:
-    """The mechanism over the whole recording, and closer around the begins of moments."""
-    last, around = len(loads.stamp) - 1, np.arange(-_AROUND, _AROUND)
-    rows = [np.linspace(0, last, _FRAMES), *(begin + around for begin in begins)]
-    kept = np.unique(np.concatenate(rows).astype(int).clip(0, last))
+    """The mechanism over the whole recording, and closer around the stamps of begins."""
+    last, begun = len(loads.stamp) - 1, np.flatnonzero(np.isin(loads.stamp, begins))
+    around = begun[:, np.newaxis] + np.arange(-_AROUND, _AROUND)
+    rows = np.append(np.linspace(0, last, _FRAMES), around)
+    kept = np.unique(rows.astype(int).clip(0, last))
     parameters, turned = loads.parameters, np.degrees(loads.rotor[kept])
     mechanism = parameters.mechanism
-    shares, _ = parameters.sharing.branches(loads.torque[kept], np)
+    shares, _ = parameters.sharing.branches(loads.torque[kept])
     torques = np.column_stack(shares)
     return MovingMechanism(
         mechanism,
@@ -216,6 +216,6 @@ def _moving(loads: RecordedLoads, begins: Sequence[int]) -> MovingMechanism:
         loads.time[kept],
         turned,
         turned / float(mechanism.gear_ratio),
-        int(np.searchsorted(kept, begins[0] if begins else 0)),
+        int(np.searchsorted(kept, begun[0])) if len(begun) else 0,
         torques / (np.abs(torques).max() or 1.0),  # as are the forces
     )

@@ -57,8 +57,6 @@ class Moment(NamedTuple):
     """N·m, less than 0."""
     stamp: int
     """Of the first sample, ns."""
-    sample: int
-    """Its number."""
 
 
 class Force(NamedTuple):
@@ -134,34 +132,28 @@ class RecordedLoads:
                 self.parameters.branches[left].name,
                 float(self.margin[worst]),
                 int(self.stamp[begin]),
-                begin,
             )
 
     def forces(self, cam_rating: float) -> Iterator[Force]:
-        """Yield what each joint carried; the rating, N, of a cam's bearing is for its life."""
-        bins = np.minimum(self.rotor % TURN / TURN * ANGLE_BINS, ANGLE_BINS - 1).astype(np.uint8)
-        order = np.argsort(bins, kind='stable')
-        borders = np.searchsorted(bins[order], np.arange(1, ANGLE_BINS))
-        for name, values in self.joints.items():
-            unit = 'N' if name.startswith(('mesh', 'cam')) else 'N·m'
-            with np.errstate(invalid='ignore'):  # of a standstill
-                cubic_mean = float(np.cbrt(values**3 @ self.travel / self.travel.sum()))
-            life = self.life(cam_rating, cubic_mean) if name.startswith('cam') else math.nan
-            at_angles = [*map(_levels, np.split(values[order], borders))]
-            cycles = spectrum(values) if unit == 'N' else []
-            yield Force(name, unit, *_levels(values), cubic_mean, life, at_angles, cycles)
-
-    def life(self, rating: float, load: float) -> float:
-        """L10 = (C/P)^p 10⁶ turns of the bearing of a cam (ISO 281), in h of this recording.
+        """Yield what each joint carried.
 
         Args:
-            rating: C, N, the basic dynamic load rating.
-            load: P, N, the cubic mean.
+            cam_rating: C, N, for the life of a cam's bearing, (C/P)^p 10⁶ turns (ISO 281).
         """
         ratio = float(self.parameters.mechanism.gear_ratio)
         turns = self.travel.sum() / TURN * (1.0 - 1.0 / ratio)  # of the satellite on its cam
         hours = self.time[-1] / 3600.0
-        return float((rating / load) ** _BEARING_EXPONENT * 1e6 / turns * hours)
+        bins = np.minimum(self.rotor % TURN / TURN * ANGLE_BINS, ANGLE_BINS - 1).astype(np.uint8)
+        places = [np.flatnonzero(bins == k) for k in range(ANGLE_BINS)]
+        for name, values in self.joints.items():
+            unit = 'N' if name.startswith(('mesh', 'cam')) else 'N·m'
+            rating = cam_rating if name.startswith('cam') else math.nan
+            with np.errstate(divide='ignore', invalid='ignore'):  # without travel or load
+                cubic_mean = np.cbrt(values**3 @ self.travel / self.travel.sum())
+                life = (rating / cubic_mean) ** _BEARING_EXPONENT * 1e6 / turns * hours
+            at_angles = [_levels(values[place]) for place in places]
+            cycles = spectrum(values) if unit == 'N' else []
+            yield Force(name, unit, *_levels(values), cubic_mean, life, at_angles, cycles)
 
     @np.errstate(divide='ignore', invalid='ignore')  # without any work
     def slot_loss(self, friction: float) -> float:
@@ -174,7 +166,7 @@ class RecordedLoads:
             friction: μ.
         """
         mechanism = self.parameters.mechanism
-        torques, _ = self.parameters.sharing.branches(self.torque, np)
+        torques, _ = self.parameters.sharing.branches(self.torque)
         couples = sum(map(abs, torques))
         teeth = mechanism.ring_teeth / mechanism.satellite_teeth
         given, taken = abs(self.torque) @ self.travel, couples @ self.travel
