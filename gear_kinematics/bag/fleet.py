@@ -25,8 +25,9 @@ Report = TypeVar('Report')
 class Work(Generic[Task, Report]):
     """What is done with each of many recordings."""
 
-    run: Callable[[Task], Report]
-    """A function of a module. Its report contains any error about the recording."""
+    run: Callable[..., Report]
+    """A function of a module, of a task and a `ReportProgress` or nothing. Its report contains any
+    error about the recording."""
     lost: Callable[[Task, str], Report]
     """The report on a recording whose process died again and again, from the cause."""
 

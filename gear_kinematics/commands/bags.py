@@ -2,13 +2,14 @@
 """Arguments about bags, and the files beside them, that several commands have in common."""
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from gear_kinematics.bag import fleet
 from gear_kinematics.commands import arguments
-from gear_kinematics.commands.output import progress
+from gear_kinematics.commands.output import message_progress, progress
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.parameters import NodeParameters
 
@@ -82,21 +83,24 @@ def add_jobs(ways: argparse._ActionsContainer) -> None:
 
 def results(
     options: argparse.Namespace,
-    work: fleet.Work[fleet.Task, fleet.Report],
-    tasks: Sequence[fleet.Task],
+    work: fleet.Work[Any, fleet.Report],
+    tasks: Sequence[Any],
     unit: str,
-    run: Callable[[fleet.Task], fleet.Report],
-) -> Iterator[tuple[fleet.Task, fleet.Report]]:
-    """Yield tasks and reports as they are ready: of `run`, or of `work` if `add_jobs` says so.
+) -> dict[Path, fleet.Report]:
+    """Return the reports on tasks by their `bag`, from several processes if `add_jobs` says so.
 
-    Processes do the work with a progress in the unit; `run` shows its own.
+    These have a progress in the unit; otherwise, each recording has its own.
     """
-    if options.jobs == 1:
-        yield from ((task, run(task)) for task in tasks)
-        return
-    done = fleet.on_this_machine(work, tasks, options.jobs)
-    with progress(unit, quiet=options.quiet) as bars:
-        yield from bars.track(done, total=len(tasks), description=unit)
+    if options.jobs > 1:
+        done = fleet.on_this_machine(work, tasks, options.jobs)
+        with progress(unit, quiet=options.quiet) as bars:
+            tracked = bars.track(done, total=len(tasks), description=unit)
+            return {task.bag: report for task, report in tracked}
+    reports = {}
+    for task in tasks:
+        with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
+            reports[task.bag] = work.run(task, report_progress)
+    return reports
 
 
 @contextmanager

@@ -7,9 +7,9 @@ from importlib import import_module
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import complain, message_progress
+from gear_kinematics.commands.output import complain
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
-from gear_kinematics.measurement.loads.document import WORK, Report, document, report
+from gear_kinematics.measurement.loads.document import WORK, document
 from gear_kinematics.measurement.loads.recorded import Task
 from gear_kinematics.report.document import Verdict
 
@@ -56,17 +56,12 @@ def run(options: argparse.Namespace) -> ExitCode:
         )
         for bag in found.bags
     ]
-
-    def run(task: Task) -> Report:
-        with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
-            return report(task, report_progress)
-
-    results = bags.results(options, WORK, tasks, 'recordings', run)
-    reports = {task.bag: done for task, done in results}
-    faults = [*found.faults.values(), *(done.error for done in reports.values() if done.error)]
+    results = bags.results(options, WORK, tasks, 'recordings')
+    reports = [results[bag] for bag in found.bags]
+    faults = [*found.faults.values(), *(report.error for report in reports if report.error)]
     for fault in faults:
         complain(fault)
-    joined = document([reports[bag] for bag in found.bags])
+    joined = document(reports)
     if joined.sections:
         reporter.write(joined, (arguments.config_path(options, task.bag) for task in tasks))
     if faults:

@@ -4,11 +4,12 @@
 import argparse
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from gear_kinematics.bag.finding import find_bags
 from gear_kinematics.commands import ExitCode, arguments, bags
-from gear_kinematics.commands.output import complain, message_progress, warn_of_shared_memory
+from gear_kinematics.commands.output import complain, warn_of_shared_memory
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.report.document import Verdict
 from gear_kinematics.validation.document import document
@@ -105,17 +106,10 @@ def _task(bag: Path, tolerances: Tolerances, options: argparse.Namespace) -> Tas
 
 
 def _validated(options: argparse.Namespace, tasks: Sequence[Task]) -> dict[Path, BagReport]:
-    play = None
+    work = WORK
     if options.live:  # needs ROS, unlike the validation of a recording
         from gear_kinematics.ros.live import live_messages  # noqa: PLC0415
 
-        play = live_messages
-
-    def validate(task: Task) -> BagReport:
-        with message_progress(task.bag.name, quiet=options.quiet) as report_progress:
-            return validate_bag(task, report_progress, play)
-
-    return {
-        task.bag: replace(report, bag=str(task.bag))  # as it was given
-        for task, report in bags.results(options, WORK, tasks, 'bags', validate)
-    }
+        work = replace(work, run=partial(validate_bag, play=live_messages))
+    reports = bags.results(options, work, tasks, 'bags')
+    return {bag: replace(report, bag=str(bag)) for bag, report in reports.items()}  # as given
