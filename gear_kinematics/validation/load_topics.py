@@ -11,14 +11,13 @@ from gear_kinematics.validation.fields import Array, FieldErrors, FieldSamples
 from gear_kinematics.validation.matching import Expectation, OutputTopic
 from gear_kinematics.validation.output_topics import finite_or_infinite
 from gear_kinematics.wire.batches import decode_numbers
-from gear_kinematics.wire.cdr import joint_state_layout, wrenches_layout
 from gear_kinematics.wire.topics import BRANCH_LOADS, JOINT_LOADS
 
-_TYPES = {
-    BRANCH_LOADS: (joint_state_layout, {'stand-off': 'rad', 'torque': 'N·m'}),
-    JOINT_LOADS: (wrenches_layout, {'force': 'N', 'couple': 'N·m'}),
+_UNITS = {
+    BRANCH_LOADS: {'stand-off': 'rad', 'torque': 'N·m'},
+    JOINT_LOADS: {'force': 'N', 'couple': 'N·m'},
 }
-"""How the messages of each of LOAD_TOPICS are laid out, and the units of its two fields."""
+"""Of the two fields of each of LOAD_TOPICS."""
 
 
 class LoadTopic(OutputTopic):
@@ -32,13 +31,14 @@ class LoadTopic(OutputTopic):
     ) -> None:
         """Take the loads from the parameters of the node, for one of LOAD_TOPICS."""
         self._topic, self._loads = topic, Loads(parameters)
-        self.layout, units = _TYPES[topic]
+        self._template = self._loads.templates[topic]
+        self.layout = self._template.layout
         tolerances = expectation.tolerances
         # A force acts at levers of the order of the eccentricity.
         force = tolerances.effort / parameters.mechanism.eccentricity
         errors = (
             FieldErrors(field, unit, force if unit == 'N' else tolerances.of(unit))
-            for field, unit in units.items()
+            for field, unit in _UNITS[topic].items()
         )
         super().__init__(name, '', expectation, *errors)
 
@@ -47,8 +47,7 @@ class LoadTopic(OutputTopic):
         return np.asarray(super().answered(samples) | np.isnan(samples['acceleration']))
 
     def _decode(self, messages: list[bytes]) -> tuple[Array, Array]:
-        like = self._loads.templates[self._topic]
-        stamp, malformed, self._numbers = decode_numbers(messages, self.layout, like, self.label)
+        stamp, malformed, self._numbers = decode_numbers(messages, self._template, self.label)
         return stamp, malformed
 
     def _compare(self, rows: Array, samples: Array) -> Sequence[FieldSamples]:
@@ -57,8 +56,8 @@ class LoadTopic(OutputTopic):
         expected = np.broadcast_arrays(samples['turns'], *NUMBERS[self._topic](loads))[1:]
         error = finite_or_infinite(np.abs(self._numbers[rows] - np.stack(expected, axis=-1)))
         error[~samples['told'] | np.isnan(samples['acceleration'])] = np.nan
-        # Of all branches the one and the other, or of each joint the force and the couple.
-        second = np.repeat([False, True], len(expected) // 2)
-        if self._topic == JOINT_LOADS:
-            second = np.resize([False, False, True], len(expected))
+        # Of each joint the force and the couple, or of all branches the one and the other.
+        joints = np.resize([False, False, True], len(expected))
+        branches = np.repeat([False, True], len(expected) // 2)
+        second = joints if self._topic == JOINT_LOADS else branches
         return [FieldSamples(error[:, each].max(axis=1)) for each in (~second, second)]

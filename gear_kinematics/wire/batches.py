@@ -109,7 +109,7 @@ def decode_pose_arrays(messages: Sequence[bytes], count_of_poses: int) -> PoseAr
 
 
 def decode_numbers(
-    messages: Sequence[bytes], find_layout: Callable[[bytes], Layout], like: Template, prefix: str
+    messages: Sequence[bytes], like: Template, prefix: str
 ) -> tuple[Array, Array, Array]:
     """Decode messages that are like those of a template, but for a prefix of its texts.
 
@@ -117,14 +117,14 @@ def decode_numbers(
         Stamps, (n,), ns; whether a message is another one or none of its type, (n,); and the
         numbers that `like.encode` takes, (n, numbers).
     """
-    expected, count = find_layout(bytes(like.blank)), len(messages)
+    expected, count = like.layout(bytes(like.blank)), len(messages)
     texts = tuple(text and prefix.encode() + text for text in expected.texts)
     sizes = [size for _, size in expected.arrays]
     offsets = [start + 8 * k for start, size in expected.arrays for k in range(size)]
     given = np.isin(offsets, like.offsets)
     stamp, malformed = np.zeros(count, np.int64), np.ones(count, bool)
     numbers = np.full((count, len(like.offsets)), np.nan)
-    for rows, layout, table in _tables(messages, find_layout):
+    for rows, layout, table in _tables(messages, like.layout):
         if layout.texts == texts and [size for _, size in layout.arrays] == sizes:
             found = np.hstack([_doubles(table, layout, *array) for array in layout.arrays])
             stamp[rows], _ = _stamps(table, layout)

@@ -98,15 +98,6 @@ def pose_array_layout(data: bytes) -> Layout:
     return _layout(data, (7,), named=False)
 
 
-def wrenches_layout(data: bytes) -> Layout:
-    """Find the layout of a sensor_msgs/MultiDOFJointState: transforms, twists and wrenches.
-
-    Raises:
-        MalformedMessageError: if the bytes are anything else.
-    """
-    return _layout(data, (7, 6, 6))
-
-
 def _layout(data: bytes, arrays: Sequence[int], *, named: bool = True) -> Layout:
     """Find the layout of names, if any, and of arrays, given by the numbers of each item."""
     reader = _Reader(data)
@@ -181,6 +172,7 @@ class Template:
         """The message with zeros as stamp and numbers."""
         self.offsets: list[int] = []
         """Of the numbers in it."""
+        self._named, self._sizes = names is not None, [size for _, size, _ in arrays]
         self._string(frame_id)
         if names is not None:
             self._count(len(names))
@@ -203,6 +195,14 @@ class Template:
             for place, gap in self._gaps:
                 values.insert(place, gap)
         return self._pack(_ENCAPSULATION, *divmod(stamp, SECOND), self._start, *values)
+
+    def layout(self, data: bytes) -> Layout:
+        """Find the layout of a message of the same type.
+
+        Raises:
+            MalformedMessageError: if the bytes are anything else.
+        """
+        return _layout(data, self._sizes, named=self._named)
 
     def _divide(self) -> None:
         """Divide the message into numbers and the bytes between them, to pack it in one call."""
