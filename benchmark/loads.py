@@ -16,7 +16,7 @@ from dataclasses import replace
 from gear_kinematics.kinematics import RotorSample, split_turns
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.loads import Loads, PreloadMonitor
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.wire.topics import BODY_POSES, OUTPUT_STATE
 
@@ -32,12 +32,19 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     parameters = replace(NodeParameters.load(), preload=3.0, branch_stiffness=(2000.0,))
     messages = state_messages(parameters)
+    monitor = PreloadMonitor(parameters)
     braced, heavy = Loads(parameters), Loads(replace(parameters, loads=_BODIES))
+
+    def margin(sample: RotorSample) -> None:
+        monitor.follow(sample, 0)
+        if sample is samples[-1]:
+            monitor.report()
+
     jobs: dict[str, Callable[[RotorSample], object]] = {
         'output_state and body_poses': lambda sample: list(
             messages.encode(sample, (OUTPUT_STATE, BODY_POSES))
         ),
-        'margin of the preload': lambda sample: braced.follow(sample, 0, whole=False),
+        'margin of the preload': margin,
         'branch_loads and joint_loads': lambda sample: list(
             braced.encode(sample.stamp, braced.follow(sample, 0))
         ),

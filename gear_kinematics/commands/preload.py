@@ -16,7 +16,6 @@ from gear_kinematics.commands.output import message_progress
 from gear_kinematics.commands.pins import Pins
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import Mechanism
-from gear_kinematics.kinematics.loads import TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.measurement.loads.recorded import Task, read_loads
 from gear_kinematics.report.document import Document, Layout, Section, Table
@@ -150,8 +149,7 @@ def _wanted(options: argparse.Namespace, pair: Mechanism, stiffness: Stiffness) 
         sign = math.copysign(1.0, config.preload)
         with message_progress(options.recording.name, quiet=options.quiet) as report_progress:
             loads = read_loads(Task(options.recording, config), report_progress)
-        without = TorqueSharing(pair, Preload(stiffness, 0.0), int(sign))
-        needed = -float(np.min(without.margin(loads.torque)))
+        needed = -float(np.min(Preload(stiffness, 0.0).margin(-sign * loads.torque)))
         preload = Preload.from_torque(stiffness, options.margin * needed)
     else:
         return math.radians(options.degrees)

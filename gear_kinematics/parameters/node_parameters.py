@@ -17,7 +17,7 @@ import yaml
 
 from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, MechanismError
 from gear_kinematics.kinematics.loads import Bodies, TorqueSharing
-from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
+from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import meshes
 from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
 from gear_kinematics.parameters.parameter import Parameter
@@ -240,7 +240,6 @@ class NodeParameters:
         """
         mechanism, preload = self.mechanism, None
         if self.preload:
-            braced(mechanism)  # its error, before others
             if not (any(self.branch_stiffness) or self.shaft_stiffness):
                 needed = 'a preload needs branch_stiffness or shaft_stiffness, N·m/rad'
                 raise MechanismError([needed])

@@ -22,7 +22,7 @@ from sensor_msgs.msg import JointState, MultiDOFJointState
 from gear_kinematics.correction.calibration_file import Calibration
 from gear_kinematics.correction.corrector import Corrector
 from gear_kinematics.correction.transmission_error import ErrorSample
-from gear_kinematics.kinematics import Mechanism, RotorSample
+from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
@@ -34,9 +34,8 @@ from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declare, fault_of
 from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
-from gear_kinematics.state.loads import Loads
+from gear_kinematics.state.loads import Loads, PreloadMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
-from gear_kinematics.state.preload_monitor import PreloadMonitor
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.state_messages import state_messages
 from gear_kinematics.state.turn_reference import TurnReference
@@ -86,11 +85,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._corrector: Corrector | None = None
         self._display: Display | None = None
         self._loads: Loads | None = None
-        self._preload: PreloadMonitor | None = None
-        if parameters.preload or isinstance(self._gear, Mechanism):
-            self._loads = Loads(parameters)
-            if parameters.preload:
-                self._preload = PreloadMonitor(parameters)
+        self._preload = PreloadMonitor(parameters) if parameters.preload else None
         self._prepare([('calibration', parameters.calibration)])
         self._configure()
         self._monitor = InputMonitor(started=time.monotonic())
@@ -102,7 +97,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             *self._messages.topics,
             *topics.CORRECTED_TOPICS,
             topics.TRANSMISSION_ERROR,
-            *(topics.LOAD_TOPICS if self._loads else ()),
+            *(topics.LOAD_TOPICS if isinstance(self._gear, Mechanism) else ()),
         ):
             message_type = _MESSAGE_TYPES[topics.TOPICS[topic].type]
             self._outputs.create(topic, message_type, QoSProfile(depth=DEPTH))
@@ -188,7 +183,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         """Apply what was prepared, at the start and after every change."""
         self._settings, self._messages, self._corrector = self._prepared
         self._input.parameters = self._settings
-        if self._loads:
+        if isinstance(self._gear, Mechanism):
             self._loads = Loads(self._settings)
         if changed:
             # Discards earlier errors.
@@ -217,8 +212,11 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             )
             wanted = self._subscribed_corrections
             self._outputs.send(self._messages.encode_corrected(sample, correction, wanted))
-        if self._preload or self._subscribed_loads:
-            self._follow_loads(sample)
+        if self._preload:
+            self._preload.follow(sample, self._input.segment)
+        if self._loads and self._subscribed_loads:
+            loads = self._loads.follow(sample, self._input.segment)
+            self._outputs.send(self._loads.encode(sample.stamp, loads, self._subscribed_loads))
         self._monitor.published += 1
         if self._encoder.received and (self._input.referenced or self._settings.absolute):
             self._publish_errors(self._encoder.follow(sample, correction))
@@ -229,15 +227,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
             self._publish_errors(self._encoder.accept(data, self._now))
         except RejectedInputError as rejection:
             self._warn_of(topics.OUTPUT_ENCODER, rejection)
-
-    def _follow_loads(self, sample: RotorSample) -> None:
-        if not self._loads:
-            return
-        wanted = self._subscribed_loads
-        loads = self._loads.follow(sample, self._input.segment, whole=bool(wanted))
-        if self._preload:
-            self._preload.follow(sample, loads)
-        self._outputs.send(self._loads.encode(sample.stamp, loads, wanted))
 
     def _publish_errors(self, samples: Sequence[ErrorSample]) -> None:
         for topic in self._subscribed_errors:

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The loads at a sample of the rotor, and their messages `branch_loads` and `joint_loads`.
+"""The loads at samples of the rotor, their messages, and the diagnostics of the preload.
 
 The torque of the output is i × (rotor effort - τ2 of the inertias alone), lossless. If the bodies
 have mass, velocity and acceleration count: the acceleration is the difference of the rotor's
@@ -19,6 +19,7 @@ from gear_kinematics.kinematics.loads import AT_REST, BranchLoads, LoadEquations
 from gear_kinematics.kinematics.motion import closed_form
 from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.diagnostics import OK, WARN, Report
 from gear_kinematics.state.rotor_input import RotorSamples
 from gear_kinematics.wire.batches import Array, encode
 from gear_kinematics.wire.cdr import SECOND, JointStateTemplate, Template, WrenchesTemplate
@@ -34,11 +35,11 @@ class SampleLoads(NamedTuple):
 
     torque: Any
     """Σ T, N·m, of the branches on the output shaft; NaN if unknown."""
-    torques: Sequence[Any] = ()
+    torques: Sequence[Any]
     """N·m, of the branches; see `TorqueSharing`."""
-    stand_offs: Sequence[Any] = ()
+    stand_offs: Sequence[Any]
     """rad, of the branches."""
-    branches: Sequence[BranchLoads] = ()
+    branches: Sequence[BranchLoads]
 
 
 class Loads:
@@ -58,6 +59,8 @@ class Loads:
         self._equations = LoadEquations(mechanism, parameters.loads)
         self._at_rest = [AT_REST] * len(mechanism.branches)
         self._acceleration = None if parameters.loads.without_mass else Acceleration()
+        self.needed = 'effort or acceleration' if self._acceleration else 'effort'
+        """Of a sample, in words."""
         prefix, names = parameters.frame_prefix, [each.name for each in mechanism.branches]
         branches = [f'{prefix}branch_{name}' for name in names]
         joints = [f'{prefix}{kind}_{name}' for name in names for kind in _JOINTS]
@@ -67,15 +70,15 @@ class Loads:
         }
         """Of the messages, by topic."""
 
-    def follow(self, sample: RotorSample, segment: int, *, whole: bool = True) -> SampleLoads:
-        """Return the loads at the next sample, or only the torque of the output."""
+    def follow(self, sample: RotorSample, segment: int) -> SampleLoads:
+        """Return the loads at the next sample."""
         stamp, (turns, angle), velocity, effort = sample
         velocity = math.nan if velocity is None else velocity
         effort = math.nan if effort is None else effort
         acceleration = 0.0
         if self._acceleration:
             acceleration = self._acceleration.follow(stamp, velocity, segment)
-        return self.at(turns, angle, effort, (velocity, acceleration), math, whole=whole)
+        return self.at(turns, angle, effort, (velocity, acceleration), math)
 
     @np.errstate(invalid='ignore', over='ignore')
     def follow_batch(self, samples: RotorSamples) -> SampleLoads:
@@ -92,14 +95,7 @@ class Loads:
         return np.array([self._acceleration.follow(*sample) for sample in samples])
 
     def at(
-        self,
-        turns: Any,
-        angle: Any,
-        effort: Any,
-        motion: Pair,
-        xp: ModuleType = np,
-        *,
-        whole: bool = True,
+        self, turns: Any, angle: Any, effort: Any, motion: Pair, xp: ModuleType = np
     ) -> SampleLoads:
         """Return the loads where the rotor is at 2π turns + angle, as floats or arrays.
 
@@ -109,11 +105,8 @@ class Loads:
             effort: of the rotor, N·m; NaN if unknown.
             motion: velocity and acceleration of the rotor, which count if the bodies have mass.
             xp: `math` for floats.
-            whole: whether more than the torque of the output is wanted.
         """
         torque, inertias = self._torque_ratio * effort, self._at_rest
-        if not (whole or self._acceleration):
-            return SampleLoads(torque)
         _, rest = self._ratio.output_angle(turns, angle, xp)
         positions, equations = self._form.branches(angle, rest, xp), self._equations
         if self._acceleration:
@@ -125,8 +118,6 @@ class Loads:
             ]
             idle = equations.rotor_torque((share for *_, share in inertias), acceleration)
             torque = self._torque_ratio * (effort - idle)
-        if not whole:
-            return SampleLoads(torque)
         torques, stand_offs = self.sharing.branches(torque)
         branches = equations.branches(positions, torques, inertias)
         return SampleLoads(torque, torques, stand_offs, branches)
@@ -189,3 +180,39 @@ class Acceleration:
         if not _WINDOW <= span <= _LONGEST:
             return math.nan
         return (velocity - before) * SECOND / span
+
+
+class PreloadMonitor:
+    """Reports whether both branches stayed in mesh: the margin is less than 0 while one is out."""
+
+    def __init__(self, parameters: NodeParameters) -> None:
+        """Start for a mechanism with a preload."""
+        self._loads, self._preload = Loads(parameters), abs(parameters.preload)
+        self._samples: list[tuple[RotorSample, int]] = []
+
+    def follow(self, sample: RotorSample, segment: int) -> None:
+        """Take the next sample and the number of its segment, for the report alone."""
+        self._samples.append((sample, segment))
+
+    def report(self) -> Report:
+        """Report on the time since the last report."""
+        rows = [(s.stamp, *s.position, s.velocity, s.effort, 0, 0, k) for s, k in self._samples]
+        self._samples.clear()
+        samples = RotorSamples.of(rows, np.zeros(0, np.int64))
+        torques = self._loads.follow_batch(samples).torque
+        known = np.isfinite(torques)
+        if not known.any():
+            return Report(OK, f'unknown: no {self._loads.needed} in rotor_state', {})
+        margins, stamps = self._loads.sharing.margin(torques[known]), samples.stamp[known]
+        least = float(margins.min())
+        steps = np.diff(stamps, prepend=stamps[0]).clip(1, SECOND)
+        share = f'{100.0 * np.average(margins <= 0.0, weights=steps):.1f}'
+        values = {'preload (N·m)': f'{self._preload:.4g}'}
+        for name, margin in (('margin', margins[-1]), ('least margin', least)):
+            values[f'{name} (N·m)'] = f'{margin:.4g}'
+            values[f'{name} (% of the preload)'] = f'{100.0 * margin / self._preload:.1f}'
+        values['out of mesh (% of the time)'] = share
+        if least > 0.0:
+            return Report(OK, 'ok', values)
+        values['advice'] = 'Raise the preload (gearkin preload) or lower the torque of the output.'
+        return Report(WARN, f'a branch was out of mesh for {share} % of the time', values)

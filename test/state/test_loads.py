@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The loads at the node's samples: torque of the output, acceleration, messages, batches."""
+"""The loads at the node's samples: torque, acceleration, messages, batches, and the margin."""
 
 import math
 from dataclasses import replace
@@ -15,7 +15,8 @@ from gear_kinematics.kinematics import MechanismError, RotorSample, loads, solve
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.state.loads import Acceleration, Loads
+from gear_kinematics.state.diagnostics import OK, WARN
+from gear_kinematics.state.loads import Acceleration, Loads, PreloadMonitor
 from gear_kinematics.state.rotor_input import RotorSamples
 
 DEFAULT = NodeParameters.load()
@@ -134,3 +135,36 @@ def test_acceleration_is_unknown_across_a_break(stamp, segment):
 def test_preload_that_cannot_be_is_refused(changes, cause):
     with pytest.raises(MechanismError, match=cause):
         Loads(replace(BRACED, **changes))
+
+
+def monitored(torques):
+    """Return the monitor after these torques of the output, N·m."""
+    monitor = PreloadMonitor(replace(DEFAULT, preload=3.0, branch_stiffness=(2000.0,)))
+    for k, torque in enumerate(torques):
+        effort = None if math.isnan(torque) else torque / -19.0
+        monitor.follow(RotorSample(k * MILLISECOND, split_turns(0.0), None, effort), 0)
+    return monitor
+
+
+def test_margin_falls_by_half_of_the_load_of_equal_branches():
+    report = monitored([0.0, 4.0, -2.0]).report()
+    assert (report.level, report.message) == (OK, 'ok')
+    assert report.values['margin (N·m)'] == '2'
+    assert report.values['least margin (N·m)'] == '1'
+    assert report.values['least margin (% of the preload)'] == '33.3'
+    assert report.values['out of mesh (% of the time)'] == '0.0'
+
+
+def test_time_out_of_mesh_is_a_warning_until_the_next_report():
+    monitor = monitored([0.0] * 76 + [8.0] * 25)
+    report = monitor.report()
+    assert report.level == WARN
+    assert report.message == 'a branch was out of mesh for 25.0 % of the time'
+    assert report.values['least margin (N·m)'] == '-1'
+    assert 'preload' in report.values['advice']
+    assert monitor.report().level == OK
+
+
+def test_without_effort_the_margin_is_unknown_and_no_warning():
+    report = monitored([math.nan, math.nan]).report()
+    assert (report.level, report.message) == (OK, 'unknown: no effort in rotor_state')

@@ -189,9 +189,6 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
             joint = only_joint(bag, topic, parameters.rotor_joint)
             parameters = replace(parameters, rotor_joint=joint)
         rotor, loads = RotorInput(parameters), Loads(parameters)
-        lacking = (
-            'effort missing' if parameters.loads.without_mass else 'effort or acceleration missing'
-        )
         try:
             for batch in bag.batches([topic], progress):
                 messages = by_topic(batch, [topic])[topic]
@@ -204,7 +201,7 @@ def read_loads(task: Task, progress: ReportProgress | None = None) -> RecordedLo
                 stamps.append(samples.stamp[known])
                 tables.append(np.stack(rows)[:, known])
                 if unknown := np.count_nonzero(~known):
-                    rotor.rejected[lacking] += int(unknown)
+                    rotor.rejected[f'{loads.needed} missing'] += int(unknown)
         except BagError as error:  # what could be read counts
             damage = str(error)
     if not any(map(len, stamps)):
