@@ -132,9 +132,8 @@ class NodeParameters:
         check=_check_stiffness,
     )
     shaft_stiffness: float = _parameter(
-        'Torsional stiffness of the shaft between both arms, N·m/rad; 0: rigid', 0.0, 1e12,
-        read_only=True,
-    )  # fmt: skip
+        'Torsional stiffness between both arms, N·m/rad; 0: rigid', 0.0, 1e12, read_only=True
+    )
     loads: Bodies
     """In ROS, each of its values is a parameter, such as `loads.rotor_inertia`."""
     frame_prefix: str = _parameter('Prefix of every frame id and joint name')
@@ -154,7 +153,7 @@ class NodeParameters:
     )
 
     @classmethod
-    def load(cls, path: Path | None = None, node: str = NODE) -> Self:
+    def load(cls, path: Path | None = None, node: str = NODE, others: Iterable[str] = ()) -> Self:
         """Read a node's parameters from a file as the node would; others have their defaults.
 
         A relative path in it is relative to the file.
@@ -164,6 +163,7 @@ class NodeParameters:
                 default one.
             node: the node's fully qualified name. Without a namespace, it is the only node of that
                 name in the file, or one without a namespace.
+            others: names of parameters that the node has besides.
 
         Raises:
             ConfigError: if it cannot be read, has nothing for the node, leaves open which node is
@@ -174,7 +174,7 @@ class NodeParameters:
         if not (faults := _faults(given, PARAMETERS)):
             branches = given.get('branches', default_value('branches'))
             faults = _faults(given, branch_parameters(branches))
-            faults += unknown_parameters(given, branches)
+            faults += unknown_parameters(given, branches, others)
         if faults:
             raise ConfigError(f'{path}: {"; ".join(faults)}')
         given |= {name: str(path.parent / given[name]) for name in FILES if given.get(name)}
@@ -328,12 +328,11 @@ def branch_parameters(branches: Iterable[str]) -> dict[str, Parameter]:
     }
 
 
-def unknown_parameters(names: Iterable[str], branches: Iterable[str]) -> list[str]:
-    """A fault for each name that is no parameter of a node with these branches.
-
-    After the faults, if any, comes the list of the parameters that there are.
-    """
-    known, faults = [*PARAMETERS, *branch_parameters(branches)], []
+def unknown_parameters(
+    names: Iterable[str], branches: Iterable[str], others: Iterable[str] = ()
+) -> list[str]:
+    """A fault for each name that no node with these branches has; then all that it has."""
+    known, faults = [*PARAMETERS, *branch_parameters(branches), *others], []
     for name in names:
         if name in known or _EVERY_NODE.fullmatch(name):
             continue

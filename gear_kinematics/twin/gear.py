@@ -8,14 +8,30 @@ The branches and the shaft between their arms are springs. Branch k winds up by
 with ψ_k the angle of its arm, and gives the arm the torque T_k: none within its dead band, the
 play of its flanks, whose place is the preload, and that of its spring beyond it. The output shaft
 is the arm of the last branch. Friction acts between the output shaft and the stator.
+
+Two branches are braced by an interference: a twist of branch A, the shaft and branch B. Without
+load, the output stands at φ2/i then, so that branch B is wound up by -T0/kB beyond its upper
+working flank, and arm A leads the output by T0/ks:
+
+    high_A = -T0 (1/kA + 1/ks)        low_B = T0/kB        low_B - high_A = interference
+
+All signs are the opposite if branch A pushes the output in the negative direction.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Self
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple, Self
 
-from gear_kinematics.correction.calibration_file import Order
+import numpy as np
+
+from gear_kinematics.correction.calibration_file import Calibration, Order
+from gear_kinematics.kinematics import Mechanism, MechanismError
+from gear_kinematics.kinematics.preload import braced
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.twin.parameters import NODE, load
 
 
 class Spring(NamedTuple):
@@ -24,14 +40,14 @@ class Spring(NamedTuple):
     beyond: float
     """rad at the output, at least 0."""
     stiffness: float
-    """N·m/rad."""
+    """N·m/rad; less than 0 where the sum gets softer."""
 
 
 class Slider(NamedTuple):
     """Friction that holds like a spring until it slides, as of Jenkins or Prandtl."""
 
     stiffness: float
-    """N·m/rad."""
+    """N·m/rad; infinite: it does not yield until it slides."""
     torque: float
     """N·m, at which it slides."""
 
@@ -42,12 +58,12 @@ class TwinGear:
 
     parameters: NodeParameters
     """Of its mechanism, bodies and encoders."""
-    springs: tuple[Spring, ...]
-    """Of each branch; the first one acts from the flanks on."""
+    springs: tuple[tuple[Spring, ...], ...]
+    """Of each branch, in ascending order; the first one acts from the flanks on."""
     shaft_stiffness: float
     """N·m/rad, between both arms; infinite: rigid."""
     interference: float
-    """rad: the twist of the loop at the arms by the preload; if negative, the play that is left."""
+    """rad: twist of the loop at the arms by the preload; if negative, the play that is left."""
     play: float
     """rad: between the flanks of a branch, at least the play that is left."""
     friction: tuple[Slider, ...] = ()
@@ -59,10 +75,92 @@ class TwinGear:
     output_inertia: float
     """kg·m²."""
 
+    @classmethod
+    def load(cls, config: Path, node: str = NODE, calibration: Path | None = None) -> Self:
+        """Read a gear from a parameter file.
+
+        Args:
+            config: of ROS, as config/simulated_actuator.yaml.
+            node: whose parameters are taken.
+            calibration: of the errors; None: the one that the file names, if any.
+
+        Raises:
+            ValueError: if a file cannot be used, or the gear cannot be simulated.
+        """
+        return cls.of(*load(config, node), calibration)
+
+    @classmethod
+    def of(
+        cls, parameters: NodeParameters, values: dict[str, Any], calibration: Path | None = None
+    ) -> Self:
+        """Make a gear of valid parameters; `values` are those of `twin.parameters`."""
+        gear, file = parameters.gear, calibration or parameters.calibration
+        count = len(gear.branches) if isinstance(gear, Mechanism) else 1
+        stiffness, preload = parameters.branch_stiffness, parameters.preload
+        faults = []
+        if not all(stiffness):
+            faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
+        if len(stiffness) not in {1, count}:
+            faults.append(f'branch_stiffness has {len(stiffness)} values for {count} branches')
+        if not parameters.loads.rotor_inertia:
+            faults.append('loads.rotor_inertia must be greater than 0 to be simulated')
+        if faults:
+            raise MechanismError(faults)
+        friction = values['friction']
+        made = cls(
+            parameters=parameters,
+            springs=tuple((Spring(0.0, each),) for each in (stiffness * count)[:count]),
+            shaft_stiffness=parameters.shaft_stiffness or math.inf,
+            interference=-values['play'],
+            play=values['play'],
+            friction=(Slider(math.inf, friction),) if friction else (),
+            errors=Calibration.load(Path(file), gear).orders if file else (),
+            rotor_damping=values['rotor_damping'],
+            output_inertia=values['output_inertia'],
+        )
+        if not preload:
+            return made
+        braced(parameters.mechanism)
+        return replace(made, interference=made._twist(abs(preload)))
+
+    @property
+    def ratio(self) -> float:
+        """i, signed."""
+        return float(self.parameters.gear.gear_ratio)
+
+    @property
+    def preload(self) -> float:
+        """T0, N·m, of two branches; negative if branch A pushes in the negative direction."""
+        if len(self.springs) != 2 or self.interference <= 0.0:  # noqa: PLR2004, A and B
+            return 0.0
+        ends = {
+            spring_torque(springs, spring.beyond) for springs in self.springs for spring in springs
+        }
+        # Beyond all ends, the twist grows at least as fast as by the stiffest branch alone.
+        stiffest = max(sum(spring.stiffness for spring in springs) for springs in self.springs)
+        torques = [*sorted(ends), max(ends) + stiffest * self.interference]
+        torque = np.interp(self.interference, [*map(self._twist, torques)], torques)
+        return math.copysign(float(torque), self.parameters.preload)
+
     @property
     def dead_bands(self) -> tuple[tuple[float, float], ...]:
         """Least and greatest x_k without torque, for each branch, rad."""
-        raise NotImplementedError
+        if len(self.springs) != 2:  # noqa: PLR2004, A and B
+            return ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
+        low_b = wind_up(self.springs[1], abs(self.preload)) + min(0.5 * self.interference, 0.0)
+        high_a = low_b - self.interference
+        band_a, band_b = (high_a - self.play, high_a), (low_b, low_b + self.play)
+        if self.parameters.preload < 0.0:
+            return (-high_a, -band_a[0]), (-band_b[1], -low_b)
+        return band_a, band_b
+
+    def branch_torque(self, branch: int, angle: float) -> float:
+        """T_k, N·m, of a branch wound up by the angle x_k, rad."""
+        low, high = self.dead_bands[branch]
+        if low <= angle <= high:
+            return 0.0
+        beyond = angle - (high if angle > high else low)
+        return math.copysign(spring_torque(self.springs[branch], abs(beyond)), beyond)
 
     def worn(self, angle: float) -> Self:
         """The same gear with flanks that wore off by an angle of the output, rad, together."""
@@ -75,3 +173,29 @@ class TwinGear:
             + order.sin * math.sin(order.cycles * rotor_angle)
             for order in self.errors
         )
+
+    def _twist(self, torque: float) -> float:
+        """The twist of branches and shaft by a torque, rad: the interference for a preload."""
+        branches = sum(wind_up(springs, torque) for springs in self.springs)
+        return branches + torque / self.shaft_stiffness
+
+
+def spring_torque(springs: Sequence[Spring], distance: float) -> float:
+    """The torque of springs, N·m, at a distance from the dead band, rad, at least 0."""
+    return sum(
+        spring.stiffness * (distance - spring.beyond)
+        for spring in springs
+        if distance > spring.beyond
+    )
+
+
+def wind_up(springs: Sequence[Spring], torque: float) -> float:
+    """The distance from the dead band, rad, at which springs give a torque, N·m, at least 0."""
+    held = stiffness = 0.0
+    for spring, after in pairwise([*springs, Spring(math.inf, 0.0)]):
+        stiffness += spring.stiffness
+        distance = spring.beyond + (torque - held) / stiffness
+        if distance <= after.beyond:
+            break
+        held += stiffness * (after.beyond - spring.beyond)
+    return distance
