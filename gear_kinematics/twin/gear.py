@@ -182,11 +182,11 @@ class TwinGear:
 
 def spring_torque(springs: Sequence[Spring], distance: float) -> float:
     """The torque of springs, N·m, at a distance from the dead band, rad, at least 0."""
-    return sum(
-        spring.stiffness * (distance - spring.beyond)
-        for spring in springs
-        if distance > spring.beyond
-    )
+    torque = 0.0
+    for spring in springs:  # a sum of a generator takes twice as long
+        if distance > spring.beyond:
+            torque += spring.stiffness * (distance - spring.beyond)
+    return torque
 
 
 def wind_up(springs: Sequence[Spring], torque: float) -> float:

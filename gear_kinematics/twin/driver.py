@@ -1,0 +1,156 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The driver of a simulated motor, and the encoders at rotor and output.
+
+Position, speed and torque are a cascade. With the angle x and the speed v of the rotor, those
+commanded x_c, v_c and the torque M_c,
+
+    v_r = v_c + (ω/4)(x_c - x)          within the greatest speed
+    M = M_c + J [ω (v_r - v) + (ω²/8) ∫ (v_r - v) dt]          within the greatest torque
+
+J is the inertia of rotor and output at the rotor, so that ω is the bandwidth of the speed; the
+poles of the position are at -0.11 ω and (-0.44 ± 0.28 j) ω. The integral stands while the torque
+is at its limit.
+"""
+
+import math
+import random
+from typing import NamedTuple
+
+from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.twin.fast_model import inertias
+from gear_kinematics.twin.model import Model
+
+_PERIOD = 2e-4  # s, of the servo loop
+_SEED = 0
+
+
+class Command(NamedTuple):
+    """What a JointState asks of the motor, as the encoder counts; None: not commanded.
+
+    A position is held, with the velocity and the effort as feedforward. Without a position the
+    velocity is held, and without either the effort alone acts.
+    """
+
+    position: float | None
+    """rad."""
+    velocity: float | None
+    """rad/s."""
+    effort: float | None
+    """N·m."""
+
+
+class Driver:
+    """Moves a model by commands, and reads its encoders."""
+
+    def __init__(
+        self,
+        model: Model,
+        *,
+        max_torque: float,
+        bandwidth: float,
+        rotor_counts: int = 0,
+        output_counts: int = 0,
+        dropout: float = 0.0,
+    ) -> None:
+        """Switch the driver on; the rotor is free until the first command.
+
+        Args:
+            model: the gear, whose parameters have directions, zeros and the greatest speed.
+            max_torque: of the motor, N·m.
+            bandwidth: ω/2π, Hz, of the speed; less if the inertia of the output needs it.
+            rotor_counts: steps per turn of the encoder; 0: exact.
+            output_counts: the same of the output's encoder.
+            dropout: share of the messages that are not sent.
+        """
+        self.model = model
+        self.torque = 0.0
+        """Of the motor, N·m, or of what locks the rotor."""
+        self._max_torque = max_torque
+        self._counts = rotor_counts, output_counts
+        self._dropout, self._random = dropout, random.Random(_SEED)  # noqa: S311, no secret
+        self._parameters = model.gear.parameters
+        rotor, output = inertias(model.gear)
+        self._inertia = rotor + output / model.gear.ratio**2
+        # On short notice the torque moves the rotor alone, by at most half of the error in speed.
+        self._omega = min(TURN * bandwidth, 0.5 / _PERIOD * rotor / self._inertia)
+        self._origin = self._parameters.rotor_zero
+        """Position at rotor angle 0, rad."""
+        self.command: Command | None = None
+        """What is followed until the next one; None: the rotor is free."""
+        self._integral = 0.0  # of the error in speed, rad
+
+    def power_cycle(self) -> None:
+        """Switch off and on: the rotor is free, and one that counts turns counts from here on."""
+        self.command, self._integral = None, 0.0
+        if not self._parameters.single_turn:
+            self._origin = -self._parameters.rotor_direction * self.model.rotor_angle
+
+    def advance(self, duration: float, load_torque: float) -> None:
+        """Let time pass, s, with a torque on the output shaft from outside, N·m."""
+        model = self.model
+        steps = math.ceil(duration / _PERIOD - 1e-6)
+        period = duration / steps
+        for _ in range(steps):
+            self.torque = self._servo(period)
+            model.advance(period, self.torque, load_torque)
+        if model.rotor_locked:
+            self.torque = sum(model.branch_torques) / model.gear.ratio
+
+    def rotor(self) -> tuple[float, float, float]:
+        """Position (rad), velocity (rad/s) and effort (N·m) of the rotor as they are published."""
+        direction, wraps = self._parameters.rotor_direction, self._parameters.single_turn
+        position = self._origin + direction * self.model.rotor_angle
+        return (
+            _counted(position, self._counts[0], wraps=wraps),
+            direction * self.model.rotor_velocity,
+            direction * self.torque,
+        )
+
+    def output(self) -> tuple[float, float]:
+        """Position within a turn (rad) and velocity (rad/s) of the output."""
+        direction = self._parameters.output_encoder_direction
+        position = self._parameters.output_encoder_zero + direction * self.model.output_angle
+        return (
+            _counted(position, self._counts[1], wraps=True),
+            direction * self.model.output_velocity,
+        )
+
+    def drops(self) -> bool:
+        """Whether the next message is not sent; the same messages in each run."""
+        return self._random.random() < self._dropout
+
+    def _servo(self, period: float) -> float:
+        """The torque of the motor, N·m, for the next period, s."""
+        if self.command is None:
+            return 0.0
+        model, omega, fastest = self.model, self._omega, self._parameters.max_rotor_speed
+        direction = self._parameters.rotor_direction
+        position, velocity, effort = self.command
+        torque = direction * (effort or 0.0)
+        if position is None and velocity is None:
+            self._integral = 0.0
+            if abs(model.rotor_velocity) > fastest and torque * model.rotor_velocity > 0.0:
+                torque = 0.0
+            return _within(torque, self._max_torque)
+        speed = direction * (velocity or 0.0)
+        if position is not None:
+            angle = direction * (position - self._origin)
+            speed += 0.25 * omega * (angle - model.rotor_angle)
+        error = _within(speed, fastest) - model.rotor_velocity
+        integral = self._integral + period * error
+        torque += self._inertia * omega * (error + 0.125 * omega * integral)
+        if abs(torque) <= self._max_torque:
+            self._integral = integral
+        return _within(torque, self._max_torque)
+
+
+def _within(value: float, bound: float) -> float:
+    return max(-bound, min(value, bound))
+
+
+def _counted(position: float, counts: int, *, wraps: bool) -> float:
+    """A position as an encoder with so many counts per turn reads it; exact with 0."""
+    if not counts:
+        return position % TURN if wraps else position
+    count = round(position * counts / TURN)
+    return (count % counts if wraps else count) * TURN / counts

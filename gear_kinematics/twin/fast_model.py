@@ -1,0 +1,150 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""A model in plain floats: rotor and output shaft as two inertias, with the branches between them.
+
+    J2 φ2'' = motor torque - damping φ2' - Σ T_k/i        J5 φ5'' = load torque + Σ T_k - Σ F_j
+
+Satellites and couplings circle with the rotor and turn with the output. Arm A has no mass: the
+shaft is in series with the spring of its branch. A slider's friction F_j is a stop operator,
+F ← clip(F + stiffness · Δφ5, ±torque), which sticks and slides without a case for either.
+
+Velocities step before angles (the symplectic Euler method): oscillations on the springs neither
+grow nor die while their angular frequency stays below 2/h. Damping and sliders are implicit, one
+after another, and have no bound.
+"""
+
+import math
+from collections.abc import Sequence
+
+from gear_kinematics.kinematics import Mechanism, MechanismError
+from gear_kinematics.twin.gear import Spring, TwinGear, spring_torque
+
+_STEP = 1e-4  # h, s, at most
+_FASTEST = 1.0 / _STEP
+"""rad/s: half of the bound, where the period is 5 % too short."""
+_BRACED = 2  # branches, which have a shaft between their arms
+
+
+class FastModel:
+    """Implements `Model` without MuJoCo; it begins at rest, without load, at φ2 = 0.
+
+    Raises:
+        MechanismError: if the gear is too stiff for its inertias.
+    """
+
+    def __init__(self, gear: TwinGear) -> None:
+        self.rotor_angle = self.rotor_velocity = self.output_velocity = 0.0
+        self.output_angle = gear.error(0.0)
+        self.rotor_locked = self.output_locked = False
+        self._friction = [0.0] * len(gear.friction)
+        self.gear = gear
+
+    @property
+    def gear(self) -> TwinGear:
+        """The gear; one that replaces it has the same mechanism and as many sliders."""
+        return self._gear
+
+    @gear.setter
+    def gear(self, gear: TwinGear) -> None:
+        springs = [*gear.springs]
+        if len(springs) == _BRACED:
+            springs[0] = in_series(springs[0], gear.shaft_stiffness)
+        self._ratio = gear.ratio
+        self._rotor_inertia, self._output_inertia = inertias(gear)
+        reduced = self._ratio**2 * self._rotor_inertia
+        stiffness = sum(map(_greatest_stiffness, springs))
+        frequency = math.sqrt(stiffness / reduced + stiffness / self._output_inertia)
+        if frequency > _FASTEST:
+            raise MechanismError(
+                [
+                    f'rotor and output would oscillate at {frequency:.0f} rad/s, and the fast '
+                    f'model follows {_FASTEST:.0f} rad/s: give them more inertia'
+                ]
+            )
+        self._branches = [*zip(gear.dead_bands, springs, strict=True)]
+        self._gear = gear
+        self.branch_torques = self._torques(self.rotor_angle, self.output_angle)
+
+    def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
+        """Let time pass; see `Model`."""
+        steps = math.ceil(duration / _STEP - 1e-6)
+        h = duration / steps
+        rotor_gain = 0.0 if self.rotor_locked else h / self._rotor_inertia
+        output_gain = 0.0 if self.output_locked else h / self._output_inertia
+        damped = 1.0 + rotor_gain * self._gear.rotor_damping
+        ratio, friction = self._ratio, self._friction
+        # What a slider's force grows by, for each rad/s of the output without it.
+        sliders = [
+            (number, 1.0 / (1.0 / (h * each.stiffness) + output_gain), each.torque)
+            for number, each in enumerate(() if self.output_locked else self._gear.friction)
+        ]
+        rotor, output = self.rotor_angle, self.output_angle
+        rotor_velocity = 0.0 if self.rotor_locked else self.rotor_velocity
+        output_velocity = 0.0 if self.output_locked else self.output_velocity
+        torques = self.branch_torques
+        for _ in range(steps):
+            torque = sum(torques)
+            rotor_velocity += rotor_gain * (rotor_torque - torque / ratio)
+            rotor_velocity /= damped
+            output_velocity += output_gain * (load_torque + torque - sum(friction))
+            for number, growth, most in sliders:
+                before = friction[number]
+                force = friction[number] = max(
+                    -most, min(before + growth * output_velocity, most)
+                )
+                output_velocity -= output_gain * (force - before)
+            rotor += h * rotor_velocity
+            output += h * output_velocity
+            torques = self._torques(rotor, output)
+        self.rotor_angle, self.rotor_velocity = rotor, rotor_velocity
+        self.output_angle, self.output_velocity = output, output_velocity
+        self.branch_torques = torques
+
+    def _torques(self, rotor: float, output: float) -> tuple[float, ...]:
+        """T_k, N·m, of all branches."""
+        wind_up = rotor / self._ratio - output
+        if self._gear.errors:
+            wind_up += self._gear.error(rotor)
+        torques = []
+        for (low, high), springs in self._branches:
+            if wind_up > high:
+                torques.append(spring_torque(springs, wind_up - high))
+            elif wind_up < low:
+                torques.append(-spring_torque(springs, low - wind_up))
+            else:
+                torques.append(0.0)
+        return tuple(torques)
+
+
+def inertias(gear: TwinGear) -> tuple[float, float]:
+    """J2 and J5, kg·m²: of what circles with the rotor, and of what turns with the output.
+
+    A coupling's centre moves by (e/2)[n(θ) + κ n(2 φ5 - θ)] φ2' with κ = 2/i - 1: the mean over a
+    turn counts.
+    """
+    bodies, ring = gear.parameters.loads, gear.parameters.gear
+    if not isinstance(ring, Mechanism):
+        return bodies.rotor_inertia, gear.output_inertia
+    count, e = len(ring.branches), ring.eccentricity
+    kappa = 2.0 / gear.ratio - 1.0
+    circling = bodies.satellite_mass + 0.25 * (1.0 + kappa**2) * bodies.coupling_mass
+    turning = bodies.satellite_inertia + bodies.coupling_inertia
+    return bodies.rotor_inertia + count * e**2 * circling, gear.output_inertia + count * turning
+
+
+def in_series(springs: Sequence[Spring], stiffness: float) -> tuple[Spring, ...]:
+    """The springs of a branch behind a shaft: where each begins moves by the twist of the shaft."""
+    found, before, total = [], 0.0, 0.0
+    for spring in springs:
+        total += spring.stiffness
+        both = 1.0 / (1.0 / total + 1.0 / stiffness)
+        twist = spring_torque(springs, spring.beyond) / stiffness
+        found.append(Spring(spring.beyond + twist, both - before))
+        before = both
+    return tuple(found)
+
+
+def _greatest_stiffness(springs: Sequence[Spring]) -> float:
+    total = [0.0]
+    for spring in springs:
+        total.append(total[-1] + spring.stiffness)
+    return max(total)
