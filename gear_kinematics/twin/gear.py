@@ -20,7 +20,7 @@ All signs are the opposite if branch A pushes the output in the negative directi
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -74,6 +74,24 @@ class TwinGear:
     """N·m·s/rad."""
     output_inertia: float
     """kg·m²."""
+    ratio: float = field(init=False)
+    """i, signed."""
+    preload: float = field(init=False)
+    """T0, N·m, of two branches; negative if branch A pushes in the negative direction."""
+    dead_bands: tuple[tuple[float, float], ...] = field(init=False)
+    """Least and greatest x_k without torque, for each branch, rad."""
+
+    def __post_init__(self) -> None:
+        """Place the dead bands."""
+        braced = len(self.springs) == 2  # noqa: PLR2004, A and B
+        torque = self._torque_by_twist(self.interference) if braced else 0.0
+        derived = {
+            'ratio': float(self.parameters.gear.gear_ratio),
+            'preload': math.copysign(torque, self.parameters.preload),
+            'dead_bands': self._braced_bands(torque) if braced else self._free_bands(),
+        }
+        for name, value in derived.items():
+            object.__setattr__(self, name, value)
 
     @classmethod
     def load(cls, config: Path, node: str = NODE, calibration: Path | None = None) -> Self:
@@ -123,37 +141,6 @@ class TwinGear:
         braced(parameters.mechanism)
         return replace(made, interference=made._twist(abs(preload)))
 
-    @property
-    def ratio(self) -> float:
-        """i, signed."""
-        return float(self.parameters.gear.gear_ratio)
-
-    @property
-    def preload(self) -> float:
-        """T0, N·m, of two branches; negative if branch A pushes in the negative direction."""
-        if len(self.springs) != 2 or self.interference <= 0.0:  # noqa: PLR2004, A and B
-            return 0.0
-        ends = {
-            spring_torque(springs, spring.beyond) for springs in self.springs for spring in springs
-        }
-        # Beyond all ends, the twist grows at least as fast as by the stiffest branch alone.
-        stiffest = max(sum(spring.stiffness for spring in springs) for springs in self.springs)
-        torques = [*sorted(ends), max(ends) + stiffest * self.interference]
-        torque = np.interp(self.interference, [*map(self._twist, torques)], torques)
-        return math.copysign(float(torque), self.parameters.preload)
-
-    @property
-    def dead_bands(self) -> tuple[tuple[float, float], ...]:
-        """Least and greatest x_k without torque, for each branch, rad."""
-        if len(self.springs) != 2:  # noqa: PLR2004, A and B
-            return ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
-        low_b = wind_up(self.springs[1], abs(self.preload)) + min(0.5 * self.interference, 0.0)
-        high_a = low_b - self.interference
-        band_a, band_b = (high_a - self.play, high_a), (low_b, low_b + self.play)
-        if self.parameters.preload < 0.0:
-            return (-high_a, -band_a[0]), (-band_b[1], -low_b)
-        return band_a, band_b
-
     def branch_torque(self, branch: int, angle: float) -> float:
         """T_k, N·m, of a branch wound up by the angle x_k, rad."""
         low, high = self.dead_bands[branch]
@@ -169,10 +156,33 @@ class TwinGear:
     def error(self, rotor_angle: float) -> float:
         """The deviation of the output angle, rad."""
         return math.fsum(
-            order.cos * math.cos(order.cycles * rotor_angle)
-            + order.sin * math.sin(order.cycles * rotor_angle)
+            order.cos * math.cos(float(order.cycles) * rotor_angle)
+            + order.sin * math.sin(float(order.cycles) * rotor_angle)
             for order in self.errors
         )
+
+    def _free_bands(self) -> tuple[tuple[float, float], ...]:
+        return ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
+
+    def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:
+        low_b = wind_up(self.springs[1], torque) + min(0.5 * self.interference, 0.0)
+        high_a = low_b - self.interference
+        bands = (high_a - self.play, high_a), (low_b, low_b + self.play)
+        if self.parameters.preload < 0.0:
+            return tuple((-high, -low) for low, high in bands)
+        return bands
+
+    def _torque_by_twist(self, twist: float) -> float:
+        """The torque that a twist of branches and shaft, rad, gives: T0 for the interference."""
+        if twist <= 0.0:
+            return 0.0
+        ends = {
+            spring_torque(springs, spring.beyond) for springs in self.springs for spring in springs
+        }
+        # Beyond all ends, the twist grows at least as fast as that of the stiffest branch alone.
+        stiffest = max(sum(spring.stiffness for spring in springs) for springs in self.springs)
+        torques = [*sorted(ends), max(ends) + stiffest * twist]
+        return float(np.interp(twist, [*map(self._twist, torques)], torques))
 
     def _twist(self, torque: float) -> float:
         """The twist of branches and shaft by a torque, rad: the interference for a preload."""
