@@ -87,6 +87,7 @@ setup(
     entry_points={
         'console_scripts': [
             f'gear_state_publisher = {PACKAGE}.__main__:gear_state_publisher',
+            f'gear_simulator = {PACKAGE}.__main__:gear_simulator',
             f'gearkin = {PACKAGE}.__main__:gearkin',
         ],
     },

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The entry points of both programs, which handle signals before slow imports.
+"""The entry points of the programs, which handle signals before slow imports.
 
 Otherwise a signal during the import of ROS or numpy would raise KeyboardInterrupt somewhere in it,
 which ends in a traceback or is even ignored.
@@ -13,6 +13,7 @@ from collections.abc import Callable, Collection
 from itertools import takewhile
 from math import inf
 from types import FrameType
+from typing import Any
 
 from gear_kinematics.ros.workarounds.shared_memory import SharedMemoryError, check_shared_memory
 
@@ -21,9 +22,9 @@ _INTERRUPTED = 130
 _UNUSABLE = 2
 """Exit code: the program lacks a package or memory."""
 _NODE_HELP = """\
-usage: gear_state_publisher [--help] [--version] [--ros-args ...]
+usage: {program} [--help] [--version] [--ros-args ...]
 
-Publish the output angle and the body poses for every message on rotor_state.
+{purpose}
 
 options:
   -h, --help       show this help and exit
@@ -45,21 +46,25 @@ _RETRY = 0.01
 def gear_state_publisher() -> int:
     """Run the node; returns the exit code, which is 0 after a signal."""
 
-    def load() -> Callable[[], int]:
-        own = list(takewhile('--ros-args'.__ne__, sys.argv[1:]))
-        if '-h' in own or '--help' in own:
-            return lambda: _answer(_NODE_HELP)
-        if '--version' in own:
-            from gear_kinematics.share import version  # noqa: PLC0415, imports pathlib
+    def node() -> Any:
+        from gear_kinematics.ros.node import GearStatePublisher  # noqa: PLC0415, slow
 
-            return lambda: _answer(f'gear_state_publisher {version()}\n')
-        if warning := check_shared_memory():
-            print(f'gear_state_publisher: {warning}', file=sys.stderr)
-        from gear_kinematics.ros.process import main  # noqa: PLC0415, slow
+        return GearStatePublisher
 
-        return main
+    purpose = 'Publish the output angle and the body poses for every message on rotor_state.'
+    return _run_node('gear_state_publisher', purpose, node)
 
-    return _run('gear_state_publisher', load, interrupted=0, stop_signals=_STOP_SIGNALS)
+
+def gear_simulator() -> int:
+    """Run the actuator without hardware; returns the exit code, which is 0 after a signal."""
+
+    def node() -> Any:
+        from gear_kinematics.ros.simulator import GearSimulator  # noqa: PLC0415, slow
+
+        return GearSimulator
+
+    purpose = 'Move a simulated gear by rotor_command and load_torque, and publish its encoders.'
+    return _run_node('gear_simulator', purpose, node)
 
 
 def gearkin() -> int:
@@ -81,6 +86,27 @@ def gearkin() -> int:
         return main
 
     return _run('gearkin', load, interrupted=_INTERRUPTED, stop_signals=heeded)
+
+
+def _run_node(program: str, purpose: str, node: Callable[[], Any]) -> int:
+    """Run the node of a class that a function imports."""
+
+    def load() -> Callable[[], int]:
+        own = list(takewhile('--ros-args'.__ne__, sys.argv[1:]))
+        if '-h' in own or '--help' in own:
+            return lambda: _answer(_NODE_HELP.format(program=program, purpose=purpose))
+        if '--version' in own:
+            from gear_kinematics.share import version  # noqa: PLC0415, imports pathlib
+
+            return lambda: _answer(f'{program} {version()}\n')
+        if warning := check_shared_memory():
+            print(f'{program}: {warning}', file=sys.stderr)
+        from gear_kinematics.ros.process import main  # noqa: PLC0415, slow
+
+        node_type = node()
+        return lambda: main(node_type, program)
+
+    return _run(program, load, interrupted=0, stop_signals=_STOP_SIGNALS)
 
 
 def _run(

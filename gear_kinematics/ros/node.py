@@ -25,13 +25,12 @@ from gear_kinematics.correction.transmission_error import ErrorSample
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import NODE, PARAMETERS, NodeParameters
 from gear_kinematics.parameters.files import require_any
-from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
 from gear_kinematics.ros.diagnostics import diagnostic_array, find_faults
 from gear_kinematics.ros.display import Display
 from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
 from gear_kinematics.ros.missing_publisher import MissingPublisher
-from gear_kinematics.ros.node_parameters import declare, fault_of
+from gear_kinematics.ros.node_parameters import declared, fault_of
 from gear_kinematics.ros.outputs import Outputs
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.loads import Loads, PreloadMonitor
@@ -65,15 +64,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         super().__init__(NODE, **options)
         self._files = require_any(parameter_files, self.get_fully_qualified_name())
         self.add_on_set_parameters_callback(self._check_parameters)
-        declare(self, PARAMETERS)
-        branches = self.get_parameter('branches').value
-        declare(self, branch_parameters(branches))
-        # rclpy ignores undeclared parameters, and has no public access to them.
-        given = getattr(self, '_parameter_overrides', ())
-        if faults := unknown_parameters(given, branches):
-            raise ValueError('; '.join(faults))
-        values = {name: p.value for name, p in self.get_parameters_by_prefix('').items()}
-        parameters = NodeParameters.of(values)
+        parameters = NodeParameters.of(declared(self))
         if home_file := self._file(parameters.home_file):
             home_file = home_file.absolute()
             parameters = restored(self, home_file, parameters)

@@ -1,22 +1,56 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Declares the parameters of the node to ROS, and finds faults that rclpy does not."""
+"""Declares the parameters of a node to ROS, and finds faults that rclpy does not."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import Any
 
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from gear_kinematics.parameters import PARAMETERS, default_value
+from gear_kinematics.parameters.node_parameters import branch_parameters, unknown_parameters
 from gear_kinematics.parameters.parameter import Parameter as Declaration
 
 _QOS_DEPTH = re.compile(r'qos_overrides\..+\.depth')
 _MAX_DEPTH = 2**31 - 1  # messages; the middleware counts them in 32 bits
 
 
-def declare(node: Node, parameters: Mapping[str, Declaration]) -> None:
-    """Declare parameters of a node, by name, with their default values."""
+def declared(
+    node: Node,
+    others: Mapping[str, Declaration] = MappingProxyType({}),
+    default: Callable[[str], Any] = default_value,
+) -> dict[str, Any]:
+    """Declare the parameters of a node, by name, with their default values.
+
+    Args:
+        node: the node.
+        others: those that it has beside `PARAMETERS` and those of its branches.
+        default: gives a default value by name.
+
+    Returns:
+        The values by name.
+
+    Raises:
+        ParameterException: if a value has a wrong type, or is refused.
+        ValueError: if a parameter that the node does not have was given.
+    """
+    _declare(node, PARAMETERS, default)
+    branches = node.get_parameter('branches').value
+    _declare(node, branch_parameters(branches), default)
+    _declare(node, others, default)
+    # rclpy ignores undeclared parameters, and has no public access to them.
+    given = getattr(node, '_parameter_overrides', ())
+    if faults := unknown_parameters(given, branches, others):
+        raise ValueError('; '.join(faults))
+    return {name: p.value for name, p in node.get_parameters_by_prefix('').items()}
+
+
+def _declare(
+    node: Node, parameters: Mapping[str, Declaration], default: Callable[[str], Any]
+) -> None:
     for name, parameter in parameters.items():
         descriptor = ParameterDescriptor(
             description=parameter.description,
@@ -28,13 +62,13 @@ def declare(node: Node, parameters: Mapping[str, Declaration]) -> None:
             descriptor.integer_range = [IntegerRange(**bounds, step=parameter.step)]
         elif parameter.kind is float:
             descriptor.floating_point_range = [FloatingPointRange(**bounds)]
-        node.declare_parameter(name, default_value(name), descriptor)
+        node.declare_parameter(name, default(name), descriptor)
 
 
-def fault_of(parameter: Parameter) -> str | None:
+def fault_of(parameter: Parameter, known: Mapping[str, Declaration] = PARAMETERS) -> str | None:
     """Return the fault of a value of the right type and range, or None."""
-    known = PARAMETERS.get(parameter.name)
-    if known and (fault := known.other_fault(parameter.name, parameter.value)):
+    declaration = known.get(parameter.name)
+    if declaration and (fault := declaration.other_fault(parameter.name, parameter.value)):
         return fault
     if _QOS_DEPTH.fullmatch(parameter.name) and not 0 <= parameter.value <= _MAX_DEPTH:
         return f'{parameter.name} must be between 0 and {_MAX_DEPTH}'

@@ -1,14 +1,15 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The process of the node: executor, signals and shutdown."""
+"""The process of a node: executor, signals and shutdown."""
 
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from itertools import pairwise
 from pathlib import Path
 from threading import Event, Thread
+from typing import Any
 
 import rclpy
 from rclpy.exceptions import ParameterException
@@ -17,7 +18,6 @@ from rclpy.impl.implementation_singleton import rclpy_implementation
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
-from gear_kinematics.ros.node import GearStatePublisher
 from gear_kinematics.ros.workarounds.executor import ENDLESS, make_executor
 from gear_kinematics.ros.workarounds.fastdds_profile import use_profile
 from gear_kinematics.ros.workarounds.shutdown import shut_down
@@ -27,19 +27,25 @@ _DELIVERY_TIMEOUT = 0.1  # s to deliver outputs; some subscribers acknowledge on
 _UNUSABLE = 2  # exit code: unusable parameters or arguments
 
 
-def main() -> int:
-    """Run the node until SIGINT or SIGTERM; returns the exit code."""
+def main(make_node: Callable[..., Any], program: str) -> int:
+    """Run a node until SIGINT or SIGTERM; returns the exit code.
+
+    Args:
+        make_node: makes it with `parameter_files`; it has a parameter `executor`, and
+            `wait_for_delivery`.
+        program: the name of the program.
+    """
     signals = _caught_signals()
     try:
         use_profile()
         rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
         files = [Path(file) for option, file in pairwise(sys.argv) if option == '--params-file']
-        node = GearStatePublisher(parameter_files=files)
+        node = make_node(parameter_files=files)
         executor = make_executor(node.get_parameter('executor').value)
     except (ParameterException, ValueError, RuntimeError) as error:
         unknown = isinstance(error, rclpy_implementation.UnknownROSArgsError)
         cause = 'unknown arguments ' if unknown else ''
-        print(f'gear_state_publisher: {cause}{error}', file=sys.stderr)
+        print(f'{program}: {cause}{error}', file=sys.stderr)
         rclpy.try_shutdown()
         return _UNUSABLE
     executor.add_node(node)

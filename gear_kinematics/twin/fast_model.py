@@ -54,12 +54,9 @@ class FastModel:
         stiffness = sum(map(_greatest_stiffness, springs))
         frequency = math.sqrt(stiffness / reduced + stiffness / self._output_inertia)
         if frequency > _FASTEST:
-            raise MechanismError(
-                [
-                    f'rotor and output would oscillate at {frequency:.0f} rad/s, and the fast '
-                    f'model follows {_FASTEST:.0f} rad/s: give them more inertia'
-                ]
-            )
+            fault = f'rotor and output would oscillate at {frequency:.0f} rad/s; the fast model '
+            fault += f'follows {_FASTEST:.0f} rad/s: give them more inertia or less stiffness'
+            raise MechanismError([fault])
         self._branches = [*zip(gear.dead_bands, springs, strict=True)]
         self._gear = gear
         self.branch_torques = self._torques(self.rotor_angle, self.output_angle)
@@ -88,9 +85,7 @@ class FastModel:
             output_velocity += output_gain * (load_torque + torque - sum(friction))
             for number, growth, most in sliders:
                 before = friction[number]
-                force = friction[number] = max(
-                    -most, min(before + growth * output_velocity, most)
-                )
+                force = friction[number] = max(-most, min(before + growth * output_velocity, most))
                 output_velocity -= output_gain * (force - before)
             rotor += h * rotor_velocity
             output += h * output_velocity
@@ -132,7 +127,7 @@ def inertias(gear: TwinGear) -> tuple[float, float]:
 
 
 def in_series(springs: Sequence[Spring], stiffness: float) -> tuple[Spring, ...]:
-    """The springs of a branch behind a shaft: where each begins moves by the twist of the shaft."""
+    """The springs of a branch behind a shaft, whose twist adds to where each of them begins."""
     found, before, total = [], 0.0, 0.0
     for spring in springs:
         total += spring.stiffness

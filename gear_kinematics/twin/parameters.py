@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from gear_kinematics import parameters
 from gear_kinematics.parameters import ConfigError, NodeParameters
 from gear_kinematics.parameters.files import given_parameters
 from gear_kinematics.parameters.parameter import Parameter
@@ -29,6 +30,29 @@ PARAMETERS: Mapping[str, Parameter] = {
     'output_inertia': Parameter(
         'Inertia of the output shaft and of what it moves, kg·m²', 1e-9, 1e9, read_only=True
     ),
+    'model': Parameter(
+        'What computes the motion; auto: mujoco if it is installed',
+        choices=('auto', 'mujoco', 'fast'),
+        kind=str,
+        read_only=True,
+    ),
+    'rate': Parameter('Rate of rotor_state and output_encoder, Hz', 1.0, 5000.0, read_only=True),
+    'max_rotor_torque': Parameter(
+        'Greatest torque of the motor, N·m; max_rotor_speed bounds what is commanded, too',
+        *(0.0, 1e6),
+        read_only=True,
+    ),
+    'bandwidth': Parameter(
+        "Bandwidth of the speed loop of the motor's driver, Hz", 0.1, 200.0, read_only=True
+    ),
+    'rotor_counts': Parameter(
+        'Steps per turn of the encoder of the rotor; 0: exact', 0, 2**31, kind=int, read_only=True
+    ),
+    'output_counts': Parameter(
+        "Steps per turn of the output's encoder; 0: exact", 0, 2**31, kind=int, read_only=True
+    ),
+    'dropout': Parameter('Share of the messages that are not sent', 0.0, 1.0, read_only=True),
+    'wear': Parameter('What ~/wear takes off the flanks, rad at the output', 0.0, 1.0),
 }
 """Those that only a simulated actuator has, by their names in ROS."""
 
@@ -44,8 +68,9 @@ def _default_values() -> Mapping[str, Any]:
 
 
 def default_value(name: str) -> Any:
-    """The default of one of `PARAMETERS`, from config/simulated_actuator.yaml."""
-    return _default_values()[name]
+    """A default from config/simulated_actuator.yaml, else that of gear_state_publisher."""
+    values = _default_values()
+    return values[name] if name in values else parameters.default_value(name)
 
 
 def load(path: Path, node: str = NODE) -> tuple[NodeParameters, dict[str, Any]]:
@@ -57,10 +82,10 @@ def load(path: Path, node: str = NODE) -> tuple[NodeParameters, dict[str, Any]]:
     Raises:
         ConfigError: as `NodeParameters.load`.
     """
-    parameters = NodeParameters.load(path, node, PARAMETERS)
+    shared = NodeParameters.load(path, node, PARAMETERS)
     given = given_parameters(path, node)
     values = {name: given.get(name, default_value(name)) for name in PARAMETERS}
     faults = (PARAMETERS[name].fault(name, value) for name, value in values.items())
     if found := [fault for fault in faults if fault]:
         raise ConfigError(f'{path}: {"; ".join(found)}')
-    return parameters, values
+    return shared, values

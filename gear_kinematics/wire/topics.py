@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The topics of the node: the only place where their names and types are written.
+"""The topics of the nodes: the only place where their names and types are written.
 
 Names are relative to the namespace of the node, unless they begin with a slash.
 """
@@ -24,6 +24,9 @@ JOINT_LOADS = 'joint_loads'
 ROBOT_DESCRIPTION = 'robot_description'
 MARKERS = 'markers'
 DIAGNOSTICS = '/diagnostics'
+
+ROTOR_COMMAND = 'rotor_command'
+LOAD_TORQUE = 'load_torque'
 
 
 class NodeTopic(NamedTuple):
@@ -52,7 +55,7 @@ TOPICS: Mapping[str, NodeTopic] = {
     MARKERS: NodeTopic('visualization_msgs/msg/MarkerArray', 'display', 'node'),
     DIAGNOSTICS: NodeTopic('diagnostic_msgs/msg/DiagnosticArray', 'health', 'node'),
 }
-"""All topics by name."""
+"""All topics of gear_state_publisher by name."""
 
 STATE_TOPICS: Mapping[str, str] = {
     name: topic.type for name, topic in TOPICS.items() if topic.part == 'state'

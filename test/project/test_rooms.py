@@ -90,6 +90,7 @@ ROOMS = {
         'parameters',
         'shape',
         'state',
+        'twin',
         'validation',
         'wire',
     ),

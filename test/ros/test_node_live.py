@@ -390,7 +390,8 @@ def test_unusable_arguments_end_the_start_with_2_and_one_line(tmp_path, argument
 
 
 def test_node_imports_nothing_heavy():
-    code = 'import sys, gear_kinematics.ros.process; print(*sorted(sys.modules))'
+    modules = 'gear_kinematics.ros.node, gear_kinematics.ros.process'
+    code = f'import sys, {modules}; print(*sorted(sys.modules))'
     done = subprocess.run(
         [sys.executable, '-c', code], check=True, capture_output=True, text=True, timeout=30.0
     )

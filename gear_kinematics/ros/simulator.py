@@ -1,0 +1,233 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The node gear_simulator: an actuator without hardware, in real time."""
+
+import math
+import struct
+import time
+from collections.abc import Collection
+from pathlib import Path
+from typing import Any
+
+from rcl_interfaces.msg import SetParametersResult
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, Trigger
+
+from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
+from gear_kinematics.parameters.files import require_any
+from gear_kinematics.ros.drivers import DEPTH
+from gear_kinematics.ros.node_parameters import declared, fault_of
+from gear_kinematics.ros.outputs import Outputs
+from gear_kinematics.twin import parameters as twin
+from gear_kinematics.twin.driver import Command, Driver
+from gear_kinematics.twin.fast_model import FastModel
+from gear_kinematics.twin.gear import TwinGear
+from gear_kinematics.twin.model import Model
+from gear_kinematics.wire import topics
+from gear_kinematics.wire.cdr import (
+    SECOND,
+    JointStateTemplate,
+    MalformedMessageError,
+    joint_index,
+    joint_state_layout,
+)
+from gear_kinematics.wire.joint_reader import MALFORMED, describe_missing
+
+_MOST_LATE = SECOND // 2  # ns of real time that are made up for
+_WARNING_PERIOD = 1.0  # s
+
+
+class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
+    """Moves a simulated gear, and publishes its encoders as drivers do."""
+
+    def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
+        """Declare the parameters, open the topics and begin.
+
+        Raises:
+            ParameterException: if a parameter is refused.
+            ValueError: if the parameters describe no gear that can be simulated, one is unknown,
+                or the files have none for this node.
+        """
+        super().__init__(twin.NODE, **options)
+        files = require_any(parameter_files, self.get_fully_qualified_name())
+        self.add_on_set_parameters_callback(_check_parameters)
+        # What a file leaves out is as in gear_state_publisher with that file.
+        shared = default_value if parameter_files else twin.default_value
+        values = declared(
+            self,
+            twin.PARAMETERS,
+            lambda name: (twin.default_value if name in twin.PARAMETERS else shared)(name),
+        )
+        parameters = NodeParameters.of(values)
+        calibration = parameters.calibration
+        gear = TwinGear.of(parameters, values, files.get(calibration))
+        self._model = _make_model(values['model'], gear)
+        self._driver = Driver(
+            self._model,
+            max_torque=values['max_rotor_torque'],
+            bandwidth=values['bandwidth'],
+            rotor_counts=values['rotor_counts'],
+            output_counts=values['output_counts'],
+            dropout=values['dropout'],
+        )
+        self._joint, self._load = parameters.rotor_joint, 0.0
+        self._period = round(SECOND / values['rate'])
+        self._next_warning = 0.0
+        self._rotor = JointStateTemplate([self._joint or 'rotor'], velocity=True, effort=True)
+        output = parameters.output_encoder_joint or parameters.output_joint
+        self._output = JointStateTemplate([output], velocity=True, effort=False)
+        self._outputs = Outputs(self, lambda _: None, self._note_unsent)
+        for topic in (topics.ROTOR_STATE, topics.OUTPUT_ENCODER):
+            self._outputs.create(topic, JointState, QoSProfile(depth=DEPTH))
+        qos = QoSProfile(depth=DEPTH)
+        self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos, raw=True)
+        self.create_subscription(Float64, topics.LOAD_TORQUE, self._on_load, qos)
+        for name, service, answer in (
+            ('~/lock_output', SetBool, self._lock_output),
+            ('~/lock_rotor', SetBool, self._lock_rotor),
+            ('~/power_cycle', Trigger, self._power_cycle),
+            ('~/wear', Trigger, self._wear),
+        ):
+            self.create_service(service, name, answer)
+        self.get_logger().info(
+            f'simulating a gear of ratio {parameters.gear.gear_ratio} with '
+            f'{type(self._model).__name__} at {values["rate"]:g} Hz'
+        )
+        self._due = time.monotonic_ns() + self._period
+        """When the next state is due, ns of a steady clock."""
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(self._period / SECOND, self._step, clock=steady)
+
+    def wait_for_delivery(self, timeout: float) -> None:
+        """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
+        self._outputs.wait_for_delivery(timeout)
+
+    def _step(self) -> None:
+        """Let the time pass that has passed, and publish the states of it."""
+        now = time.monotonic_ns()
+        late = now - self._due
+        if late > _MOST_LATE:
+            self._warn(f'{late / SECOND:.2f} s behind real time, which are left out: '
+                       'the processor is busy, or the rate is too high')  # fmt: skip
+            self._due += late
+        # The moment of a state in the node's clock, which may be a simulated one.
+        offset = self.get_clock().now().nanoseconds - now
+        while self._due <= now:
+            self._driver.advance(self._period / SECOND, self._load)
+            stamp = max(self._due + offset, 0)
+            position, velocity, effort = self._driver.rotor()
+            rotor = self._rotor.encode(stamp, [position], [velocity], [effort])
+            position, velocity = self._driver.output()
+            output = self._output.encode(stamp, [position], [velocity])
+            messages = (topics.ROTOR_STATE, rotor), (topics.OUTPUT_ENCODER, output)
+            self._outputs.send(message for message in messages if not self._driver.drops())
+            self._due += self._period
+
+    def _on_command(self, data: bytes) -> None:
+        try:
+            self._driver.command = read_command(data, self._joint)
+        except ValueError as error:
+            self._warn(f'{topics.ROTOR_COMMAND} rejected: {error}')
+
+    def _on_load(self, message: Float64) -> None:
+        if math.isfinite(message.data):
+            self._load = message.data
+        else:
+            self._warn(f'{topics.LOAD_TORQUE} rejected: {message.data} is not finite')
+
+    def _lock_output(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        self._model.output_locked = request.data
+        return _told(response, f'the output shaft is {_locked(request.data)}')
+
+    def _lock_rotor(
+        self, request: SetBool.Request, response: SetBool.Response
+    ) -> SetBool.Response:
+        self._model.rotor_locked = request.data
+        return _told(response, f'the rotor is {_locked(request.data)}')
+
+    def _power_cycle(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._driver.power_cycle()
+        position, *_ = self._driver.rotor()
+        counts = f'the driver is on again, the rotor is free and at {position:.3f} rad'
+        return _told(response, counts)
+
+    def _wear(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        angle = self.get_parameter('wear').value
+        gear = self._model.gear = self._model.gear.worn(angle)
+        left = f'a preload of {gear.preload:.2f} N·m is left'
+        if not gear.preload:
+            left = f'the output has a play of {1e3 * -gear.interference:.2f} mrad'
+        return _told(response, f'the flanks wore off by {1e3 * angle:.2f} mrad: {left}')
+
+    def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
+        self._warn(f'{publisher.topic_name} not sent: {error}')
+
+    def _warn(self, text: str) -> None:
+        if time.monotonic() >= self._next_warning:
+            self.get_logger().warning(text)
+            self._next_warning = time.monotonic() + _WARNING_PERIOD
+
+
+def read_command(data: bytes, joint: str) -> Command:
+    """Read a serialised JointState; values that are absent or not finite are not commanded.
+
+    Raises:
+        ValueError: if it commands nothing of the joint.
+    """
+    try:
+        layout = joint_state_layout(data)
+    except MalformedMessageError as error:
+        raise ValueError(MALFORMED) from error
+    index = joint_index(layout, joint.encode())
+    if index is None:
+        raise ValueError(describe_missing(joint, data))
+    values = [
+        struct.unpack_from(f'{layout.order}d', data, offset + 8 * index)[0]
+        if index < count
+        else math.nan
+        for offset, count in layout.arrays
+    ]
+    if not any(map(math.isfinite, values)):
+        raise ValueError('neither position, velocity nor effort is finite')
+    return Command(*(value if math.isfinite(value) else None for value in values))
+
+
+def _make_model(kind: str, gear: TwinGear) -> Model:
+    """Make the model that the parameter `model` selects; ValueError if it cannot be made."""
+    if kind == 'fast':
+        return FastModel(gear)
+    try:
+        from gear_kinematics.twin.mujoco_model import MujocoModel  # noqa: PLC0415, an extra
+
+        return MujocoModel(gear)
+    except ImportError:
+        if kind == 'mujoco':
+            raise ValueError('model: there is no MuJoCo: pip install mujoco') from None
+    except MechanismError:
+        if kind == 'mujoco':
+            raise
+    return FastModel(gear)
+
+
+def _check_parameters(changed: list[Parameter]) -> SetParametersResult:
+    """Refuse values that are invalid beyond type and range, which rclpy checks."""
+    known = {**PARAMETERS, **twin.PARAMETERS}
+    reason = next(filter(None, (fault_of(parameter, known) for parameter in changed)), '')
+    return SetParametersResult(successful=not reason, reason=reason)
+
+
+def _told(response: Any, message: str) -> Any:
+    response.success, response.message = True, message
+    return response
+
+
+def _locked(locked: bool) -> str:  # noqa: FBT001
+    return 'locked' if locked else 'free'
