@@ -74,7 +74,7 @@ def to_stl(solid: Solid) -> bytes:
     Raises:
         ModuleNotFoundError: if the extra `mesh` is not installed.
     """
-    corners = _triangles(solid)
+    corners = triangles(solid)
     first, second, third = corners.astype(np.float64).swapaxes(0, 1)
     normals = np.cross(second - first, third - first)
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
@@ -85,7 +85,7 @@ def to_stl(solid: Solid) -> bytes:
     return STL_HEADER.ljust(80) + np.uint32(len(corners)).tobytes() + records.tobytes()
 
 
-def _triangles(solid: Solid) -> Triangles:
+def triangles(solid: Solid) -> Triangles:
     """The surface: the face at either end, and walls on those edges that a face has only once.
 
     So the surface is closed however the faces were divided.

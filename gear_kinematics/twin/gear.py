@@ -21,7 +21,7 @@ All signs are the opposite if branch A pushes the output in the negative directi
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -32,6 +32,8 @@ from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import braced
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.parameters import NODE, load
+
+_BRACED = 2  # branches, which have a shaft between their arms
 
 
 class Spring(NamedTuple):
@@ -83,7 +85,7 @@ class TwinGear:
 
     def __post_init__(self) -> None:
         """Place the dead bands."""
-        braced = len(self.springs) == 2  # noqa: PLR2004, A and B
+        braced = len(self.springs) == _BRACED
         torque = self._torque_by_twist(self.interference) if braced else 0.0
         derived = {
             'ratio': float(self.parameters.gear.gear_ratio),
@@ -141,6 +143,16 @@ class TwinGear:
         braced(parameters.mechanism)
         return replace(made, interference=made._twist(abs(preload)))
 
+    @property
+    def has_shaft(self) -> bool:
+        """Whether a shaft twists between the arms of two branches."""
+        return len(self.springs) == _BRACED and math.isfinite(self.shaft_stiffness)
+
+    @property
+    def shaft_twist(self) -> float:
+        """By how much arm A leads the output without load, rad."""
+        return self.preload / self.shaft_stiffness
+
     def branch_torque(self, branch: int, angle: float) -> float:
         """T_k, N·m, of a branch wound up by the angle x_k, rad."""
         low, high = self.dead_bands[branch]
@@ -180,7 +192,7 @@ class TwinGear:
             spring_torque(springs, spring.beyond) for springs in self.springs for spring in springs
         }
         # Beyond all ends, the twist grows at least as fast as that of the stiffest branch alone.
-        stiffest = max(sum(spring.stiffness for spring in springs) for springs in self.springs)
+        stiffest = max(map(greatest_stiffness, self.springs))
         torques = [*sorted(ends), max(ends) + stiffest * twist]
         return float(np.interp(twist, [*map(self._twist, torques)], torques))
 
@@ -197,6 +209,11 @@ def spring_torque(springs: Sequence[Spring], distance: float) -> float:
         if distance > spring.beyond:
             torque += spring.stiffness * (distance - spring.beyond)
     return torque
+
+
+def greatest_stiffness(springs: Sequence[Spring]) -> float:
+    """The greatest stiffness of springs at any distance, N·m/rad."""
+    return max(accumulate(spring.stiffness for spring in springs))
 
 
 def wind_up(springs: Sequence[Spring], torque: float) -> float:

@@ -82,7 +82,7 @@ ROOMS = {
     'validation': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
     'measurement': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
     'plotting': ('bag', 'kinematics', 'report', 'shape'),
-    'twin': ('correction', 'kinematics', 'parameters'),
+    'twin': ('correction', 'kinematics', 'parameters', 'shape'),
     'ros': (
         'bag',
         'correction',
@@ -130,6 +130,7 @@ TENANTS = {
     'tornado': ['watch'],
     'scipy': ['measurement'],
     'rainflow': ['measurement'],
+    'mujoco': ['twin'],
 }
 """Libraries, and the only rooms that import them."""
 

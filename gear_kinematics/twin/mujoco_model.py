@@ -1,0 +1,86 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""A model that MuJoCo moves: every body, with its joints, springs and loops."""
+
+import mujoco
+
+from gear_kinematics.twin.gear import TwinGear
+from gear_kinematics.twin.mjcf import branch_tendons, mjcf
+
+
+class MujocoModel:
+    """Implements `Model` with MuJoCo; it begins at rest, without load, at φ2 = 0.
+
+    Raises:
+        MechanismError: as `mjcf`.
+    """
+
+    def __init__(self, gear: TwinGear) -> None:
+        self.rotor_locked = self.output_locked = False
+        self._owed = 0.0  # s that have been asked for and not simulated yet
+        self._build(gear)
+
+    @property
+    def gear(self) -> TwinGear:
+        """The gear; one that replaces it has the same mechanism and as many sliders."""
+        return self._gear
+
+    @gear.setter
+    def gear(self, gear: TwinGear) -> None:
+        before = self.data
+        self._build(gear)
+        self.data.qpos[:], self.data.qvel[:] = before.qpos, before.qvel
+        self._read()
+
+    def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
+        """Let time pass, to the nearest time step of MuJoCo; see `Model`."""
+        self._lock('rotor', self.rotor_locked)
+        self._lock('output_shaft', self.output_locked)
+        self.data.joint('rotor').qfrc_applied[:] = rotor_torque
+        self.data.joint('output_shaft').qfrc_applied[:] = load_torque
+        step = self.model.opt.timestep
+        self._owed += duration
+        steps = round(self._owed / step)
+        self._owed -= steps * step
+        if self._gear.errors:
+            for _ in range(steps):
+                error = self._gear.error(self.data.qpos[self._rotor])
+                self.model.tendon_lengthspring[self._tendons] = self._springs - error
+                mujoco.mj_step(self.model, self.data)
+        elif steps:
+            mujoco.mj_step(self.model, self.data, steps)
+        self._read()
+
+    def _build(self, gear: TwinGear) -> None:
+        self._gear = gear
+        self.model = mujoco.MjModel.from_xml_string(mjcf(gear, shown=False))
+        self.data = mujoco.MjData(self.model)
+        branches = gear.parameters.branches
+        names = [name for number in range(len(branches)) for name in branch_tendons(gear, number)]
+        self._tendons = [self.model.tendon(name).id for name in names]
+        self._springs = self.model.tendon_lengthspring[self._tendons]
+        # Each joint has one coordinate.
+        self._rotor, self._output, *self._satellites = (
+            self.model.joint(name).id
+            for name in ('rotor', 'output_shaft', *(f'satellite_{each.name}' for each in branches))
+        )
+        self._read()
+
+    def _lock(self, joint: str, locked: bool) -> None:  # noqa: FBT001
+        """Hold a joint where it is, or let it go."""
+        equality, state = self.model.equality(f'{joint}_lock'), self.data.joint(joint)
+        if locked and not self.data.eq_active[equality.id]:
+            equality.data[0] = state.qpos[0] - self.model.joint(joint).qpos0[0]
+            state.qvel[:] = 0.0
+        self.data.eq_active[equality.id] = locked
+
+    def _read(self) -> None:
+        angles, velocities, gear = self.data.qpos, self.data.qvel, self._gear
+        self.rotor_angle = rotor = float(angles[self._rotor])
+        self.rotor_velocity = float(velocities[self._rotor])
+        self.output_angle = float(angles[self._output])
+        self.output_velocity = float(velocities[self._output])
+        ideal = (1.0 / gear.ratio - 1.0) * rotor + gear.error(rotor)
+        self.branch_torques = tuple(
+            gear.branch_torque(branch, ideal - float(angles[joint]))
+            for branch, joint in enumerate(self._satellites)
+        )
