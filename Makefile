@@ -26,13 +26,20 @@ unexport PYTHONPATH LD_LIBRARY_PATH AMENT_PREFIX_PATH COLCON_PREFIX_PATH RMW_IMP
 # Where it is set, each of the many processes that tests start would compile all that it imports.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo quick test coverage lint types docs format pictures soak fuzz lock clean
+.PHONY: help demo simulator quick test coverage lint types docs format pictures soak fuzz lock clean
 
 help: ## Show this list
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1\t\2/p' Makefile
 
 demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and validate it
 	$(BIN)/gearkin demo
+
+# Ctrl-C ends both.
+simulator: $(VENV)/demo.stamp ## Run a simulated actuator, and the node beside it
+	@config=config/simulated_actuator.yaml; \
+	$(BIN)/gear_simulator --ros-args --params-file $$config & simulator=$$!; \
+	$(BIN)/gear_state_publisher --ros-args --params-file $$config; \
+	kill $$simulator 2> /dev/null; wait
 
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
 	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'

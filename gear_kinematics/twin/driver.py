@@ -2,10 +2,10 @@
 """The driver of a simulated motor, and the encoders at rotor and output.
 
 Position, speed and torque are a cascade. With the angle x and the speed v of the rotor, those
-commanded x_c, v_c and the torque M_c,
+commanded x_c and v_c,
 
-    v_r = v_c + (ω/4)(x_c - x)          within the greatest speed
-    M = M_c + J [ω (v_r - v) + (ω²/8) ∫ (v_r - v) dt]          within the greatest torque
+    v_r = v_c + (ω/4)(x_c - x)                           within the greatest speed
+    M = J [ω (v_r - v) + (ω²/8) ∫ (v_r - v) dt]          within the greatest torque
 
 J is the inertia of rotor and output at the rotor, so that ω is the bandwidth of the speed; the
 poles of the position are at -0.11 ω and (-0.44 ± 0.28 j) ω. The integral stands while the torque
@@ -27,8 +27,8 @@ _SEED = 0
 class Command(NamedTuple):
     """What a JointState asks of the motor, as the encoder counts; None: not commanded.
 
-    A position is held, with the velocity and the effort as feedforward. Without a position the
-    velocity is held, and without either the effort alone acts.
+    A position is held, with the velocity as feedforward. Without a position the velocity is held,
+    and only without either the effort acts.
     """
 
     position: float | None
@@ -126,9 +126,9 @@ class Driver:
         model, omega, fastest = self.model, self._omega, self._parameters.max_rotor_speed
         direction = self._parameters.rotor_direction
         position, velocity, effort = self.command
-        torque = direction * (effort or 0.0)
         if position is None and velocity is None:
             self._integral = 0.0
+            torque = direction * (effort or 0.0)
             if abs(model.rotor_velocity) > fastest and torque * model.rotor_velocity > 0.0:
                 torque = 0.0
             return _within(torque, self._max_torque)
@@ -138,7 +138,7 @@ class Driver:
             speed += 0.25 * omega * (angle - model.rotor_angle)
         error = _within(speed, fastest) - model.rotor_velocity
         integral = self._integral + period * error
-        torque += self._inertia * omega * (error + 0.125 * omega * integral)
+        torque = self._inertia * omega * (error + 0.125 * omega * integral)
         if abs(torque) <= self._max_torque:
             self._integral = integral
         return _within(torque, self._max_torque)

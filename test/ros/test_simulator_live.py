@@ -1,0 +1,226 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The node gear_simulator as a process: its messages, commands and services, in real time."""
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from itertools import pairwise
+
+import pytest
+from live import Participant, rotor_state, stamp_of
+from rclpy.parameter import Parameter
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, Trigger
+
+from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.parameters import ConfigError
+from gear_kinematics.ros.simulator import GearSimulator
+
+pytestmark = pytest.mark.live
+
+PROGRAM = 'import sys; from gear_kinematics.__main__ import gear_simulator as run; sys.exit(run())'
+COMMAND = [sys.executable, '-P', '-c', PROGRAM]
+NAMESPACE = f'/simulated_{os.getpid()}'
+
+
+class Bench(Participant):
+    """What is connected to a simulated actuator: a controller, a load, and a recorder."""
+
+    def __init__(self, log):
+        super().__init__('bench', NAMESPACE)
+        self._log, qos = log, QoSProfile(depth=2000)
+        self.rotor: list[JointState] = []
+        self.output: list[JointState] = []
+        self.node.create_subscription(JointState, 'rotor_state', self.rotor.append, qos)
+        self.node.create_subscription(JointState, 'output_encoder', self.output.append, qos)
+        self._commands = self.node.create_publisher(JointState, 'rotor_command', qos)
+        self._loads = self.node.create_publisher(Float64, 'load_torque', qos)
+
+    def connect(self) -> None:
+        self.wait_until(lambda: self.rotor and self.output, 'both encoders')
+        for publisher in (self._commands, self._loads):
+            self.wait_until(publisher.get_subscription_count, 'the simulator')
+
+    def command(self, **values) -> None:
+        self._commands.publish(rotor_state(0, **values))
+
+    def send(self, data: bytes) -> None:
+        self._commands.publish(data)
+
+    def load(self, torque: float) -> None:
+        self._loads.publish(Float64(data=torque))
+
+    def rest(self, messages: int = 300) -> tuple[JointState, JointState]:
+        """Wait until neither shaft turns, from some messages after now."""
+        self.rotor.clear()
+        self.output.clear()
+
+        def resting() -> bool:
+            recent = self.rotor[-100:] + self.output[-100:]
+            still = all(abs(message.velocity[0]) < 1e-3 for message in recent)
+            return still and min(len(self.rotor), len(self.output)) > messages
+
+        self.wait_until(resting, 'both shafts to rest')
+        return self.rotor[-1], self.output[-1]
+
+    def call(self, service: str, **values) -> str:
+        kind = SetBool if values else Trigger
+        client = self.node.create_client(kind, f'gear_simulator/{service}')
+        self.wait_until(client.service_is_ready, service)
+        future = client.call_async(kind.Request(**values))
+        self.wait_until(future.done, 'an answer')
+        assert future.result().success
+        return future.result().message
+
+    def text(self) -> str:
+        return self._log.read_text('utf-8')
+
+
+@pytest.fixture(scope='module')
+def bench(tmp_path_factory):
+    folder = tmp_path_factory.mktemp('simulator')
+    log = folder / 'simulator.log'
+    bench = Bench(log)
+    with log.open('w') as stream:
+        process = subprocess.Popen(
+            [*COMMAND, '--ros-args', '-r', f'__ns:={NAMESPACE}'],
+            stdout=stream, stderr=stream, env={**os.environ, 'ROS_LOG_DIR': str(folder)},
+        )  # fmt: skip
+    bench.alive = lambda: process.poll() is None
+    try:
+        bench.connect()
+        yield bench
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20.0) == 0
+        assert 'Traceback' not in bench.text()
+    finally:
+        process.kill()
+        bench.close()
+
+
+def test_it_says_what_computes_the_motion(bench):
+    assert 'simulating a gear of ratio -19 with ' in bench.text()
+
+
+def test_both_encoders_come_together_every_millisecond_in_real_time(bench):
+    bench.rotor.clear()
+    bench.output.clear()
+    bench.wait_until(lambda: len(bench.output) >= 2000, '2 s of messages')
+    rotor, output = (
+        [stamp_of(message) for message in messages][:1990]
+        for messages in (bench.rotor, bench.output)
+    )
+    first = output.index(max(rotor[0], output[0])), rotor.index(max(rotor[0], output[0]))
+    assert rotor[first[1] :][:1900] == output[first[0] :][:1900]
+    assert abs(time.time_ns() - stamp_of(bench.rotor[-1])) < 1e9
+    steps = [after - before for before, after in pairwise(rotor)]
+    assert sorted(steps)[len(steps) // 2] == pytest.approx(1e6, abs=1e4)
+
+
+def test_position_is_held_against_a_load(bench):
+    bench.command(position=[20.0])
+    bench.wait_until(lambda: abs(bench.rotor[-1].position[0] - 20.0) < 1e-3, 'the position')
+    bench.load(1.9)
+    bench.wait_until(lambda: bench.rotor[-1].effort[0] > 0.05, 'the torque')
+    rotor, output = bench.rest()
+    assert rotor.name == ['rotor']
+    assert rotor.position[0] == pytest.approx(20.0, abs=1e-3)
+    assert rotor.effort[0] == pytest.approx(1.9 / 19.0, abs=0.1 / 19.0 + 1e-3)
+    # Both branches are in mesh: 3000 + 3000·1069/4069 N·m/rad.
+    turned = 1.9 / 3788.0
+    assert output.position[0] == pytest.approx((-20.0 / 19.0 + turned) % math.tau, abs=1e-4)
+    bench.load(0.0)
+
+
+def test_what_cannot_be_followed_is_one_warning_a_second(bench):
+    bench.command(position=[20.0])
+    bench.rest()
+    for name, command in {
+        "no joint 'rotor' in it; there are: wheel": lambda: bench.command(
+            names=['wheel'], position=[1.0]
+        ),
+        'is finite': lambda: bench.command(position=[math.nan]),
+        "no joint 'rotor' in it; there are none": lambda: bench.command(names=[]),
+        'not a JointState': lambda: bench.send(b'\0\1\0\0'),
+        'nan is not finite': lambda: bench.load(math.nan),
+    }.items():
+        before = bench.text()
+
+        def said(before=before, name=name, command=command):
+            command()
+            return name in bench.text()[len(before) :]
+
+        bench.wait_until(said, name)
+    moments = [
+        float(line.split('] [')[1]) for line in bench.text().splitlines() if 'rejected' in line
+    ]
+    steps = [after - before for before, after in pairwise(moments)]
+    assert min(steps) > 0.99
+    assert bench.rotor[-1].position[0] == pytest.approx(20.0, abs=1e-3)
+
+
+def test_a_locked_rotor_tells_its_torque_and_a_locked_output_stays(bench):
+    bench.command(position=[20.0])
+    bench.rest()
+    assert bench.call('lock_rotor', data=True) == 'the rotor is locked'
+    bench.load(-1.9)
+    bench.wait_until(lambda: bench.rotor[-1].effort[0] < -0.09, 'the torque')
+    rotor, _ = bench.rest()
+    assert rotor.position[0] == pytest.approx(20.0, abs=1e-3)
+    assert rotor.effort[0] == pytest.approx(-0.1, abs=0.006)
+    assert bench.call('lock_rotor', data=False) == 'the rotor is free'
+    bench.load(0.0)
+    _, output = bench.rest()
+    assert bench.call('lock_output', data=True) == 'the output shaft is locked'
+    bench.load(100.0)
+    bench.command(effort=[0.2])
+    bench.wait_until(lambda: bench.rotor[-1].effort[0] == 0.2, 'the torque')
+    bench.output.clear()
+    bench.wait_until(lambda: len(bench.output) > 300, 'motion')
+    held = {message.position[0] for message in bench.output}
+    assert held == {output.position[0]}
+    bench.load(0.0)
+    bench.command(position=[20.0])
+    assert bench.call('lock_output', data=False) == 'the output shaft is free'
+
+
+def test_a_power_cycle_loses_the_turns_of_the_rotor_alone(bench):
+    bench.command(position=[50.0])
+    bench.wait_until(lambda: abs(bench.rotor[-1].position[0] - 50.0) < 1e-3, 'the position')
+    _, output = bench.rest()
+    said = bench.call('power_cycle')
+    assert said == 'the driver is on again, the rotor is free and at 0.000 rad'
+    rotor, after = bench.rest()
+    assert rotor.position[0] == pytest.approx(0.0, abs=1e-2)
+    assert after.position[0] == pytest.approx(output.position[0], abs=1e-3)
+
+
+def test_wear_takes_the_preload_and_then_leaves_play(bench):
+    """T0 = 2 N·m is an interference of 2 (2/3000 + 1/1069) = 3.204 mrad."""
+    assert bench.call('wear') == (
+        'the flanks wore off by 2.00 mrad: a preload of 0.75 N·m is left'
+    )
+    assert bench.call('wear') == (
+        'the flanks wore off by 2.00 mrad: the output has a play of 0.80 mrad'
+    )
+
+
+def refused(context, **values) -> str:
+    overrides = [Parameter(name, value=value) for name, value in values.items()]
+    with pytest.raises((ValueError, MechanismError)) as error:
+        GearSimulator(context=context, namespace='/refused', parameter_overrides=overrides)
+    return str(error.value)
+
+
+def test_parameters_that_cannot_be_are_refused(context, tmp_path):
+    assert 'did you mean `bandwidth`?' in refused(context, bandwith=1.0)
+    assert 'loads.rotor_inertia must be' in refused(context, **{'loads.rotor_inertia': 0.0})
+    file = tmp_path / 'other.yaml'
+    file.write_text('/other: {ros__parameters: {preload: 1.0}}', 'utf-8')
+    with pytest.raises(ConfigError, match='no parameters of /gear_simulator in it'):
+        GearSimulator(context=context, parameter_files=[file])
