@@ -27,6 +27,7 @@ ON_PATH = [] if 'bdist_wheel' in sys.argv else [('bin', ['bin/gearkin'])]
 # The page of `gearkin watch`, for machines with and without a ROS installation
 WATCH = ['tornado>=6.2']
 ROSBAGS = ['rosbags>=0.11']
+MESH = ['mapbox-earcut']
 
 setup(
     name=PACKAGE,
@@ -80,7 +81,9 @@ setup(
         # `gearkin lost-motion` and `calibrate`, and the load spectrum of `gearkin loads`
         'measure': ['scipy>=1.11', 'rainflow>=3.1'],
         # `gearkin urdf --meshes`
-        'mesh': ['mapbox-earcut'],
+        'mesh': MESH,
+        # `gearkin mjcf` and gear_simulator, which do with less without it; Ubuntu has no package.
+        'twin': ['mujoco>=3.2', *MESH],
         # colcon test looks here to see that the package is tested with pytest.
         'test': ['pytest'],
     },

@@ -60,6 +60,10 @@ COMMANDS: dict[str, tuple[str, str]] = {
     ),
     'animate': ('animate the mechanism as a GIF', 'animate servo.gif --bag logs/monday'),
     'urdf': ('print the URDF, and write its meshes', 'urdf --meshes meshes > gear.urdf'),
+    'mjcf': (
+        'write the gear with its springs, play, preload and friction as a model of MuJoCo',
+        'mjcf --measured ramps.json -o gear.xml',
+    ),
 }
 """The subcommands, each with its purpose and an example in a line."""
 

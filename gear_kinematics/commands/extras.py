@@ -7,6 +7,7 @@ EXTRAS = {
     'PIL': 'plot',
     'plotly': 'html',
     'mapbox_earcut': 'mesh',
+    'mujoco': 'twin',
     'tornado': 'watch',
     'scipy': 'measure',
     'rainflow': 'measure',

@@ -14,7 +14,7 @@ from gear_kinematics.correction.calibration_file import is_calibration
 from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.report.mark import is_report
 
-_INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check')
+_INPUTS = ('bag', 'bags', 'recordings', 'config', 'calibration', 'check', 'measured')
 """Options and arguments that name files to read."""
 _REPLACEABLE = {'-o': ('calibration', is_calibration)}
 """Files that options may replace, if not reports."""

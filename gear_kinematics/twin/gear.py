@@ -9,9 +9,8 @@ with ψ_k the angle of its arm, and gives the arm the torque T_k: none within it
 play of its flanks, whose place is the preload, and that of its spring beyond it. The output shaft
 is the arm of the last branch. Friction acts between the output shaft and the stator.
 
-Two branches are braced by an interference: a twist of branch A, the shaft and branch B. Without
-load, the output stands at φ2/i then, so that branch B is wound up by -T0/kB beyond its upper
-working flank, and arm A leads the output by T0/ks:
+Two branches are braced by an interference, by which branch A, the shaft and branch B are twisted
+together. Without load, the output stands at φ2/i: x_B = 0, and x_A = -T0/ks by the shaft, so that
 
     high_A = -T0 (1/kA + 1/ks)        low_B = T0/kB        low_B - high_A = interference
 
@@ -56,7 +55,11 @@ class Slider(NamedTuple):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwinGear:
-    """A gear to be simulated; angles and torques are those of the output."""
+    """A gear to be simulated; angles and torques are those of the output.
+
+    Raises:
+        MechanismError: if a branch is rigid, or the rotor has no inertia.
+    """
 
     parameters: NodeParameters
     """Of its mechanism, bodies and encoders."""
@@ -84,7 +87,14 @@ class TwinGear:
     """Least and greatest x_k without torque, for each branch, rad."""
 
     def __post_init__(self) -> None:
-        """Place the dead bands."""
+        """Check the gear, and place its dead bands."""
+        faults = []
+        if math.inf in map(greatest_stiffness, self.springs):
+            faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
+        if not self.parameters.loads.rotor_inertia:
+            faults.append('loads.rotor_inertia must be greater than 0 to be simulated')
+        if faults:
+            raise MechanismError(faults)
         braced = len(self.springs) == _BRACED
         torque = self._torque_by_twist(self.interference) if braced else 0.0
         derived = {
@@ -117,19 +127,15 @@ class TwinGear:
         gear, file = parameters.gear, calibration or parameters.calibration
         count = len(gear.branches) if isinstance(gear, Mechanism) else 1
         stiffness, preload = parameters.branch_stiffness, parameters.preload
-        faults = []
-        if not all(stiffness):
-            faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
         if len(stiffness) not in {1, count}:
-            faults.append(f'branch_stiffness has {len(stiffness)} values for {count} branches')
-        if not parameters.loads.rotor_inertia:
-            faults.append('loads.rotor_inertia must be greater than 0 to be simulated')
-        if faults:
-            raise MechanismError(faults)
+            fault = f'branch_stiffness has {len(stiffness)} values for {count} branches'
+            raise MechanismError([fault])
         friction = values['friction']
         made = cls(
             parameters=parameters,
-            springs=tuple((Spring(0.0, each),) for each in (stiffness * count)[:count]),
+            springs=tuple(
+                (Spring(0.0, each or math.inf),) for each in (stiffness * count)[:count]
+            ),
             shaft_stiffness=parameters.shaft_stiffness or math.inf,
             interference=-values['play'],
             play=values['play'],
@@ -138,10 +144,9 @@ class TwinGear:
             rotor_damping=values['rotor_damping'],
             output_inertia=values['output_inertia'],
         )
-        if not preload:
-            return made
-        braced(parameters.mechanism)
-        return replace(made, interference=made._twist(abs(preload)))
+        if preload:
+            braced(parameters.mechanism)
+        return made.preloaded(abs(preload))
 
     @property
     def has_shaft(self) -> bool:
@@ -160,6 +165,10 @@ class TwinGear:
             return 0.0
         beyond = angle - (high if angle > high else low)
         return math.copysign(spring_torque(self.springs[branch], abs(beyond)), beyond)
+
+    def preloaded(self, torque: float) -> Self:
+        """The same gear with a preload of this magnitude, N·m; as it is if that is 0."""
+        return replace(self, interference=self._twist(torque)) if torque else self
 
     def worn(self, angle: float) -> Self:
         """The same gear with flanks that wore off by an angle of the output, rad, together."""

@@ -7,55 +7,40 @@ those have a dead band in MuJoCo: a fixed tendon, whose length is a sum of joint
 """
 
 import math
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
 from pathlib import PurePath
-from typing import Any
 from xml.etree import ElementTree as ET
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from gear_kinematics.kinematics import Branch, MechanismError
+from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.meshes import NONE
-from gear_kinematics.shape.solids import solids, triangles
-from gear_kinematics.shape.visuals import Point, cam_centre, meshed, simple
+from gear_kinematics.shape.solids import Solid, solids, triangles
+from gear_kinematics.shape.visuals import Visual, cam_centre, meshed, simple
 from gear_kinematics.twin.gear import TwinGear, greatest_stiffness
+from gear_kinematics.wire.topics import (
+    BRANCH_LOADS,
+    LOAD_TORQUE,
+    OUTPUT_ENCODER,
+    ROTOR_COMMAND,
+    ROTOR_STATE,
+)
 
 _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
 _PHASE = 0.7  # rad by which the fastest oscillation may advance in a step; beyond 2, it grows
-_IMPEDANCE = 0.9999  # of constraints: the greatest that MuJoCo takes
-_ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms, and slower motions hardly notice
-_TORQUE_SCALE = 20.0  # of welds; couples wind them up by 400 times less than with MuJoCo's 1
-_NO_MASS = 1e-9  # kg or kg·m²; MuJoCo wants some of every moving body
-_DIGITS = 6  # of the coordinates of meshes
-_AXIS = '0 0 1'
-
-_ABOUT = """
-  A gear of gear_kinematics for MuJoCo 3.0 or newer. SI units, angles in rad; the bodies and their
-  frames are those of `gearkin urdf`. The length of the tendon branch_<name> is its wind-up,
-
-      rotor angle / gear ratio - angle of the arm,
-
-  and its springlength the play of the flanks. Positive torques push the output forwards. Sensors
-  and actuators have the names of the topics of the node gear_simulator.
-"""
-_STEP = f"""
-  The step is short for the fastest oscillation of the bodies on their springs: it advances by less
-  than {_PHASE} rad. MuJoCo's constraints are soft. The stiffest settings and torquescale make those
-  that close the loops add less than 0.001 % to the compliance of a branch.
-"""
-_ERRORS = """
-  MuJoCo has no element for kinematic errors. The output should deviate by the sum of these orders,
-  cos cos(cycles φ2) + sin sin(cycles φ2), each with its cycles per turn of the rotor, cos and sin.
-  To simulate that, subtract the deviation from springlength of every branch at each step, as
-  gear_kinematics.twin.mujoco_model does.
-"""
+_ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms, slower motions hardly notice
 
 
-def mjcf(gear: TwinGear, *, shown: bool = True) -> str:
+def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> str:
     """Write the model, at rest without load at a rotor angle of 0.
 
     Args:
         gear: of a known mechanism, whose satellites and couplings have masses.
+        remarks: for its comment.
         shown: whether to draw the bodies: with their teeth, unless the parameter `meshes` is none.
 
     Raises:
@@ -64,254 +49,257 @@ def mjcf(gear: TwinGear, *, shown: bool = True) -> str:
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
     needed = 'satellite_mass', 'satellite_inertia', 'coupling_mass', 'coupling_inertia'
-    if faults := [
-        f'loads.{name} must be greater than 0 in a model of MuJoCo'
-        for name in needed
-        if not getattr(loads, name)
-    ]:
-        raise MechanismError(faults)
-    step = _time_step(gear)
-    root = ET.Element('mujoco', model='gear_kinematics')
-    root.append(ET.Comment(_ABOUT))
-    _add(root, 'compiler', angle='radian', autolimits='true')
-    root.append(ET.Comment(_STEP))
-    option = _add(
-        root,
-        'option',
-        timestep=step,
-        integrator='implicitfast',
-        gravity='0 0 0',
-        iterations='10',
-        tolerance='1e-12',
-    )
-    _add(option, 'flag', contact='disable')
-    default = _add(root, 'default')
-    reference, impedance = (2.0 * step, 1.0), (_IMPEDANCE, _IMPEDANCE)  # the stiffest
-    _add(default, 'equality', solref=reference, solimp=impedance)
-    _add(default, 'joint', solreffriction=reference, solimpfriction=impedance)
-    _add(default, 'geom', contype='0', conaffinity='0', mass='0')
-    if gear.errors:
-        root.append(ET.Comment(_ERRORS))
-        custom = _add(root, 'custom')
-        for order in gear.errors:
-            data = float(order.cycles), order.cos, order.sin
-            _add(custom, 'numeric', name=order.name, data=data)
-    links = _bodies(gear, _add(root, 'worldbody'))
-    _constraints(gear, _add(root, 'equality'))
-    _springs(gear, _add(root, 'tendon'))
-    actuators, sensors = _add(root, 'actuator'), _add(root, 'sensor')
-    _add(actuators, 'motor', name='rotor_command', joint='rotor')
-    _add(actuators, 'motor', name='load_torque', joint='output_shaft')
-    _add(sensors, 'jointpos', name='rotor_state_position', joint='rotor')
-    _add(sensors, 'jointvel', name='rotor_state_velocity', joint='rotor')
-    _add(sensors, 'jointpos', name='output_encoder', joint='output_shaft')
-    for branch in mechanism.branches:
-        # About z, the third value: what the coupling gives the arm.
-        _add(sensors, 'torque', name=f'branch_loads_{branch.name}', site=f'slot_arm_{branch.name}')
+    if missing := [f'loads.{name}' for name in needed if not getattr(loads, name)]:
+        raise MechanismError([f'MuJoCo needs more than 0 for {", ".join(missing)}'])
+    step, error, branches = _time_step(gear), gear.error(0.0), mechanism.branches
+    behind_shaft = branches[:1] if gear.has_shaft else ()
+    rigid = sum(slider.torque for slider in gear.friction if math.isinf(slider.stiffness))
+    parts: defaultdict[str, str] = defaultdict(str)
     if shown:
-        _draw(gear, links, _add(root, 'asset'))
-    ET.indent(root)
-    return ET.tostring(root, encoding='unicode') + '\n'
+        _add_shapes(gear.parameters, parts)
+    for number, branch in enumerate(branches):
+        _add_branch(gear, number, error + gear.shaft_twist * (branch in behind_shaft), parts)
+    _add_sliders(gear, step, parts)
+    comment = '\n  '.join(remarks).replace('--', '- -')
+    return _indented(f"""
+<mujoco model="gear_kinematics">
+<!--
+  A gear of gear_kinematics for MuJoCo 3: SI units; bodies and frames are those of the URDF.
+  The length of the tendon branch_NAME is the wind-up of the branch,
+
+      rotor angle / gear ratio - angle of its arm,
+
+  and its springlength the play of the flanks. Positive torques push the output forwards. In the
+  sensors of the branches, the third value is the torque on the output.
+  {comment}
+-->
+<compiler angle="radian"/>
+<!--
+  In a step, the fastest oscillation on the springs goes on by at most {_PHASE} rad.
+  MuJoCo's constraints are soft. Their stiffest settings and torquescale make those that close the
+  loops add less than 0.001 % to the compliance of a branch.
+-->
+<option timestep="{step!r}" integrator="implicitfast" gravity="0 0 0" iterations="10"
+ tolerance="1e-12"><flag contact="disable"/></option>
+<default>
+  <equality solref="{2.0 * step!r} 1" solimp="0.9999 0.9999"/>
+  <joint solreffriction="{2.0 * step!r} 1" solimpfriction="0.9999 0.9999"/>
+  <geom contype="0" conaffinity="0" mass="0"/>
+</default>
+{_errors(gear)}
+<worldbody>
+  <body name="stator">{parts['stator']}</body>
+  <body name="rotor">
+    {_inertial(loads.rotor_inertia)}
+    <joint name="rotor" damping="{gear.rotor_damping!r}"/>
+    {parts['on_rotor']}{parts['rotor']}
+  </body>
+  {parts['arm']}
+  <body name="output_shaft" euler="0 0 {error!r}">
+    {_inertial(gear.output_inertia)}
+    <joint name="output_shaft" ref="{error!r}" frictionloss="{rigid!r}"/>
+    {parts['on_shaft']}{parts['output_shaft']}
+  </body>
+  {parts['sliders']}
+</worldbody>
+<equality>
+  {parts['equality']}
+  <joint name="rotor_lock" joint1="rotor" active="false"/>
+  <joint name="output_shaft_lock" joint1="output_shaft" active="false"/>
+</equality>
+<tendon>{parts['tendon']}</tendon>
+<actuator>
+  <motor name="{ROTOR_COMMAND}" joint="rotor"/>
+  <motor name="{LOAD_TORQUE}" joint="output_shaft"/>
+</actuator>
+<sensor>
+  <jointpos name="{ROTOR_STATE}_position" joint="rotor"/>
+  <jointvel name="{ROTOR_STATE}_velocity" joint="rotor"/>
+  <jointpos name="{OUTPUT_ENCODER}" joint="output_shaft"/>
+  {parts['sensor']}
+</sensor>
+<asset>{parts['asset']}</asset>
+</mujoco>
+""")
 
 
-def branch_tendons(gear: TwinGear, branch: int) -> list[str]:
+def branch_tendons(gear: TwinGear, number: int) -> list[str]:
     """The names of the tendons of a branch, one for each of its springs."""
-    name = gear.parameters.branches[branch].name
-    return [f'branch_{name}{f"_{k}" if k else ""}' for k in range(len(gear.springs[branch]))]
+    name = f'branch_{gear.parameters.branches[number].name}'
+    return [f'{name}_{k}' if k else name for k in range(len(gear.springs[number]))]
 
 
 def _time_step(gear: TwinGear) -> float:
     """The time step, s: a whole number of them is a millisecond."""
-    loads, count, turning = gear.parameters.loads, len(gear.springs), _turning_inertia(gear)
     stiffness = [greatest_stiffness(springs) for springs in gear.springs]
-    reflected = sum(stiffness) / gear.ratio**2 / loads.rotor_inertia
     sliders = sum(each.stiffness for each in gear.friction if math.isfinite(each.stiffness))
+    reflected = sum(stiffness) / gear.ratio**2 / gear.parameters.loads.rotor_inertia
+    arm, turning = 0.0, _turning_inertia(gear) * len(stiffness)
     if gear.has_shaft:
-        shaft = gear.shaft_stiffness
-        arm = (stiffness[0] + shaft) / turning
-        output = (stiffness[1] + shaft + sliders) / (turning + gear.output_inertia)
-    else:
-        arm, output = 0.0, (sum(stiffness) + sliders) / (count * turning + gear.output_inertia)
+        turning = _turning_inertia(gear)
+        arm = (stiffness.pop(0) + gear.shaft_stiffness) / turning
+        sliders += gear.shaft_stiffness
+    output = (sum(stiffness) + sliders) / (turning + gear.output_inertia)
     # The trace of the matrix whose eigenvalues are the squares of the frequencies bounds them.
-    frequency = math.sqrt(reflected + arm + output)
-    longest = min(_LONGEST_STEP, _PHASE / frequency)
+    longest = min(_LONGEST_STEP, _PHASE / math.sqrt(reflected + arm + output))
     return _MILLISECOND / math.ceil(_MILLISECOND / longest - 1e-9)
 
 
 def _turning_inertia(gear: TwinGear) -> float:
-    """Of what turns with each arm: J3 + J4, kg·m²."""
+    """J3 + J4, kg·m²: of what turns with each arm."""
     return gear.parameters.loads.satellite_inertia + gear.parameters.loads.coupling_inertia
 
 
-# Bodies
+def _add_branch(gear: TwinGear, number: int, turn: float, parts: dict[str, str]) -> None:
+    """Add the bodies of a branch, whose arm is turned by an angle, and what acts on them.
 
-
-def _bodies(gear: TwinGear, world: ET.Element) -> dict[str, ET.Element]:
-    """Add the bodies; returns those that are links of the URDF, by their names."""
-    loads, branches = gear.parameters.loads, gear.parameters.branches
-    stator = _add(world, 'body', name='stator')
-    rotor = _body(world, 'rotor', _NO_MASS, loads.rotor_inertia)
-    _add(rotor, 'joint', name='rotor', axis=_AXIS, damping=gear.rotor_damping)
-    shaft = _body(world, 'output_shaft', _NO_MASS, gear.output_inertia, turn=gear.error(0.0))
-    rigid = sum(each.torque for each in gear.friction if math.isinf(each.stiffness))
-    _hinge(shaft, 'output_shaft', gear.error(0.0), frictionloss=rigid)
-    links = {'stator': stator, 'rotor': rotor, 'output_shaft': shaft}
-    for number, branch in enumerate(branches):
-        turn, arm = gear.error(0.0), shaft
-        if gear.has_shaft and not number:
-            turn += gear.shaft_twist
-            arm = _body(world, f'arm_{branch.name}', _NO_MASS, _NO_MASS, turn=turn)
-            _hinge(arm, f'arm_{branch.name}', turn)
-        links |= _branch(gear, branch, rotor, arm, turn)
-    for number, slider in enumerate(gear.friction):
-        if math.isfinite(slider.stiffness):
-            # As light as the time step allows.
-            inertia = slider.stiffness * (_time_step(gear) / _PHASE) ** 2
-            body = _body(world, f'friction_{number}', _NO_MASS, inertia)
-            _hinge(body, f'friction_{number}', 0.0, frictionloss=slider.torque)
-    return links
-
-
-def _branch(
-    gear: TwinGear, branch: Branch, rotor: ET.Element, arm: ET.Element, turn: float
-) -> dict[str, ET.Element]:
-    """Add satellite, coupling and the body in the slot of the arm, which is turned by an angle.
-
-    Coupling and slot are one body: each has half of its mass. All three turn by the same angle:
-    their inertia is halved between both sides of the weld, where it yields the least to couples.
+    Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
+    side of the weld has half of the inertia of all, with which it yields least.
     """
-    e, loads, name = gear.parameters.eccentricity, gear.parameters.loads, branch.name
-    mass, inertia = 0.5 * loads.coupling_mass, 0.5 * _turning_inertia(gear)
-    x, y = e * math.sin(branch.cam_phase - turn), e * math.cos(branch.cam_phase - turn)
-    centre = cam_centre(branch, e)
-    satellite = _body(rotor, f'satellite_{name}', loads.satellite_mass, inertia, centre, turn)
-    _hinge(satellite, f'satellite_{name}', turn)
-    _add(satellite, 'site', name=f'cam_{name}')
-    coupling = _body(satellite, f'oldham_{name}', mass, _NO_MASS, (x, 0.0, 0.0))
-    _add(coupling, 'joint', name=f'oldham_{name}', type='slide', axis='1 0 0', ref=x)
-    _add(coupling, 'site', name=f'slot_satellite_{name}')
-    slot = _body(arm, f'slot_arm_{name}', mass, inertia, (0.0, y, branch.axial_position))
-    _add(slot, 'joint', name=f'slot_arm_{name}', type='slide', axis='0 1 0', ref=y)
-    _add(slot, 'site', name=f'slot_arm_{name}', euler=(math.pi, 0.0, 0.0))
-    # Where the rolling circles touch; it turns with the rotor.
-    reach = gear.parameters.mechanism.ring_rolling_radius / e
-    pitch = reach * centre[0], reach * centre[1], centre[2]
-    _add(rotor, 'site', name=f'mesh_{name}', pos=pitch)
-    return {f'satellite_{name}': satellite, f'oldham_{name}': coupling}
+    mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
+    branch, e = mechanism.branches[number], mechanism.eccentricity
+    name = branch.name
+    across, along = e * math.sin(branch.cam_phase - turn), e * math.cos(branch.cam_phase - turn)
+    x, y, z = cam_centre(branch, e)
+    reach = mechanism.ring_rolling_radius / e
+    parts['on_rotor'] += f"""
+<site name="mesh_{name}" pos="{reach * x!r} {reach * y!r} {z!r}"/>
+<body name="satellite_{name}" pos="{x!r} {y!r} {z!r}" euler="0 0 {turn!r}">
+  {_inertial(0.5 * _turning_inertia(gear), loads.satellite_mass)}
+  <joint name="satellite_{name}" ref="{turn!r}"/>
+  <site name="cam_{name}"/>
+  <body name="oldham_{name}" pos="{across!r} 0 0">
+    {_inertial(mass=0.5 * loads.coupling_mass)}
+    <joint name="oldham_{name}" type="slide" axis="1 0 0" ref="{across!r}"/>
+    <site name="slot_satellite_{name}"/>
+    {parts[f'oldham_{name}']}
+  </body>
+  {parts[f'satellite_{name}']}
+</body>"""
+    slot = f"""
+<body name="slot_arm_{name}" pos="0 {along!r} {z!r}">
+  {_inertial(0.5 * _turning_inertia(gear), 0.5 * loads.coupling_mass)}
+  <joint name="slot_arm_{name}" type="slide" axis="0 1 0" ref="{along!r}"/>
+  <site name="slot_arm_{name}" euler="{math.pi!r} 0 0"/>
+</body>"""
+    if gear.has_shaft and not number:
+        parts['arm'] = f"""
+<body name="arm_{name}" euler="0 0 {turn!r}">
+  {_inertial()}
+  <joint name="arm_{name}" ref="{turn!r}"/>
+  {slot}
+</body>"""
+        stiffness = greatest_stiffness(gear.springs[0]) + gear.shaft_stiffness
+        damping = 2.0 * _ARM_DAMPING * math.sqrt(stiffness * _turning_inertia(gear))
+        joints = {f'arm_{name}': 1.0, 'output_shaft': -1.0}
+        parts['tendon'] += _spring('shaft', gear.shaft_stiffness, joints, damping=damping)
+    else:
+        parts['on_shaft'] += slot
+    low, high = gear.dead_bands[number]
+    # The arm turns with the satellite, whose joint is on the rotor.
+    joints = {'rotor': 1.0 / gear.ratio - 1.0, f'satellite_{name}': -1.0}
+    for tendon, spring in zip(branch_tendons(gear, number), gear.springs[number], strict=True):
+        ends = low - spring.beyond, high + spring.beyond
+        parts['tendon'] += _spring(tendon, spring.stiffness, joints, ends)
+    parts['equality'] += f"""
+<weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="20"/>"""
+    parts['sensor'] += f"""
+<torque name="{BRANCH_LOADS}_{name}" site="slot_arm_{name}"/>"""
 
 
-def _body(
-    parent: ET.Element,
+def _add_sliders(gear: TwinGear, step: float, parts: dict[str, str]) -> None:
+    """Add friction that yields: bodies on springs, as light as the time step allows."""
+    for number, slider in enumerate(gear.friction):
+        if math.isinf(slider.stiffness):
+            continue
+        name = f'friction_{number}'
+        joints = {'output_shaft': 1.0, name: -1.0}
+        parts['tendon'] += _spring(name, slider.stiffness, joints)
+        parts['sliders'] += f"""
+<body name="{name}">
+  {_inertial(slider.stiffness * (step / _PHASE) ** 2)}
+  <joint name="{name}" frictionloss="{slider.torque!r}"/>
+</body>"""
+
+
+def _errors(gear: TwinGear) -> str:
+    """The kinematic errors, for programs."""
+    if not gear.errors:
+        return ''
+    orders = '\n'.join(
+        f'<numeric name={quoteattr(order.name)}'
+        f' data="{float(order.cycles)!r} {order.cos!r} {order.sin!r}"/>'
+        for order in gear.errors
+    )
+    return f"""
+<!--
+  MuJoCo has no kinematic errors. The output is to deviate by the sum of cos cos(cycles φ2) + sin
+  sin(cycles φ2) of these orders, each with its cycles per turn of the rotor, cos and sin (rad). To
+  simulate it, subtract the deviation from springlength of all branches at each step, as
+  gear_kinematics.twin.mujoco_model does.
+-->
+<custom>{orders}</custom>"""
+
+
+def _inertial(inertia: float = 1e-9, mass: float = 1e-9) -> str:
+    """The moment of inertia about z, kg·m², and the mass, kg; MuJoCo wants some of each."""
+    moments = f'{inertia!r} {inertia!r} {inertia!r}'
+    return f'<inertial pos="0 0 0" mass="{mass!r}" diaginertia="{moments}"/>'
+
+
+def _spring(
     name: str,
-    mass: float,
-    inertia: float,
-    pos: Point = (0.0, 0.0, 0.0),
-    turn: float = 0.0,
-) -> ET.Element:
-    """Add a body with a moment of inertia, which counts about z alone."""
-    body = _add(parent, 'body', name=name, pos=pos, euler=(0.0, 0.0, turn))
-    _add(body, 'inertial', pos='0 0 0', mass=mass, diaginertia=(inertia,) * 3)
-    return body
+    stiffness: float,
+    joints: Mapping[str, float],
+    ends: tuple[float, float] = (0.0, 0.0),
+    damping: float = 0.0,
+) -> str:
+    """A tendon as long as a sum of joint angles by their factors, and slack between two lengths."""
+    terms = ''.join(f'<joint joint="{each}" coef="{joints[each]!r}"/>' for each in joints)
+    low, high = ends
+    return f"""
+<fixed name="{name}" springlength="{low!r} {high!r}" stiffness="{stiffness!r}"
+ damping="{damping!r}">{terms}</fixed>"""
 
 
-def _hinge(body: ET.Element, name: str, angle: float, **attributes: float) -> None:
-    """Add a hinge about z, which is at an angle as the body is placed."""
-    _add(body, 'joint', name=name, axis=_AXIS, ref=angle, **attributes)
-
-
-def _draw(gear: TwinGear, links: dict[str, ET.Element], assets: ET.Element) -> None:
-    """Add the shapes of all links, and the meshes that they need."""
-    mechanism, module = gear.parameters.mechanism, gear.parameters.module
-    if gear.parameters.meshes == NONE:
+def _add_shapes(parameters: NodeParameters, parts: dict[str, str]) -> None:
+    """Add the shapes of all links, and their meshes."""
+    mechanism, module = parameters.mechanism, parameters.module
+    if parameters.meshes == NONE:
         visuals = simple(mechanism, module)
     else:
         visuals = meshed(mechanism, module, '')
-        for name, solid in solids(mechanism, module).items():
-            vertices, faces = np.unique(
-                triangles(solid).reshape(-1, 3), axis=0, return_inverse=True
-            )
-            rows = (f'{value:.{_DIGITS}g}' for value in vertices.ravel().tolist())
-            _add(
-                assets,
-                'mesh',
-                name=name,
-                vertex=' '.join(rows),
-                face=' '.join(map(str, faces.ravel())),
-            )
-    for visual in visuals:
-        geom = _add(links[visual.link], 'geom', type=visual.shape, pos=visual.xyz)
-        if visual.yaw:
-            geom.set('euler', _text((0.0, 0.0, visual.yaw)))
-        geom.set('rgba', visual.colour)
-        size = dict(visual.size)
-        if 'filename' in size:
-            geom.set('mesh', PurePath(size['filename']).stem)
-        elif 'radius' in size:
-            geom.set('size', f'{size["radius"]} {0.5 * float(size["length"])!r}')
-        else:
-            geom.set('size', _text(0.5 * float(side) for side in size['size'].split()))
-
-
-# Constraints and springs
-
-
-def _constraints(gear: TwinGear, equality: ET.Element) -> None:
-    """Add what closes the loops, and the locks of rotor and output, which do not act."""
-    for branch in gear.parameters.branches:
-        coupling, slot = f'oldham_{branch.name}', f'slot_arm_{branch.name}'
-        _add(
-            equality, 'weld', name=coupling, body1=coupling, body2=slot, torquescale=_TORQUE_SCALE
+        parts['asset'] = ''.join(
+            _mesh(name, solid) for name, solid in solids(mechanism, module).items()
         )
-    for joint in ('rotor', 'output_shaft'):
-        _add(equality, 'joint', name=f'{joint}_lock', joint1=joint, active='false')
+    for visual in visuals:
+        place = ' '.join(map(repr, visual.xyz))
+        parts[visual.link] += f"""
+<geom {_shape(visual)} pos="{place}" euler="0 0 {visual.yaw!r}" rgba="{visual.colour}"/>"""
 
 
-def _springs(gear: TwinGear, tendon: ET.Element) -> None:
-    """Add branches, shaft and elastic friction."""
-    for number, branch in enumerate(gear.parameters.branches):
-        low, high = gear.dead_bands[number]
-        for name, spring in zip(branch_tendons(gear, number), gear.springs[number], strict=True):
-            ends = low - spring.beyond, high + spring.beyond
-            # The arm turns with the satellite, and that by its joint more than the rotor.
-            joints = {'rotor': 1.0 / gear.ratio - 1.0, f'satellite_{branch.name}': -1.0}
-            _fixed(tendon, name, joints, spring.stiffness, ends)
-    if gear.has_shaft:
-        joints = {f'arm_{gear.parameters.branches[0].name}': 1.0, 'output_shaft': -1.0}
-        shaft = _fixed(tendon, 'shaft', joints, gear.shaft_stiffness)
-        stiffness = gear.shaft_stiffness + greatest_stiffness(gear.springs[0])
-        critical = 2.0 * math.sqrt(stiffness * _turning_inertia(gear))
-        shaft.set('damping', _text(_ARM_DAMPING * critical))
-    for number, slider in enumerate(gear.friction):
-        if math.isfinite(slider.stiffness):
-            joints = {'output_shaft': 1.0, f'friction_{number}': -1.0}
-            _fixed(tendon, f'friction_{number}', joints, slider.stiffness)
+def _shape(visual: Visual) -> str:
+    """Type and size of a geom; MuJoCo takes half of what URDF takes, but for radii."""
+    size = visual.size
+    if visual.shape == 'mesh':
+        return f'type="mesh" mesh="{PurePath(size["filename"]).stem}"'
+    if visual.shape == 'cylinder':
+        return f'type="cylinder" size="{size["radius"]} {0.5 * float(size["length"])!r}"'
+    sides = ' '.join(repr(0.5 * float(side)) for side in size['size'].split())
+    return f'type="box" size="{sides}"'
 
 
-def _fixed(
-    tendon: ET.Element,
-    name: str,
-    joints: dict[str, float],
-    stiffness: float,
-    ends: tuple[float, float] = (0.0, 0.0),
-) -> ET.Element:
-    fixed = _add(tendon, 'fixed', name=name, stiffness=stiffness, springlength=ends)
-    for joint, coefficient in joints.items():
-        _add(fixed, 'joint', joint=joint, coef=coefficient)
-    return fixed
+def _mesh(name: str, solid: Solid) -> str:
+    """A mesh with its corners, to 1 part in a million, each once."""
+    corners, faces = np.unique(triangles(solid).reshape(-1, 3), axis=0, return_inverse=True)
+    vertex = ' '.join(f'{value:.6g}' for value in corners.ravel().tolist())
+    face = ' '.join(map(str, faces.ravel().tolist()))
+    return f'<mesh name="{name}" vertex="{vertex}" face="{face}"/>'
 
 
-# XML
-
-
-def _add(parent: ET.Element, tag: str, **attributes: Any) -> ET.Element:
-    """Add an element; numbers and sequences of numbers become text."""
-    return ET.SubElement(parent, tag, {name: _text(each) for name, each in attributes.items()})
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, str):
-        return value
-    if not isinstance(value, (int, float)):
-        return ' '.join(map(_text, value))
-    short = f'{value + 0.0:g}'  # no -0
-    return short if float(short) == value else repr(value)
+def _indented(text: str) -> str:
+    """Indent an XML, with its comments."""
+    builder = ET.TreeBuilder(insert_comments=True)
+    root = ET.fromstring(text, ET.XMLParser(target=builder))  # noqa: S314, our own
+    ET.indent(root)
+    return ET.tostring(root, encoding='unicode', xml_declaration=True) + '\n'

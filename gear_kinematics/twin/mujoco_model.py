@@ -84,3 +84,16 @@ class MujocoModel:
             gear.branch_torque(branch, ideal - float(angles[joint]))
             for branch, joint in enumerate(self._satellites)
         )
+
+
+def check(text: str) -> None:
+    """Load a model and take a step.
+
+    Raises:
+        ValueError: if MuJoCo refuses it.
+    """
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_step(model, data)
+    if data.warning.number.any():
+        raise ValueError('MuJoCo cannot move the gear')

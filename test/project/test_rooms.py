@@ -82,7 +82,7 @@ ROOMS = {
     'validation': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
     'measurement': ('bag', 'correction', 'kinematics', 'parameters', 'report', 'state', 'wire'),
     'plotting': ('bag', 'kinematics', 'report', 'shape'),
-    'twin': ('correction', 'kinematics', 'parameters', 'shape'),
+    'twin': ('correction', 'kinematics', 'parameters', 'shape', 'wire'),
     'ros': (
         'bag',
         'correction',
@@ -115,6 +115,7 @@ ROOMS = {
         'report',
         'ros',
         'shape',
+        'twin',
         'validation',
         'watch',
         'wire',

@@ -1,0 +1,131 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The figures of a real gear for a simulated one, from reports of gearkin as JSON.
+
+A loop at the output shows the sum of the branches. Two of them have the same springs, of which
+those of branch A act through the shaft: a stiffness K at the output is that of k in both where
+
+    K = k + k ks/(k + ks)
+"""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from gear_kinematics.kinematics import MechanismError
+from gear_kinematics.kinematics.preload import braced
+from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+
+Report = Mapping[str, Any]
+
+
+def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[str]]:
+    """Take the figures of reports for those of a gear.
+
+    Args:
+        gear: has all others, and the shaft between the arms, which a loop does not show.
+        reports: the JSON of `gearkin preload`, and of `gearkin lost-motion` on one recording.
+
+    Returns:
+        The gear, and what the reports leave open, with what was taken for it.
+
+    Raises:
+        ValueError: if one cannot be used, naming it.
+    """
+    notes: list[str] = []
+    for path, data in sorted(map(_read, reports), key=lambda each: 'recordings' in each[1]):
+        try:
+            if 'recordings' in data:
+                [recording] = data['recordings']
+                gear = _loaded(gear, recording, notes)
+            else:
+                gear = _set(gear, data)
+        except MechanismError as error:
+            raise ValueError(f'{path}: {error}') from error
+        except (LookupError, TypeError, ValueError) as error:
+            wanted = 'torque ramps of one recording by gearkin lost-motion, or of gearkin preload'
+            raise ValueError(f'{path}: must be the JSON of {wanted}') from error
+    return gear, notes
+
+
+def _read(report: Path) -> tuple[Path, Report]:
+    try:
+        data = json.loads(report.read_bytes())
+    except OSError as error:
+        raise ValueError(f'{report}: {error.strerror}') from error
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f'{report}: not JSON') from error
+    return report, data if isinstance(data, dict) else {}
+
+
+def _set(gear: TwinGear, data: Report) -> TwinGear:
+    """Take the stiffnesses, and the preload or the play at the pins."""
+    braced(gear.parameters.mechanism)
+    # Infinity is null in JSON.
+    branch_a, branch_b, shaft = (
+        math.inf if data['stiffness'][part] is None else float(data['stiffness'][part])
+        for part in ('branch_a', 'branch_b', 'shaft')
+    )
+    pins = data['setting']
+    torque, turn = pins['preload'], pins['ring_turn'] - (data['phase'] or 0.0)
+    return replace(
+        gear,
+        parameters=replace(gear.parameters, preload=math.copysign(torque, turn)),
+        springs=((Spring(0.0, branch_a),), (Spring(0.0, branch_b),)),
+        shaft_stiffness=shaft,
+        play=max(gear.play, pins['play']),
+        interference=-pins['play'],
+    ).preloaded(torque)
+
+
+def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
+    """Take friction, play and stiffness from torque ramps, and note what they leave open."""
+    friction, backlash = data['friction']['value'], data['backlash']
+    if friction is None:
+        friction = sum(slider.torque for slider in gear.friction)
+        notes.append(f'friction: {friction:.4g} N·m, as configured')
+    play, low, high = backlash['value'], backlash['low'], backlash['high']
+    if gear.preload or high is None:
+        play = gear.play
+        notes.append(f'play of the flanks: {play:.4g} rad, as configured')
+    elif play is None:
+        play = 0.5 * (low + high)
+        notes.append(f'play: {play:.4g} rad, the middle of {low:.4g} to {high:.4g} rad')
+    ranges = data['stiffness']
+    if gear.preload:
+        ranges = ranges[:1]  # beyond, one branch may be alone
+        notes.append(f'stiffness beyond {ranges[0]["high"]:.4g} N·m: as below')
+    elif play and not ranges[0]['low']:
+        ranges = ranges[1:] or ranges  # the play is in the first
+    # While the torque rises, the springs hold what friction leaves.
+    loads = [0.0, *(each['low'] - friction for each in ranges[1:])]
+    return replace(
+        gear,
+        springs=_springs(gear, loads, [each['value'] for each in ranges]),
+        play=play,
+        interference=-play,
+        friction=(Slider(math.inf, friction),) if friction else (),
+    ).preloaded(abs(gear.preload))
+
+
+def _springs(
+    gear: TwinGear, loads: Sequence[float], stiffness: Sequence[float]
+) -> tuple[tuple[Spring, ...], ...]:
+    """The springs of all branches, for a stiffness at the output from each load on, N·m."""
+    count, shaft = len(gear.springs), gear.shaft_stiffness
+    found: list[list[Spring]] = [[] for _ in gear.springs]
+    beyond, before = [0.0] * count, 0.0
+    for (load, after), total in zip(pairwise([*loads, math.inf]), stiffness, strict=True):
+        own = total / count
+        if gear.has_shaft:
+            own = 0.5 * (total - 2.0 * shaft + math.hypot(total, 2.0 * shaft))
+        turn = (after - load) / total
+        for branch in range(count):
+            found[branch].append(Spring(beyond[branch], own - before))
+            behind_shaft = gear.has_shaft and not branch
+            beyond[branch] += turn * shaft / (own + shaft) if behind_shaft else turn
+        before = own
+    return tuple(map(tuple, found))
