@@ -21,13 +21,7 @@ from gear_kinematics.parameters.meshes import NONE
 from gear_kinematics.shape.solids import Solid, solids, triangles
 from gear_kinematics.shape.visuals import Visual, cam_centre, meshed, simple
 from gear_kinematics.twin.gear import TwinGear, greatest_stiffness
-from gear_kinematics.wire.topics import (
-    BRANCH_LOADS,
-    LOAD_TORQUE,
-    OUTPUT_ENCODER,
-    ROTOR_COMMAND,
-    ROTOR_STATE,
-)
+from gear_kinematics.wire import topics
 
 _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
@@ -109,13 +103,13 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
 </equality>
 <tendon>{parts['tendon']}</tendon>
 <actuator>
-  <motor name="{ROTOR_COMMAND}" joint="rotor"/>
-  <motor name="{LOAD_TORQUE}" joint="output_shaft"/>
+  <motor name="{topics.ROTOR_COMMAND}" joint="rotor"/>
+  <motor name="{topics.LOAD_TORQUE}" joint="output_shaft"/>
 </actuator>
 <sensor>
-  <jointpos name="{ROTOR_STATE}_position" joint="rotor"/>
-  <jointvel name="{ROTOR_STATE}_velocity" joint="rotor"/>
-  <jointpos name="{OUTPUT_ENCODER}" joint="output_shaft"/>
+  <jointpos name="{topics.ROTOR_STATE}_position" joint="rotor"/>
+  <jointvel name="{topics.ROTOR_STATE}_velocity" joint="rotor"/>
+  <jointpos name="{topics.OUTPUT_ENCODER}" joint="output_shaft"/>
   {parts['sensor']}
 </sensor>
 <asset>{parts['asset']}</asset>
@@ -204,7 +198,7 @@ def _add_branch(gear: TwinGear, number: int, turn: float, parts: dict[str, str])
     parts['equality'] += f"""
 <weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="20"/>"""
     parts['sensor'] += f"""
-<torque name="{BRANCH_LOADS}_{name}" site="slot_arm_{name}"/>"""
+<torque name="{topics.BRANCH_LOADS}_{name}" site="slot_arm_{name}"/>"""
 
 
 def _add_sliders(gear: TwinGear, step: float, parts: dict[str, str]) -> None:
@@ -254,7 +248,7 @@ def _spring(
     ends: tuple[float, float] = (0.0, 0.0),
     damping: float = 0.0,
 ) -> str:
-    """A tendon as long as a sum of joint angles by their factors, and slack between two lengths."""
+    """A tendon as long as a sum of joint angles by factors, and slack between two lengths."""
     terms = ''.join(f'<joint joint="{each}" coef="{joints[each]!r}"/>' for each in joints)
     low, high = ends
     return f"""

@@ -1,0 +1,194 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""MuJoCo's gear against the audited preload, forces of the bodies, energy and the fast model."""
+
+import math
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from gear_kinematics.correction.calibration_file import Order
+from gear_kinematics.kinematics import solve
+from gear_kinematics.kinematics.loads import solve as solve_loads
+from gear_kinematics.kinematics.preload import Preload, Stiffness
+from gear_kinematics.twin.fast_model import FastModel
+from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.parameters import default_config
+
+mujoco = pytest.importorskip('mujoco')
+from gear_kinematics.twin.mujoco_model import MujocoModel, check  # noqa: E402
+
+STIFFNESS = Stiffness(3000.0, 3000.0, 1069.0)
+PRELOAD = Preload.from_torque(STIFFNESS, 2.0)
+"""That of the default gear. A leaves mesh at 9.6 N·m, B at -2.5 N·m."""
+
+
+@pytest.fixture(scope='module')
+def gear() -> TwinGear:
+    """The default one, whose branches do not reach their other flanks, without friction."""
+    return replace(TwinGear.load(default_config()), friction=(), play=0.05)
+
+
+def settled(model: MujocoModel, load: float) -> MujocoModel:
+    """Let the output come to rest under a load, with the rotor locked."""
+    model.rotor_locked = True
+    for _ in range(80):
+        model.advance(1e-3, 0.0, load - 4.0 * model.output_velocity)
+    assert abs(model.output_velocity) < 1e-7
+    return model
+
+
+def test_branches_share_a_load_as_the_audited_preload_says(gear):
+    model = MujocoModel(gear)
+    for load in (0.0, 1.0, -2.0, 9.0, 12.0, -6.0):
+        expected = PRELOAD.split(load)
+        settled(model, load)
+        torques = float(expected.branch_a), -float(expected.branch_b)
+        assert model.branch_torques == pytest.approx(torques, rel=1e-4, abs=1e-5), load
+        # What the coupling gives the arm.
+        measured = model.data.sensordata[[5, 8]]
+        assert measured == pytest.approx(torques, rel=1e-4, abs=1e-5), load
+
+
+@pytest.mark.parametrize(
+    ('loads', 'stiffness'),
+    [
+        ((-2.0, 9.0), STIFFNESS.both_in_mesh),
+        ((10.0, 14.0), STIFFNESS.branch_b_alone),
+        ((-9.0, -4.0), STIFFNESS.branch_a_alone),
+    ],
+)
+def test_soft_constraints_do_not_show_in_the_stiffness(gear, loads, stiffness):
+    low, high = loads
+    model = MujocoModel(gear)
+    begin = settled(model, low).output_angle
+    turned = settled(model, high).output_angle - begin
+    assert (high - low) / turned == pytest.approx(stiffness, rel=1e-4)
+
+
+def test_forces_are_those_of_the_closed_form(gear):
+    """From what arms and rotor feel, it gives the force of the teeth: that of the springs."""
+    gear = replace(gear, rotor_damping=0.0)
+    mechanism, bodies = gear.parameters.mechanism, gear.parameters.loads
+    model, compared = MujocoModel(gear), 0
+    for _ in range(50):
+        model.advance(2e-3, 0.05, 1.5)
+        data = model.data
+        mujoco.mj_forward(model.model, data)
+        state = solve(
+            mechanism, model.rotor_angle, model.rotor_velocity, data.joint('rotor').qacc[0]
+        )
+        along = np.array([-math.cos(model.output_angle), -math.sin(model.output_angle)])
+        across = bodies.coupling_mass * state.oldham_acceleration @ along
+        torques = data.sensordata[[5, 8]] + state.arm_slide * across
+        loads = solve_loads(mechanism, state, torques, bodies)
+        teeth = loads.mesh_tangential * mechanism.satellite_rolling_radius
+        assert teeth == pytest.approx(model.branch_torques, abs=0.02)
+        assert loads.rotor_torque == pytest.approx(0.05, abs=1e-3)
+        compared += 1
+    assert compared == 50
+    assert abs(model.rotor_velocity) > 100.0
+
+
+def test_energy_is_kept(gear):
+    """The load works on the output on its springs, which oscillates and gives it back.
+
+    The shaft would damp that a little.
+    """
+    gear = replace(gear, shaft_stiffness=math.inf).preloaded(2.0)
+    model = MujocoModel(gear)
+    model.model.opt.enableflags |= mujoco.mjtEnableBit.mjENBL_ENERGY
+    model.rotor_locked = True
+    mujoco.mj_forward(model.model, model.data)
+    before, work = model.data.energy.sum(), 0.0
+    for _ in range(300):
+        angle = model.output_angle
+        model.advance(1e-3, 0.0, 1.0)
+        work += model.output_angle - angle
+        mujoco.mj_forward(model.model, model.data)
+        gained = model.data.energy.sum() - before
+        assert gained == pytest.approx(work, abs=3e-5)
+    assert model.data.energy[0] > 0.0
+
+
+@pytest.mark.parametrize(
+    'values',
+    [
+        {},
+        {'friction': (Slider(math.inf, 0.4),)},
+        {'friction': (Slider(800.0, 0.3), Slider(2000.0, 0.2))},
+        {'interference': -1e-3, 'play': 1e-3},
+        {'shaft_stiffness': math.inf},
+        {'springs': ((Spring(0.0, 1000.0), Spring(1e-3, 2500.0)),) * 2},
+    ],
+    ids=['braced', 'friction', 'sliders', 'play', 'rigid shaft', 'bent'],
+)
+def test_a_ramp_is_that_of_the_fast_model(gear, values):
+    """Within 1 % of its greatest turn, with the rotor locked."""
+    gear = replace(gear, **values)
+    if 'springs' in values:
+        gear = gear.preloaded(2.0)
+    loops = []
+    for kind in (MujocoModel, FastModel):
+        model = kind(gear)
+        model.rotor_locked = True
+        loop = []
+        for step in range(1000):
+            load = 8.0 * math.sin(2.0 * math.pi * step / 800.0)
+            # Both are damped alike, as the play would let them rattle.
+            model.advance(1e-3, 0.0, load - 4.0 * model.output_velocity)
+            loop.append(model.output_angle)
+        loops.append(np.array(loop))
+    ours, fast = loops
+    assert np.abs(ours - fast).max() < 0.01 * np.abs(fast).max()
+
+
+def test_errors_move_the_output(gear):
+    order = Order('cam', Fraction(1), 2e-3, 1e-3)
+    gear = replace(gear, errors=(order,), rotor_damping=1e-3)
+    model = MujocoModel(gear)
+    assert model.output_angle == pytest.approx(2e-3)
+    off = []
+    for _ in range(600):
+        model.advance(1e-3, 0.01, -0.5 * model.output_velocity)
+        error = gear.error(model.rotor_angle)
+        off.append(model.output_angle - model.rotor_angle / gear.ratio - error)
+    assert abs(model.rotor_angle) > 2.0
+    assert np.abs(off).max() < 1e-4
+
+
+def test_locks_hold_and_let_go(gear):
+    model = MujocoModel(gear)
+    for _ in range(100):
+        model.advance(1e-3, 0.02, 0.0)
+    model.rotor_locked = model.output_locked = True
+    rotor, output = model.rotor_angle, model.output_angle
+    model.advance(0.05, 0.3, 5.0)
+    assert model.rotor_angle == pytest.approx(rotor, abs=1e-5)
+    assert model.output_angle == pytest.approx(output, abs=1e-6)
+    model.rotor_locked = model.output_locked = False
+    model.advance(0.1, 0.02, 0.0)
+    assert model.rotor_angle > rotor + 1.0
+
+
+def test_a_gear_wears_while_it_moves(gear):
+    model = settled(MujocoModel(gear), 0.0)
+    model.gear = gear.worn(1e-3)
+    assert model.gear.preload < 1.5
+    settled(model, 0.0)
+    T0 = Preload(STIFFNESS, gear.interference - 1e-3).torque
+    assert model.branch_torques == pytest.approx((T0, -T0), rel=1e-4)
+    assert model.rotor_locked
+
+
+def test_time_that_is_no_whole_step_is_not_lost(gear):
+    model = MujocoModel(gear)
+    for _ in range(1000):
+        model.advance(1.3e-5, 0.0, 0.0)
+    assert model.data.time == pytest.approx(1.3e-2, abs=model.model.opt.timestep)
+
+
+def test_a_model_that_mujoco_refuses_is_no_model():
+    with pytest.raises(ValueError, match='mass and inertia'):
+        check('<mujoco><worldbody><body><joint/></body></worldbody></mujoco>')
