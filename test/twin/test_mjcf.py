@@ -93,8 +93,8 @@ def test_the_rotor_moves_the_bodies_as_the_kinematics_say(gear):
     )
     model, data = loaded(gear)
     data.ctrl[0] = 0.01
-    for _ in range(500):
-        mujoco.mj_step(model, data, 100)
+    for _ in range(200):
+        mujoco.mj_step(model, data, 200)
         mujoco.mj_forward(model, data)
         state = solve(gear.parameters.mechanism, data.joint('rotor').qpos[0])
         speed = data.joint('rotor').qvel[0] * 20.0 / 19.0

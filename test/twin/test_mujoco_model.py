@@ -108,7 +108,7 @@ def test_energy_is_kept(gear):
         work += model.output_angle - angle
         mujoco.mj_forward(model.model, model.data)
         gained = model.data.energy.sum() - before
-        assert gained == pytest.approx(work, abs=3e-5)
+        assert gained == pytest.approx(work, abs=1e-5)
     assert model.data.energy[0] > 0.0
 
 
