@@ -104,7 +104,8 @@ def test_commands_of_the_readme_do_what_it_says(tmp_path, monkeypatch, capsys):
     for words in commands(README):
         assert main(words) == 0, capsys.readouterr().err
         told[words[0]] = capsys.readouterr().out
-    assert list(told) == ['validate', 'calibrate', 'preload', 'lost-motion', 'loads']
+    assert list(told) == ['validate', 'calibrate', 'preload', 'lost-motion', 'loads', 'mjcf']
+    assert (tmp_path / 'gear.xml').exists()
     assert 'within the 95 % interval' in told['calibrate']
     assert 'for -1 to' in told['preload']
     assert 'ring hole 60 in chassis hole 10, tooth 11' in told['preload']
