@@ -45,21 +45,23 @@ def group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGrou
     return next(known, None) or parser.add_argument_group(title)
 
 
-def add_config(parser: argparse.ArgumentParser) -> None:
-    """Add the options for the parameters of the node."""
+def add_config(
+    parser: argparse.ArgumentParser, node: str = NODE, default: str = 'config/actuator.yaml'
+) -> None:
+    """Add the options for the parameters of a node."""
     gear = group(parser, 'gear')
     gear.add_argument(
         '--config',
         type=Path,
         metavar='FILE',
-        help='parameters of the node as YAML (default: config/actuator.yaml)',
+        help=f'parameters of the node as YAML (default: {default})',
     )
     gear.add_argument(
         '--node',
-        default=NODE,
+        default=node,
         metavar='NAME',
         help='node in a file with several nodes, with or without namespace, such as '
-        f'/left/{NODE} (default: %(default)s)',
+        f'/left/{node} (default: %(default)s)',
     )
 
 

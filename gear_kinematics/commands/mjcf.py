@@ -20,20 +20,8 @@ from gear_kinematics.twin.parameters import NODE, default_config
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
+    arguments.add_config(parser, NODE, 'config/simulated_actuator.yaml')
     gear = arguments.group(parser, 'gear')
-    gear.add_argument(
-        '--config',
-        type=Path,
-        default=default_config(),
-        metavar='FILE',
-        help='parameters of the simulated gear as YAML (default: config/simulated_actuator.yaml)',
-    )
-    gear.add_argument(
-        '--node',
-        default=NODE,
-        metavar='NAME',
-        help='node in a file with several nodes (default: %(default)s)',
-    )
     gear.add_argument(
         '--calibration',
         type=Path,
@@ -58,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> ExitCode:
     """Write the model; with MuJoCo installed, it is checked by loading it."""
     check_targets(options, {'--output': options.output})
-    gear = TwinGear.load(options.config, options.node, options.calibration)
+    gear = TwinGear.load(options.config or default_config(), options.node, options.calibration)
     gear, notes = measured(gear, options.measured)
     if notes:
         complain(f'not in the reports: {"; ".join(notes)}')

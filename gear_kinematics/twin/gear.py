@@ -95,15 +95,13 @@ class TwinGear:
             faults.append('loads.rotor_inertia must be greater than 0 to be simulated')
         if faults:
             raise MechanismError(faults)
-        braced = len(self.springs) == _BRACED
-        torque = self._torque_by_twist(self.interference) if braced else 0.0
-        derived = {
-            'ratio': float(self.parameters.gear.gear_ratio),
-            'preload': math.copysign(torque, self.parameters.preload),
-            'dead_bands': self._braced_bands(torque) if braced else self._free_bands(),
-        }
-        for name, value in derived.items():
-            object.__setattr__(self, name, value)
+        torque, bands = 0.0, ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
+        if len(self.springs) == _BRACED:
+            torque = self._torque_by_twist(self.interference)
+            bands = self._braced_bands(torque)
+        object.__setattr__(self, 'ratio', float(self.parameters.gear.gear_ratio))
+        object.__setattr__(self, 'preload', math.copysign(torque, self.parameters.preload))
+        object.__setattr__(self, 'dead_bands', bands)
 
     @classmethod
     def load(cls, config: Path, node: str = NODE, calibration: Path | None = None) -> Self:
@@ -181,9 +179,6 @@ class TwinGear:
             + order.sin * math.sin(float(order.cycles) * rotor_angle)
             for order in self.errors
         )
-
-    def _free_bands(self) -> tuple[tuple[float, float], ...]:
-        return ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
 
     def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:
         low_b = wind_up(self.springs[1], torque) + min(0.5 * self.interference, 0.0)

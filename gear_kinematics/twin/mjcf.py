@@ -54,6 +54,11 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
     for number, branch in enumerate(branches):
         _add_branch(gear, number, error + gear.shaft_twist * (branch in behind_shaft), parts)
     _add_sliders(gear, step, parts)
+    orders = ''.join(
+        f'<numeric name={quoteattr(order.name)}'
+        f' data="{float(order.cycles)!r} {order.cos!r} {order.sin!r}"/>'
+        for order in gear.errors
+    )
     comment = '\n  '.join(remarks).replace('--', '- -')
     return _indented(f"""
 <mujoco model="gear_kinematics">
@@ -64,23 +69,27 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
       rotor angle / gear ratio - angle of its arm,
 
   and its springlength the play of the flanks. Positive torques push the output forwards. In the
-  sensors of the branches, the third value is the torque on the output.
+  sensors of the branches, the third value is the torque on the output. MuJoCo has no kinematic
+  errors: a program has to subtract them from springlength of all branches at each step. Numbers of
+  its orders, if any, are cycles per turn of the rotor, and their cos and sin, rad.
   {comment}
 -->
 <compiler angle="radian"/>
 <!--
-  In a step, the fastest oscillation on the springs goes on by at most {_PHASE} rad.
+  In a step, the fastest oscillation on the springs goes on by less than {_PHASE} rad.
   MuJoCo's constraints are soft. Their stiffest settings and torquescale make those that close the
   loops add less than 0.001 % to the compliance of a branch.
 -->
 <option timestep="{step!r}" integrator="implicitfast" gravity="0 0 0" iterations="10"
  tolerance="1e-12"><flag contact="disable"/></option>
+<visual><headlight ambient="0.5 0.5 0.5"/></visual>
 <default>
   <equality solref="{2.0 * step!r} 1" solimp="0.9999 0.9999"/>
   <joint solreffriction="{2.0 * step!r} 1" solimpfriction="0.9999 0.9999"/>
   <geom contype="0" conaffinity="0" mass="0"/>
+  <site size="5e-4"/>
 </default>
-{_errors(gear)}
+<custom>{orders}</custom>
 <worldbody>
   <body name="stator">{parts['stator']}</body>
   <body name="rotor">
@@ -125,17 +134,14 @@ def branch_tendons(gear: TwinGear, number: int) -> list[str]:
 
 def _time_step(gear: TwinGear) -> float:
     """The time step, s: a whole number of them is a millisecond."""
-    stiffness = [greatest_stiffness(springs) for springs in gear.springs]
-    sliders = sum(each.stiffness for each in gear.friction if math.isfinite(each.stiffness))
-    reflected = sum(stiffness) / gear.ratio**2 / gear.parameters.loads.rotor_inertia
-    arm, turning = 0.0, _turning_inertia(gear) * len(stiffness)
+    stiffness = sum(map(greatest_stiffness, gear.springs))
+    reflected = stiffness / gear.ratio**2 / gear.parameters.loads.rotor_inertia
+    stiffness += sum(each.stiffness for each in gear.friction if math.isfinite(each.stiffness))
+    lightest = _turning_inertia(gear) + gear.output_inertia
     if gear.has_shaft:
-        turning = _turning_inertia(gear)
-        arm = (stiffness.pop(0) + gear.shaft_stiffness) / turning
-        sliders += gear.shaft_stiffness
-    output = (sum(stiffness) + sliders) / (turning + gear.output_inertia)
-    # The trace of the matrix whose eigenvalues are the squares of the frequencies bounds them.
-    longest = min(_LONGEST_STEP, _PHASE / math.sqrt(reflected + arm + output))
+        stiffness += gear.shaft_stiffness
+        lightest = _turning_inertia(gear)
+    longest = min(_LONGEST_STEP, _PHASE / math.sqrt(reflected + stiffness / lightest))
     return _MILLISECOND / math.ceil(_MILLISECOND / longest - 1e-9)
 
 
@@ -214,25 +220,6 @@ def _add_sliders(gear: TwinGear, step: float, parts: dict[str, str]) -> None:
   {_inertial(slider.stiffness * (step / _PHASE) ** 2)}
   <joint name="{name}" frictionloss="{slider.torque!r}"/>
 </body>"""
-
-
-def _errors(gear: TwinGear) -> str:
-    """The kinematic errors, for programs."""
-    if not gear.errors:
-        return ''
-    orders = '\n'.join(
-        f'<numeric name={quoteattr(order.name)}'
-        f' data="{float(order.cycles)!r} {order.cos!r} {order.sin!r}"/>'
-        for order in gear.errors
-    )
-    return f"""
-<!--
-  MuJoCo has no kinematic errors. The output is to deviate by the sum of cos cos(cycles φ2) + sin
-  sin(cycles φ2) of these orders, each with its cycles per turn of the rotor, cos and sin (rad). To
-  simulate it, subtract the deviation from springlength of all branches at each step, as
-  gear_kinematics.twin.mujoco_model does.
--->
-<custom>{orders}</custom>"""
 
 
 def _inertial(inertia: float = 1e-9, mass: float = 1e-9) -> str:

@@ -87,13 +87,5 @@ class MujocoModel:
 
 
 def check(text: str) -> None:
-    """Load a model and take a step.
-
-    Raises:
-        ValueError: if MuJoCo refuses it.
-    """
-    model = mujoco.MjModel.from_xml_string(text)
-    data = mujoco.MjData(model)
-    mujoco.mj_step(model, data)
-    if data.warning.number.any():
-        raise ValueError('MuJoCo cannot move the gear')
+    """Load a model; raises ValueError if MuJoCo refuses it."""
+    mujoco.MjModel.from_xml_string(text)
