@@ -40,6 +40,7 @@ from gear_kinematics.wire.cdr import (
 from gear_kinematics.wire.joint_reader import MALFORMED, describe_missing
 
 _MOST_LATE = SECOND // 2  # ns of real time that are made up for
+_ACCURACY = 100_000  # ns, of stamps
 _WARNING_PERIOD = 1.0  # s
 
 
@@ -79,13 +80,18 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         self._joint, self._load = parameters.rotor_joint, 0.0
         self._period = round(SECOND / values['rate'])
         self._next_warning = 0.0
-        self._rotor = JointStateTemplate([self._joint or 'rotor'], velocity=True, effort=True)
-        output = parameters.output_encoder_joint or parameters.output_joint
-        self._output = JointStateTemplate([output], velocity=True, effort=False)
         self._outputs = Outputs(self, lambda _: None, self._note_unsent)
-        for topic in (topics.ROTOR_STATE, topics.OUTPUT_ENCODER):
-            self._outputs.create(topic, JointState, QoSProfile(depth=DEPTH))
         qos = QoSProfile(depth=DEPTH)
+        output = parameters.output_encoder_joint or parameters.output_joint
+        self._joints = [
+            (topic, JointStateTemplate([joint], velocity=True, effort=True), read)
+            for topic, joint, read in (
+                (topics.ROTOR_STATE, self._joint or 'rotor', self._driver.rotor),
+                (topics.OUTPUT_ENCODER, output, self._driver.output),
+            )
+        ]
+        for topic, *_ in self._joints:
+            self._outputs.create(topic, JointState, qos)
         self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos, raw=True)
         self.create_subscription(Float64, topics.LOAD_TORQUE, self._on_load, qos)
         for name, service, answer in (
@@ -99,6 +105,8 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
             f'simulating a gear of ratio {parameters.gear.gear_ratio} with '
             f'{type(self._model).__name__} at {values["rate"]:g} Hz'
         )
+        self._offset = 0
+        """Of the node's clock, ns."""
         self._due = time.monotonic_ns() + self._period
         """When the next state is due, ns of a steady clock."""
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -116,18 +124,23 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
             self._warn(f'{late / SECOND:.2f} s behind real time, which are left out: '
                        'the processor is busy, or the rate is too high')  # fmt: skip
             self._due += late
-        # The moment of a state in the node's clock, which may be a simulated one.
-        offset = self.get_clock().now().nanoseconds - now
+        self._compare_clocks()
         while self._due <= now:
             self._driver.advance(self._period / SECOND, self._load)
-            stamp = max(self._due + offset, 0)
-            position, velocity, effort = self._driver.rotor()
-            rotor = self._rotor.encode(stamp, [position], [velocity], [effort])
-            position, velocity = self._driver.output()
-            output = self._output.encode(stamp, [position], [velocity])
-            messages = (topics.ROTOR_STATE, rotor), (topics.OUTPUT_ENCODER, output)
-            self._outputs.send(message for message in messages if not self._driver.drops())
+            stamp = max(self._due + self._offset, 0)
+            self._outputs.send(
+                (topic, template.encode(stamp, *([value] for value in read())))
+                for topic, template, read in self._joints
+                if not self._driver.drops()
+            )
             self._due += self._period
+
+    def _compare_clocks(self) -> None:
+        """Find when the states are in the node's clock, unless something came in between."""
+        before = time.monotonic_ns()
+        now = self.get_clock().now().nanoseconds
+        if time.monotonic_ns() - before < _ACCURACY or not self._offset:
+            self._offset = now - before
 
     def _on_command(self, data: bytes) -> None:
         try:

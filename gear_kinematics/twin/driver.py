@@ -4,7 +4,7 @@
 Position, speed and torque are a cascade. With the angle x and the speed v of the rotor, those
 commanded x_c and v_c,
 
-    v_r = v_c + (ω/4)(x_c - x)                           within the greatest speed
+    v_r = v_c + (ω/4)(x_c - x)                           within 90 % of the greatest speed
     M = J [ω (v_r - v) + (ω²/8) ∫ (v_r - v) dt]          within the greatest torque
 
 J is the inertia of rotor and output at the rotor, so that ω is the bandwidth of the speed; the
@@ -22,6 +22,8 @@ from gear_kinematics.twin.model import Model
 
 _PERIOD = 2e-4  # s, of the servo loop
 _SEED = 0
+_SHARE = 0.9
+"""Of the greatest speed: what is commanded, as it is exceeded a little on the way there."""
 
 
 class Command(NamedTuple):
@@ -78,6 +80,7 @@ class Driver:
         self.command: Command | None = None
         """What is followed until the next one; None: the rotor is free."""
         self._integral = 0.0  # of the error in speed, rad
+        self._load = 0.0
 
     def power_cycle(self) -> None:
         """Switch off and on: the rotor is free, and one that counts turns counts from here on."""
@@ -87,7 +90,7 @@ class Driver:
 
     def advance(self, duration: float, load_torque: float) -> None:
         """Let time pass, s, with a torque on the output shaft from outside, N·m."""
-        model = self.model
+        model, self._load = self.model, load_torque
         steps = math.ceil(duration / _PERIOD - 1e-6)
         period = duration / steps
         for _ in range(steps):
@@ -106,13 +109,14 @@ class Driver:
             direction * self.torque,
         )
 
-    def output(self) -> tuple[float, float]:
-        """Position within a turn (rad) and velocity (rad/s) of the output."""
+    def output(self) -> tuple[float, float, float]:
+        """Position within a turn (rad), velocity (rad/s) and load torque (N·m) of the output."""
         direction = self._parameters.output_encoder_direction
         position = self._parameters.output_encoder_zero + direction * self.model.output_angle
         return (
             _counted(position, self._counts[1], wraps=True),
             direction * self.model.output_velocity,
+            direction * self._load,
         )
 
     def drops(self) -> bool:
@@ -123,7 +127,7 @@ class Driver:
         """The torque of the motor, N·m, for the next period, s."""
         if self.command is None:
             return 0.0
-        model, omega, fastest = self.model, self._omega, self._parameters.max_rotor_speed
+        model, omega, fastest = self.model, self._omega, _SHARE * self._parameters.max_rotor_speed
         direction = self._parameters.rotor_direction
         position, velocity, effort = self.command
         if position is None and velocity is None:

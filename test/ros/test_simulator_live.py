@@ -3,6 +3,7 @@
 
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -17,7 +18,6 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
-from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.parameters import ConfigError
 from gear_kinematics.ros.simulator import GearSimulator
 
@@ -210,16 +210,14 @@ def test_wear_takes_the_preload_and_then_leaves_play(bench):
     )
 
 
-def refused(context, **values) -> str:
-    overrides = [Parameter(name, value=value) for name, value in values.items()]
-    with pytest.raises((ValueError, MechanismError)) as error:
-        GearSimulator(context=context, namespace='/refused', parameter_overrides=overrides)
-    return str(error.value)
-
-
 def test_parameters_that_cannot_be_are_refused(context, tmp_path):
-    assert 'did you mean `bandwidth`?' in refused(context, bandwith=1.0)
-    assert 'loads.rotor_inertia must be' in refused(context, **{'loads.rotor_inertia': 0.0})
+    for name, cause in {
+        'bandwith': 'did you mean `bandwidth`?',
+        'loads.rotor_inertia': 'loads.rotor_inertia must be',
+    }.items():
+        given = [Parameter(name, value=0.0)]
+        with pytest.raises(ValueError, match=re.escape(cause)):
+            GearSimulator(context=context, namespace='/refused', parameter_overrides=given)
     file = tmp_path / 'other.yaml'
     file.write_text('/other: {ros__parameters: {preload: 1.0}}', 'utf-8')
     with pytest.raises(ConfigError, match='no parameters of /gear_simulator in it'):

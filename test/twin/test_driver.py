@@ -94,9 +94,9 @@ def test_limits_hold():
         efforts.append(limited.torque)
         speeds.append(limited.model.rotor_velocity)
     assert max(map(abs, efforts)) == 0.1
-    assert max(speeds) == pytest.approx(50.0, rel=0.05)
+    assert max(speeds) == pytest.approx(45.0, rel=0.05)
     run(limited, Command(None, None, 5.0), 1.0)
-    assert limited.model.rotor_velocity == pytest.approx(50.0, rel=0.05)
+    assert limited.model.rotor_velocity == pytest.approx(45.0, rel=0.05)
 
 
 def test_locked_rotor_tells_the_torque_that_holds_it():

@@ -15,6 +15,7 @@ from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel, in_series
 from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.model import Model
 
 VALUES = {'play': 1e-3, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 0.005}
 SHARED = {
@@ -35,7 +36,7 @@ def branch(**values) -> TwinGear:
     return gear({'branches': ['a'], 'preload': 0.0}, play=0.0, **values)
 
 
-def ramp(model: FastModel, *loads: float, seconds: float = 1.0, rotor: float = 0.0) -> None:
+def ramp(model: Model, *loads: float, seconds: float = 1.0, rotor: float = 0.0) -> None:
     """Ramp the load from each value to the next."""
     steps = round(1000 * seconds)
     for begin, end in pairwise(loads):
@@ -176,3 +177,32 @@ def test_a_hardening_branch_behind_a_shaft_yields_with_both():
 def test_a_gear_that_is_too_stiff_for_its_inertia_is_refused():
     with pytest.raises(MechanismError, match='rad/s: give them more inertia'):
         FastModel(gear(output_inertia=1e-6))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    'changed',
+    [{}, {'interference': -1e-3}, {'friction': (Slider(math.inf, 0.3), Slider(5000.0, 0.2))}],
+    ids=['preload', 'play', 'friction'],
+)
+def test_both_models_agree_on_torque_ramps(changed):
+    """Within 1 % of the greatest angle and torque, there and back, beyond both thresholds."""
+    mujoco_model = pytest.importorskip('gear_kinematics.twin.mujoco_model')
+    kinds = {'mass': 0.08, 'inertia': 1e-5}
+    bodies = {
+        f'loads.{body}_{kind}': value
+        for body in ('satellite', 'coupling')
+        for kind, value in kinds.items()
+    }
+    same = replace(gear(bodies, friction=0.02), **changed)
+    models = FastModel(same), mujoco_model.MujocoModel(same)
+    found = []
+    for model in models:
+        model.rotor_locked = True
+        rows = []
+        for begin, end in pairwise((0.0, 4.0, 9.0, 0.0, -4.0, -9.0, 0.0)):
+            ramp(model, begin, end)
+            rows.append((1e3 * model.output_angle, *model.branch_torques))
+        found.append(np.array(rows))
+    fast, other = found
+    assert (np.abs(fast - other).max(axis=0) <= 0.01 * np.abs(fast).max(axis=0)).all()

@@ -1,0 +1,40 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Call ~/wear or ~/power_cycle of gear_simulator, or ramp its load and write angle and torque."""
+
+import math
+import sys
+from pathlib import Path
+
+import rclpy
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
+from std_srvs.srv import SetBool, Trigger
+
+rclpy.init()
+node, output = rclpy.create_node('bench'), [JointState(position=[0.0], effort=[math.nan])]
+
+
+def call(name: str, kind: type = Trigger, **values: bool) -> None:
+    client = node.create_client(kind, f'/gear_simulator/{name}')
+    client.wait_for_service()
+    answer = client.call_async(kind.Request(**values))
+    rclpy.spin_until_future_complete(node, answer)
+    print(answer.result().message)
+
+
+if sys.argv[1] in {'wear', 'power_cycle'}:
+    call(sys.argv[1])
+    sys.exit()
+call('lock_rotor', SetBool, data=True)
+loads = node.create_publisher(Float64, '/load_torque', 10)
+node.create_subscription(JointState, '/output_encoder', output.append, 10)
+rows = ['angle,torque']
+for step in range(8 * 200 + 1):  # five small ramps, and three large ones
+    amplitude = 0.4 if step <= 5 * 200 else 4.0
+    torque = amplitude * 2.0 / math.pi * math.asin(math.sin(math.tau * step / 200))
+    loads.publish(Float64(data=torque))
+    while output[-1].effort[0] != torque:
+        rclpy.spin_once(node)
+    rows.append(f'{math.remainder(output[-1].position[0], math.tau)},{torque}')
+Path(sys.argv[1]).write_text('\n'.join(rows))
+call('lock_rotor', SetBool, data=False)
