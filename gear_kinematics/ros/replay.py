@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Plays the rotor topic of a bag with the timing of the recording, and records what comes of it."""
+"""Plays the rotor topic of a bag with its timing, and records what comes of it."""
 
 import signal
 import time
