@@ -11,7 +11,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
 rclpy.init()
-node, output = rclpy.create_node('bench'), [JointState(position=[0.0], effort=[math.nan])]
+node, output = rclpy.create_node('bench'), [JointState(effort=[math.nan])]
 
 
 def call(name: str, kind: type = Trigger, **values: bool) -> None:
@@ -29,11 +29,11 @@ call('lock_rotor', SetBool, data=True)
 loads = node.create_publisher(Float64, '/load_torque', 10)
 node.create_subscription(JointState, '/output_encoder', output.append, 10)
 rows = ['angle,torque']
-for step in range(8 * 200 + 1):  # five small ramps, and three large ones
-    amplitude = 0.4 if step <= 5 * 200 else 4.0
-    torque = amplitude * 2.0 / math.pi * math.asin(math.sin(math.tau * step / 200))
+ramps = [(0.4, 60)] * 5 + [(4.0, 200)] * 3  # N·m, steps there and back
+for amplitude, phase in [(most, step / count) for most, count in ramps for step in range(count)]:
+    torque = amplitude * 2.0 / math.pi * math.asin(math.sin(math.tau * phase))
     loads.publish(Float64(data=torque))
-    while output[-1].effort[0] != torque:
+    while output[-1].effort[0] != torque or abs(output[-1].velocity[0]) > 0.01:
         rclpy.spin_once(node)
     rows.append(f'{math.remainder(output[-1].position[0], math.tau)},{torque}')
 Path(sys.argv[1]).write_text('\n'.join(rows))

@@ -144,7 +144,7 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _on_command(self, data: bytes) -> None:
         try:
-            self._driver.command = read_command(data, self._joint)
+            self._driver.follow(read_command(data, self._joint))
         except ValueError as error:
             self._warn(f'{topics.ROTOR_COMMAND} rejected: {error}')
 

@@ -21,6 +21,8 @@ from gear_kinematics.twin.fast_model import inertias
 from gear_kinematics.twin.model import Model
 
 _PERIOD = 2e-4  # s, of the servo loop
+_AHEAD = 0.02
+"""s, for which a commanded position moves on with its velocity: commands at 50 Hz make no steps."""
 _SEED = 0
 _SHARE = 0.9
 """Of the greatest speed: what is commanded, as it is exceeded a little on the way there."""
@@ -29,7 +31,7 @@ _SHARE = 0.9
 class Command(NamedTuple):
     """What a JointState asks of the motor, as the encoder counts; None: not commanded.
 
-    A position is held, with the velocity as feedforward. Without a position the velocity is held,
+    A position is held, and moves on with the velocity until the next command soon comes. Without a position the velocity is held,
     and only without either the effort acts.
     """
 
@@ -77,14 +79,21 @@ class Driver:
         self._omega = min(TURN * bandwidth, 0.5 / _PERIOD * rotor / self._inertia)
         self._origin = self._parameters.rotor_zero
         """Position at rotor angle 0, rad."""
-        self.command: Command | None = None
-        """What is followed until the next one; None: the rotor is free."""
-        self._integral = 0.0  # of the error in speed, rad
         self._load = 0.0
+        self._release()
+
+    def _release(self) -> None:
+        self._command: Command | None = None
+        self._age = 0.0  # of the command, s
+        self._integral = 0.0  # of the error in speed, rad
+
+    def follow(self, command: Command) -> None:
+        """Follow a command until the next one."""
+        self._command, self._age = command, 0.0
 
     def power_cycle(self) -> None:
         """Switch off and on: the rotor is free, and one that counts turns counts from here on."""
-        self.command, self._integral = None, 0.0
+        self._release()
         if not self._parameters.single_turn:
             self._origin = -self._parameters.rotor_direction * self.model.rotor_angle
 
@@ -125,11 +134,11 @@ class Driver:
 
     def _servo(self, period: float) -> float:
         """The torque of the motor, N·m, for the next period, s."""
-        if self.command is None:
+        if self._command is None:
             return 0.0
         model, omega, fastest = self.model, self._omega, _SHARE * self._parameters.max_rotor_speed
         direction = self._parameters.rotor_direction
-        position, velocity, effort = self.command
+        position, velocity, effort = self._command
         if position is None and velocity is None:
             self._integral = 0.0
             torque = direction * (effort or 0.0)
@@ -138,7 +147,8 @@ class Driver:
             return _within(torque, self._max_torque)
         speed = direction * (velocity or 0.0)
         if position is not None:
-            angle = direction * (position - self._origin)
+            angle = direction * (position - self._origin) + speed * min(self._age, _AHEAD)
+            self._age += period
             speed += 0.25 * omega * (angle - model.rotor_angle)
         error = _within(speed, fastest) - model.rotor_velocity
         integral = self._integral + period * error

@@ -203,10 +203,10 @@ def test_a_power_cycle_loses_the_turns_of_the_rotor_alone(bench):
 def test_wear_takes_the_preload_and_then_leaves_play(bench):
     """T0 = 2 N·m is an interference of 2 (2/3000 + 1/1069) = 3.204 mrad."""
     assert bench.call('wear') == (
-        'the flanks wore off by 2.00 mrad: a preload of 0.75 N·m is left'
+        'the flanks wore off by 2.70 mrad: a preload of 0.31 N·m is left'
     )
     assert bench.call('wear') == (
-        'the flanks wore off by 2.00 mrad: the output has a play of 0.80 mrad'
+        'the flanks wore off by 2.70 mrad: the output has a play of 2.20 mrad'
     )
 
 

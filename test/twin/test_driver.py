@@ -22,7 +22,7 @@ def driver(shared=(), *, max_torque=0.5, bandwidth=30.0, **options) -> Driver:
 
 
 def run(driver: Driver, command: Command, seconds: float, load: float = 0.0) -> None:
-    driver.command = command
+    driver.follow(command)
     for _ in range(round(1000 * seconds)):
         driver.advance(1e-3, load)
 
@@ -52,7 +52,7 @@ def test_step_overshoots_little_with_any_inertia_of_the_output(heavy):
     values = {**VALUES, 'output_inertia': heavy * 0.005}
     gear = TwinGear.of(NodeParameters.of(SHARED), values)
     stepped = Driver(FastModel(gear), max_torque=0.5, bandwidth=30.0)
-    stepped.command = Command(5.0, None, None)
+    stepped.follow(Command(5.0, None, None))
     reached = []
     for _ in range(20_000):
         stepped.advance(1e-3, 0.0)
@@ -88,7 +88,7 @@ def test_position_goes_before_velocity_and_effort():
 def test_limits_hold():
     limited = driver({'max_rotor_speed': 50.0}, max_torque=0.1)
     efforts, speeds = [], []
-    limited.command = Command(1000.0, None, None)
+    limited.follow(Command(1000.0, None, None))
     for _ in range(1000):
         limited.advance(1e-3, 0.0)
         efforts.append(limited.torque)
@@ -136,7 +136,6 @@ def test_multi_turn_encoder_counts_from_where_it_is_switched_on():
     run(read, Command(40.0, None, None), 1.0)
     output = read.output()[0]
     read.power_cycle()
-    assert read.command is None
     assert read.rotor()[0] == pytest.approx(0.0, abs=1e-9)
     assert read.output()[0] == output
     run(read, Command(2.0, None, None), 1.0)
