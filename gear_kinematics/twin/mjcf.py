@@ -78,7 +78,7 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
 <!--
   In a step, the fastest oscillation on the springs goes on by less than {_PHASE} rad.
   MuJoCo's constraints are soft. Their stiffest settings and torquescale make those that close the
-  loops add less than 0.001 % to the compliance of a branch.
+  loops add less than 0.01 % to the compliance of the gear.
 -->
 <option timestep="{step!r}" integrator="implicitfast" gravity="0 0 0" iterations="10"
  tolerance="1e-12"><flag contact="disable"/></option>
@@ -202,7 +202,7 @@ def _add_branch(gear: TwinGear, number: int, turn: float, parts: dict[str, str])
         ends = low - spring.beyond, high + spring.beyond
         parts['tendon'] += _spring(tendon, spring.stiffness, joints, ends)
     parts['equality'] += f"""
-<weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="20"/>"""
+<weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="200"/>"""
     parts['sensor'] += f"""
 <torque name="{topics.BRANCH_LOADS}_{name}" site="slot_arm_{name}"/>"""
 
