@@ -174,11 +174,11 @@ class TwinGear:
 
     def error(self, rotor_angle: float) -> float:
         """The deviation of the output angle, rad."""
-        return math.fsum(
-            order.cos * math.cos(float(order.cycles) * rotor_angle)
-            + order.sin * math.sin(float(order.cycles) * rotor_angle)
-            for order in self.errors
-        )
+        deviation = 0.0
+        for order in self.errors:
+            phase = float(order.cycles) * rotor_angle
+            deviation += order.cos * math.cos(phase) + order.sin * math.sin(phase)
+        return deviation
 
     def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:
         low_b = wind_up(self.springs[1], torque) + min(0.5 * self.interference, 0.0)

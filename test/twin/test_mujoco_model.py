@@ -67,6 +67,34 @@ def test_soft_constraints_do_not_show_in_the_stiffness(gear, loads, stiffness):
     assert (high - low) / turned == pytest.approx(stiffness, rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ('stiffness', 'satellite_inertia', 'output_inertia'),
+    [
+        (Stiffness(13e3, 16e3, math.inf), 1e-7, 1e-4),
+        (Stiffness(80e3, 250.0, math.inf), 1e-6, 0.1),
+        (Stiffness(11e3, 200.0, 80e3), 1e-5, 1e-3),
+    ],
+    ids=['light satellites', 'a soft output', 'a stiff shaft'],
+)
+def test_so_it_is_for_other_gears(gear, stiffness, satellite_inertia, output_inertia):
+    loads = replace(
+        gear.parameters.loads, satellite_inertia=satellite_inertia, coupling_inertia=1e-8
+    )
+    gear = replace(
+        gear,
+        parameters=replace(gear.parameters, loads=loads),
+        springs=((Spring(0.0, stiffness.branch_a),), (Spring(0.0, stiffness.branch_b),)),
+        shaft_stiffness=stiffness.shaft,
+        output_inertia=output_inertia,
+        play=1.0,
+    ).preloaded(2.0)
+    damping, model = math.sqrt(stiffness.both_in_mesh * output_inertia), MujocoModel(gear)
+    model.rotor_locked = True
+    for _ in range(400):
+        model.advance(0.1 * output_inertia / damping, 0.0, 1.0 - damping * model.output_velocity)
+    assert 1.0 / model.output_angle == pytest.approx(stiffness.both_in_mesh, rel=1e-4)
+
+
 def test_forces_are_those_of_the_closed_form(gear):
     """From what arms and rotor feel, it gives the force of the teeth: that of the springs."""
     gear = replace(gear, rotor_damping=0.0)
