@@ -23,11 +23,11 @@ Report = Mapping[str, Any]
 
 
 def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[str]]:
-    """Take the figures of reports for those of a gear.
+    """Take the figures of reports for those of a gear; later reports replace earlier ones.
 
     Args:
         gear: has all others, and the shaft between the arms, which a loop does not show.
-        reports: the JSON of `gearkin preload`, and of `gearkin lost-motion` on one recording.
+        reports: the JSON of `gearkin preload`, or of `gearkin lost-motion` on one recording.
 
     Returns:
         The gear, and what the reports leave open, with what was taken for it.
@@ -36,29 +36,22 @@ def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[st
         ValueError: if one cannot be used, naming it.
     """
     notes: list[str] = []
-    for path, data in sorted(map(_read, reports), key=lambda each: 'recordings' in each[1]):
+    for path in reports:
         try:
+            data = json.loads(path.read_bytes())
             if 'recordings' in data:
                 [recording] = data['recordings']
                 gear = _loaded(gear, recording, notes)
             else:
                 gear = _set(gear, data)
+        except OSError as error:
+            raise ValueError(f'{path}: {error.strerror}') from error
         except MechanismError as error:
             raise ValueError(f'{path}: {error}') from error
-        except (LookupError, TypeError, ValueError) as error:
+        except (LookupError, RecursionError, TypeError, ValueError) as error:
             wanted = 'torque ramps of one recording by gearkin lost-motion, or of gearkin preload'
             raise ValueError(f'{path}: must be the JSON of {wanted}') from error
     return gear, notes
-
-
-def _read(report: Path) -> tuple[Path, Report]:
-    try:
-        data = json.loads(report.read_bytes())
-    except OSError as error:
-        raise ValueError(f'{report}: {error.strerror}') from error
-    except (ValueError, RecursionError) as error:
-        raise ValueError(f'{report}: not JSON') from error
-    return report, data if isinstance(data, dict) else {}
 
 
 def _set(gear: TwinGear, data: Report) -> TwinGear:

@@ -146,23 +146,24 @@ def test_play_at_the_pins_is_left(gear, pins):
     assert found.play == -found.interference == pytest.approx(play['play'])
 
 
-def test_both_reports_are_taken_in_either_order(gear, ramps, pins):
-    reports = [
-        ramps([(0.0, 1.0, 3000.0)], friction=0.3, backlash=0.0, high=0.0),
-        pins('--wanted-preload', 1.0, '--branch-stiffness', 10, '--shaft-stiffness', 1000),
-    ]
-    found, _ = measured(gear, reports)
-    assert found == measured(gear, reports[::-1])[0]
+def test_a_later_report_replaces_figures_of_an_earlier_one(gear, ramps, pins):
+    loop = ramps([(0.0, 1.0, 3000.0)], friction=0.3, backlash=0.0, high=0.0)
+    preload = pins('--wanted-preload', 1.0, '--branch-stiffness', 10, '--shaft-stiffness', 1000)
+    found, _ = measured(gear, [preload, loop])
     assert found.preload == pytest.approx(1.0, abs=0.02)
     assert found.friction == (Slider(math.inf, 0.3),)
     assert found.springs[0][0].stiffness > 1000.0
+    found, _ = measured(gear, [loop, preload])
+    assert found.preload == pytest.approx(1.0, abs=0.02)
+    assert found.friction == (Slider(math.inf, 0.3),)
+    assert found.springs[0][0].stiffness == 10.0
 
 
 @pytest.mark.parametrize(
     ('content', 'fault'),
     [
-        ('no report', 'not JSON'),
-        ('[' * 100_000, 'not JSON'),
+        ('no report', 'must be the JSON'),
+        ('[' * 100_000, 'must be the JSON'),
         ('[]', 'must be the JSON'),
         ('{"made_by": "gearkin loads", "recordings": [{}]}', 'must be the JSON'),
         ('{"recordings": [{}, {}]}', 'one recording'),
