@@ -45,14 +45,13 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
     needed = 'satellite_mass', 'satellite_inertia', 'coupling_mass', 'coupling_inertia'
     if missing := [f'loads.{name}' for name in needed if not getattr(loads, name)]:
         raise MechanismError([f'MuJoCo needs more than 0 for {", ".join(missing)}'])
-    step, error, branches = _time_step(gear), gear.error(0.0), mechanism.branches
-    behind_shaft = branches[:1] if gear.has_shaft else ()
+    step, error = _time_step(gear), gear.error(0.0)
     rigid = sum(slider.torque for slider in gear.friction if math.isinf(slider.stiffness))
     parts: defaultdict[str, str] = defaultdict(str)
     if shown:
         _add_shapes(gear.parameters, parts)
-    for number, branch in enumerate(branches):
-        _add_branch(gear, number, error + gear.shaft_twist * (branch in behind_shaft), parts)
+    for number in range(len(mechanism.branches)):
+        _add_branch(gear, number, parts)
     _add_sliders(gear, step, parts)
     orders = ''.join(
         f'<numeric name={quoteattr(order.name)}'
@@ -150,15 +149,18 @@ def _turning_inertia(gear: TwinGear) -> float:
     return gear.parameters.loads.satellite_inertia + gear.parameters.loads.coupling_inertia
 
 
-def _add_branch(gear: TwinGear, number: int, turn: float, parts: dict[str, str]) -> None:
-    """Add the bodies of a branch, whose arm is turned by an angle, and what acts on them.
+def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
+    """Add the bodies of a branch, and what acts on them.
 
     Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
-    side of the weld has half of the inertia of all, with which it yields least.
+    side of the weld has half of the inertia of all, with which it yields least. The site in the slot
+    of the arm is upside down, so that its sensor tells the torque on the arm.
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
     branch, e = mechanism.branches[number], mechanism.eccentricity
-    name = branch.name
+    name, turn, behind_shaft = branch.name, gear.error(0.0), gear.has_shaft and not number
+    if behind_shaft:
+        turn += gear.shaft_twist  # of the arm
     across, along = e * math.sin(branch.cam_phase - turn), e * math.cos(branch.cam_phase - turn)
     x, y, z = cam_centre(branch, e)
     reach = mechanism.ring_rolling_radius / e
@@ -182,7 +184,7 @@ def _add_branch(gear: TwinGear, number: int, turn: float, parts: dict[str, str])
   <joint name="slot_arm_{name}" type="slide" axis="0 1 0" ref="{along!r}"/>
   <site name="slot_arm_{name}" euler="{math.pi!r} 0 0"/>
 </body>"""
-    if gear.has_shaft and not number:
+    if behind_shaft:
         parts['arm'] = f"""
 <body name="arm_{name}" euler="0 0 {turn!r}">
   {_inertial()}
@@ -218,7 +220,7 @@ def _add_sliders(gear: TwinGear, step: float, parts: dict[str, str]) -> None:
         parts['sliders'] += f"""
 <body name="{name}">
   {_inertial(slider.stiffness * (step / _PHASE) ** 2)}
-  <joint name="{name}" frictionloss="{slider.torque!r}"/>
+  <joint name="{name}" ref="{gear.error(0.0)!r}" frictionloss="{slider.torque!r}"/>
 </body>"""
 
 

@@ -163,7 +163,8 @@ def test_what_surrounds_the_springs_is_written(gear):
     """Sliders, orders, a rigid shaft and further branches."""
     orders = (Order('tooth <1>', Fraction(4), 1e-5, 2e-5),)
     sliders = Slider(500.0, 0.2), Slider(math.inf, 0.3)
-    model, _ = loaded(replace(gear, friction=sliders, errors=orders))
+    model, data = loaded(replace(gear, friction=sliders, errors=orders))
+    assert data.ten_length[model.tendon('friction_0').id] == 0.0
     assert model.joint('friction_0').frictionloss[0] == 0.2
     assert model.joint('output_shaft').frictionloss[0] == 0.3
     assert model.numeric('tooth <1>').data.tolist() == [4.0, 1e-5, 2e-5]
