@@ -16,12 +16,11 @@ import math
 from collections.abc import Sequence
 
 from gear_kinematics.kinematics import Mechanism, MechanismError
-from gear_kinematics.twin.gear import Spring, TwinGear, spring_torque
+from gear_kinematics.twin.gear import Spring, TwinGear, greatest_stiffness, spring_torque
 
 _STEP = 1e-4  # h, s, at most
 _FASTEST = 1.0 / _STEP
 """rad/s: half of the bound, where the period is 5 % too short."""
-_BRACED = 2  # branches, which have a shaft between their arms
 
 
 class FastModel:
@@ -46,12 +45,12 @@ class FastModel:
     @gear.setter
     def gear(self, gear: TwinGear) -> None:
         springs = [*gear.springs]
-        if len(springs) == _BRACED:
+        if gear.has_shaft:
             springs[0] = in_series(springs[0], gear.shaft_stiffness)
         self._ratio = gear.ratio
         self._rotor_inertia, self._output_inertia = inertias(gear)
         reduced = self._ratio**2 * self._rotor_inertia
-        stiffness = sum(map(_greatest_stiffness, springs))
+        stiffness = sum(map(greatest_stiffness, springs))
         frequency = math.sqrt(stiffness / reduced + stiffness / self._output_inertia)
         if frequency > _FASTEST:
             fault = f'rotor and output would oscillate at {frequency:.0f} rad/s; the fast model '
@@ -136,10 +135,3 @@ def in_series(springs: Sequence[Spring], stiffness: float) -> tuple[Spring, ...]
         found.append(Spring(spring.beyond + twist, both - before))
         before = both
     return tuple(found)
-
-
-def _greatest_stiffness(springs: Sequence[Spring]) -> float:
-    total = [0.0]
-    for spring in springs:
-        total.append(total[-1] + spring.stiffness)
-    return max(total)

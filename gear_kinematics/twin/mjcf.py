@@ -153,8 +153,8 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
     """Add the bodies of a branch, and what acts on them.
 
     Coupling and slot are one body: each has half of its mass. They turn with the satellite: either
-    side of the weld has half of the inertia of all, with which it yields least. The site in the slot
-    of the arm is upside down, so that its sensor tells the torque on the arm.
+    side of the weld has half of the inertia of all, with which it yields least. The site in the
+    slot of the arm is upside down, so that its sensor tells the torque on the arm.
     """
     mechanism, loads = gear.parameters.mechanism, gear.parameters.loads
     branch, e = mechanism.branches[number], mechanism.eccentricity

@@ -13,7 +13,7 @@ from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import Branch
 from gear_kinematics.kinematics.loads import TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness
-from gear_kinematics.parameters import ConfigError
+from gear_kinematics.parameters import ConfigError, NodeParameters
 from gear_kinematics.twin.gear import Slider, Spring, TwinGear, spring_torque, wind_up
 from gear_kinematics.twin.parameters import default_config
 
@@ -157,6 +157,10 @@ def test_the_default_gear_is_as_its_file_says(default):
     assert default.springs == ((Spring(0.0, 3000.0),),) * 2
     assert default.friction == (Slider(math.inf, 0.1),)
     assert default.ratio == -19.0
+
+
+def test_gear_state_publisher_takes_the_same_file(default):
+    assert NodeParameters.load(default_config()) == default.parameters
 
 
 @pytest.fixture
