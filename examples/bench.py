@@ -10,6 +10,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
+RESTING = 0.01  # rad/s
 rclpy.init()
 node, output = rclpy.create_node('bench'), [JointState(effort=[math.nan])]
 
@@ -23,8 +24,7 @@ def call(name: str, kind: type = Trigger, **values: bool) -> None:
 
 
 if sys.argv[1] in {'wear', 'power_cycle'}:
-    call(sys.argv[1])
-    sys.exit()
+    sys.exit(call(sys.argv[1]))
 call('lock_rotor', SetBool, data=True)
 loads = node.create_publisher(Float64, '/load_torque', 10)
 node.create_subscription(JointState, '/output_encoder', output.append, 10)
@@ -33,7 +33,7 @@ ramps = [(0.4, 60)] * 5 + [(4.0, 200)] * 3  # N·m, steps there and back
 for amplitude, phase in [(most, step / count) for most, count in ramps for step in range(count)]:
     torque = amplitude * 2.0 / math.pi * math.asin(math.sin(math.tau * phase))
     loads.publish(Float64(data=torque))
-    while output[-1].effort[0] != torque or abs(output[-1].velocity[0]) > 0.01:
+    while output[-1].effort[0] != torque or abs(output[-1].velocity[0]) > RESTING:
         rclpy.spin_once(node)
     rows.append(f'{math.remainder(output[-1].position[0], math.tau)},{torque}')
 Path(sys.argv[1]).write_text('\n'.join(rows))

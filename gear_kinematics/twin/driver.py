@@ -22,7 +22,7 @@ from gear_kinematics.twin.model import Model
 
 _PERIOD = 2e-4  # s, of the servo loop
 _AHEAD = 0.02
-"""s, for which a commanded position moves on with its velocity: commands at 50 Hz make no steps."""
+"""s, for which a commanded position moves on with its velocity, so that commands are no steps."""
 _SEED = 0
 _SHARE = 0.9
 """Of the greatest speed: what is commanded, as it is exceeded a little on the way there."""
@@ -31,7 +31,7 @@ _SHARE = 0.9
 class Command(NamedTuple):
     """What a JointState asks of the motor, as the encoder counts; None: not commanded.
 
-    A position is held, and moves on with the velocity until the next command soon comes. Without a position the velocity is held,
+    A position is held, with the velocity as feedforward. Without a position the velocity is held,
     and only without either the effort acts.
     """
 

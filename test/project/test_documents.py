@@ -13,10 +13,12 @@ from gear_recordings import record_both_encoders
 
 from gear_kinematics.commands.cli import COMMANDS, main, make_parser
 from gear_kinematics.parameters import BRANCH_PARAMETERS, PARAMETERS, default_value
+from gear_kinematics.twin import parameters as twin
 
 ROOT = Path(__file__).resolve().parents[2]
 README = (ROOT / 'README.md').read_text('utf-8')
 NODE = (ROOT / 'docs/reference/node.md').read_text('utf-8')
+SIMULATOR = (ROOT / 'docs/reference/simulator.md').read_text('utf-8')
 PAGES = [ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md'))]
 
 
@@ -32,9 +34,9 @@ def commands(text: str) -> list[list[str]]:
     ]
 
 
-def rows(section: str) -> list[list[str]]:
-    """Give the cells of the tables in a section of the page on the node."""
-    [text] = re.findall(rf'^## {section}\n(.*?)(?=^## |\Z)', NODE, re.MULTILINE | re.DOTALL)
+def rows(section: str, page: str = NODE) -> list[list[str]]:
+    """Give the cells of the tables in a section of a page on a node."""
+    [text] = re.findall(rf'^## {section}\n(.*?)(?=^## |\Z)', page, re.MULTILINE | re.DOTALL)
     lines = re.findall(r'^\| (`.*) \|$', text, re.MULTILINE)
     return [line.split(' | ') for line in lines]
 
@@ -135,14 +137,25 @@ def test_every_topic_is_in_the_reference():
     assert documented == {name.rpartition('/')[2] for name in topics}
 
 
-def test_every_parameter_is_in_the_reference_with_its_default():
-    documented = {
+def documented_parameters(page: str) -> dict[str, str]:
+    """Give the default values in the table of a page, by parameter."""
+    return {
         name: default
-        for cell, given, _ in rows('Parameters')
+        for cell, given, _ in rows('Parameters', page)
         for name, default in zip(
             names(cell), given.split(', ', len(names(cell)) - 1), strict=False
         )
     }
+
+
+def test_every_parameter_of_the_simulator_is_in_the_reference_with_its_default():
+    documented = documented_parameters(SIMULATOR)
+    shown = {name: yaml.safe_load(default) for name, default in documented.items()}
+    assert shown == {name: twin.default_value(name) for name in twin.PARAMETERS}
+
+
+def test_every_parameter_is_in_the_reference_with_its_default():
+    documented = documented_parameters(NODE)
     documented.pop('qos_overrides.<topic>.<policy>')
     of_branches = {f'<branch>.{name}' for name in BRANCH_PARAMETERS}
     assert set(documented) == {*PARAMETERS, *of_branches}

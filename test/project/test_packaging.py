@@ -180,6 +180,7 @@ def test_wheel_holds_types_and_share(tree, wheel, manifest):
     shared = shared_files(tree)
     assert {'config/actuator.yaml', 'launch/gear_state_publisher.launch.py'} <= shared
     assert {'config/view.rviz', 'config/foxglove.json', 'launch/view.launch.py'} <= shared
+    assert {'config/simulated_actuator.yaml', 'launch/simulated_actuator.launch.py'} <= shared
     assert {f'{data}/{SHARE}/{name}' for name in shared} <= names
     assert not [name for name in names if name.startswith('test')]
     # pip makes the program there, and would find the one of a ROS workspace in its place.
@@ -197,18 +198,22 @@ def test_sdist_holds_what_its_tests_need(archives, tree):
     assert not {name for name in needed if '__pycache__' not in name} - names
 
 
-def test_installed_node_runs(installed):
+@pytest.mark.parametrize(
+    ('program', 'file'),
+    [('gear_state_publisher', 'actuator.yaml'), ('gear_simulator', 'simulated_actuator.yaml')],
+)
+def test_installed_node_runs(installed, program, file):
     """It is interrupted after its first words, and has a clean end."""
-    config = installed.prefix / SHARE / 'config/actuator.yaml'
-    command = installed.command('gear_state_publisher', '--ros-args', '--params-file', config)
+    config = installed.prefix / SHARE / 'config' / file
+    command = installed.command(program, '--ros-args', '--params-file', config)
     with started(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as process:
         lines = []
         for line in process.stdout:
             lines.append(line)
-            if 'gear ratio' in line:
+            if 'ratio -19' in line:
                 process.send_signal(signal.SIGINT)
         assert process.wait() == 0, lines
-        assert any('gear ratio' in line for line in lines), lines
+        assert any('ratio -19' in line for line in lines), lines
 
 
 def test_installed_files_are_there_and_found(installed, tree, tmp_path):
@@ -220,7 +225,7 @@ def test_installed_files_are_there_and_found(installed, tree, tmp_path):
     assert all((share.parent / name.removeprefix('package://')).is_file() for name in names)
 
 
-@pytest.mark.parametrize('name', ['gearkin', 'gear_state_publisher'])
+@pytest.mark.parametrize('name', ['gearkin', 'gear_state_publisher', 'gear_simulator'])
 def test_every_installation_states_the_version_of_the_manifest(installed, manifest, name):
     version = run(*installed.command(name, '--version'), cwd=installed.prefix)
     assert version == f'{name} {manifest.findtext("version")}\n'
