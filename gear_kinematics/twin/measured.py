@@ -94,7 +94,7 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     elif play and not ranges[0]['low']:
         ranges = ranges[1:] or ranges  # the play is in the first
     # While the torque rises, the springs hold what friction leaves.
-    loads = [0.0, *(each['low'] - friction for each in ranges[1:])]
+    loads = [0.0, *(max(each['low'] - friction, 0.0) for each in ranges[1:])]
     return replace(
         gear,
         springs=_springs(gear, loads, [each['value'] for each in ranges]),

@@ -78,6 +78,14 @@ def test_one_branch_has_the_springs_of_the_output(loose, ramps):
     assert notes == ['play of the flanks: 0 rad, as configured']
 
 
+def test_a_range_that_friction_takes_up_has_no_length(loose, ramps):
+    ranges = [(0.0, 1.0, 500.0), (1.0, 5.0, 3000.0), (5.0, 9.0, 4000.0)]
+    gear = replace(loose, shaft_stiffness=math.inf)
+    found, _ = measured(gear, [ramps(ranges, friction=2.0, backlash=0.0, high=0.0)])
+    expected = [0.0, 250.0, 0.0, 1250.0, 1e-3, 500.0]
+    assert in_order(*found.springs[0]) == pytest.approx(expected)
+
+
 def test_two_branches_share_the_stiffness_of_the_output(loose, ramps):
     """With ks of 1000, k of 3000 is 3000 + 750 at the output, and 1000 is 1000 + 500.
 
