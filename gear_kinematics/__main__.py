@@ -10,10 +10,10 @@ import signal
 import sys
 import time
 from collections.abc import Callable, Collection
+from importlib import import_module
 from itertools import takewhile
 from math import inf
 from types import FrameType
-from typing import Any
 
 from gear_kinematics.ros.workarounds.shared_memory import SharedMemoryError, check_shared_memory
 
@@ -45,26 +45,14 @@ _RETRY = 0.01
 
 def gear_state_publisher() -> int:
     """Run the node; returns the exit code, which is 0 after a signal."""
-
-    def node() -> Any:
-        from gear_kinematics.ros.node import GearStatePublisher  # noqa: PLC0415, slow
-
-        return GearStatePublisher
-
     purpose = 'Publish the output angle and the body poses for every message on rotor_state.'
-    return _run_node('gear_state_publisher', purpose, node)
+    return _run_node('gear_state_publisher', purpose, 'node', 'GearStatePublisher')
 
 
 def gear_simulator() -> int:
     """Run the actuator without hardware; returns the exit code, which is 0 after a signal."""
-
-    def node() -> Any:
-        from gear_kinematics.ros.simulator import GearSimulator  # noqa: PLC0415, slow
-
-        return GearSimulator
-
     purpose = 'Move a simulated gear by rotor_command and load_torque, and publish its encoders.'
-    return _run_node('gear_simulator', purpose, node)
+    return _run_node('gear_simulator', purpose, 'simulator', 'GearSimulator')
 
 
 def gearkin() -> int:
@@ -88,8 +76,8 @@ def gearkin() -> int:
     return _run('gearkin', load, interrupted=_INTERRUPTED, stop_signals=heeded)
 
 
-def _run_node(program: str, purpose: str, node: Callable[[], Any]) -> int:
-    """Run the node of a class that a function imports."""
+def _run_node(program: str, purpose: str, module: str, name: str) -> int:
+    """Run the node of a class in a module of `ros`."""
 
     def load() -> Callable[[], int]:
         own = list(takewhile('--ros-args'.__ne__, sys.argv[1:]))
@@ -103,8 +91,8 @@ def _run_node(program: str, purpose: str, node: Callable[[], Any]) -> int:
             print(f'{program}: {warning}', file=sys.stderr)
         from gear_kinematics.ros.process import main  # noqa: PLC0415, slow
 
-        node_type = node()
-        return lambda: main(node_type, program)
+        node = getattr(import_module(f'gear_kinematics.ros.{module}'), name)
+        return lambda: main(node, program)
 
     return _run(program, load, interrupted=0, stop_signals=_STOP_SIGNALS)
 

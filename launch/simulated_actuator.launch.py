@@ -1,32 +1,11 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Start an actuator without hardware: gear_simulator and gear_state_publisher."""
 
-from launch import LaunchContext, LaunchDescription
-from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription, OpaqueFunction
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument, IncludeLaunchDescription
 from launch.substitutions import LaunchConfiguration, PathJoinSubstitution
 from launch_ros.actions import Node
-from launch_ros.parameter_descriptions import ParameterValue
 from launch_ros.substitutions import FindPackageShare
-
-from gear_kinematics.ros.launch_arguments import node_arguments
-from gear_kinematics.twin.parameters import NODE
-
-
-def start_simulator(context: LaunchContext) -> list[Node]:
-    """Describe the simulator, with the parameter file and the joint of gear_state_publisher."""
-    config, parameters, _ = node_arguments(context.launch_configurations)
-    joint = {'rotor_joint': ParameterValue(parameters.rotor_joint, value_type=str)}
-    return [
-        Node(
-            package='gear_kinematics',
-            executable='gear_simulator',
-            name=NODE,
-            namespace=LaunchConfiguration('namespace'),
-            parameters=[config, joint],
-            remappings=[('rotor_state', LaunchConfiguration('rotor_state'))],
-            output='screen',
-        )
-    ]
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -39,10 +18,17 @@ def generate_launch_description() -> LaunchDescription:
                 default_value=PathJoinSubstitution([share, 'config', 'simulated_actuator.yaml']),
                 description='parameter file of both nodes',
             ),
-            # It declares the other arguments.
+            # It declares the other arguments, and checks the file.
             IncludeLaunchDescription(
                 PathJoinSubstitution([share, 'launch', 'gear_state_publisher.launch.py'])
             ),
-            OpaqueFunction(function=start_simulator),
+            Node(
+                package='gear_kinematics',
+                executable='gear_simulator',
+                namespace=LaunchConfiguration('namespace'),
+                parameters=[LaunchConfiguration('config')],
+                remappings=[('rotor_state', LaunchConfiguration('rotor_state'))],
+                output='screen',
+            ),
         ]
     )

@@ -23,15 +23,9 @@ def declared(
     others: Mapping[str, Declaration] = MappingProxyType({}),
     default: Callable[[str], Any] = default_value,
 ) -> dict[str, Any]:
-    """Declare the parameters of a node, by name, with their default values.
+    """Declare the parameters of a node, and `others`; returns the values by name.
 
-    Args:
-        node: the node.
-        others: those that it has beside `PARAMETERS` and those of its branches.
-        default: gives a default value by name.
-
-    Returns:
-        The values by name.
+    `default` gives a default value by name.
 
     Raises:
         ParameterException: if a value has a wrong type, or is refused.

@@ -30,10 +30,7 @@ _UNUSABLE = 2  # exit code: unusable parameters or arguments
 def main(make_node: Callable[..., Any], program: str) -> int:
     """Run a node until SIGINT or SIGTERM; returns the exit code.
 
-    Args:
-        make_node: makes it with `parameter_files`; it has a parameter `executor`, and
-            `wait_for_delivery`.
-        program: the name of the program.
+    It is made with `parameter_files`, and has a parameter `executor`, and `wait_for_delivery`.
     """
     signals = _caught_signals()
     try:

@@ -5,6 +5,8 @@ import math
 import struct
 import time
 from collections.abc import Collection
+from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +20,6 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
-from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.drivers import DEPTH
@@ -66,13 +67,11 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
             lambda name: (twin.default_value if name in twin.PARAMETERS else shared)(name),
         )
         parameters = NodeParameters.of(values)
-        calibration = parameters.calibration
-        gear = TwinGear.of(parameters, values, files.get(calibration))
+        gear = TwinGear.of(parameters, values, files.get(parameters.calibration))
         self._model = _make_model(values['model'], gear)
         self._driver = Driver(
             self._model,
             max_torque=values['max_rotor_torque'],
-            bandwidth=values['bandwidth'],
             rotor_counts=values['rotor_counts'],
             output_counts=values['output_counts'],
             dropout=values['dropout'],
@@ -83,24 +82,20 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         self._outputs = Outputs(self, lambda _: None, self._note_unsent)
         qos = QoSProfile(depth=DEPTH)
         output = parameters.output_encoder_joint or parameters.output_joint
-        self._joints = [
-            (topic, JointStateTemplate([joint], velocity=True, effort=True), read)
-            for topic, joint, read in (
-                (topics.ROTOR_STATE, self._joint or 'rotor', self._driver.rotor),
-                (topics.OUTPUT_ENCODER, output, self._driver.output),
-            )
-        ]
-        for topic, *_ in self._joints:
+        self._joints = []
+        for topic, joint, read in (
+            (topics.ROTOR_STATE, self._joint or 'rotor', self._driver.rotor),
+            (topics.OUTPUT_ENCODER, output, self._driver.output),
+        ):
             self._outputs.create(topic, JointState, qos)
+            template = JointStateTemplate([joint], velocity=True, effort=True)
+            self._joints.append((topic, template, read))
         self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos, raw=True)
         self.create_subscription(Float64, topics.LOAD_TORQUE, self._on_load, qos)
-        for name, service, answer in (
-            ('~/lock_output', SetBool, self._lock_output),
-            ('~/lock_rotor', SetBool, self._lock_rotor),
-            ('~/power_cycle', Trigger, self._power_cycle),
-            ('~/wear', Trigger, self._wear),
-        ):
-            self.create_service(service, name, answer)
+        for shaft in ('output', 'rotor'):
+            self.create_service(SetBool, f'~/lock_{shaft}', partial(self._lock, shaft))
+        self.create_service(Trigger, '~/power_cycle', self._power_cycle)
+        self.create_service(Trigger, '~/wear', self._wear)
         self.get_logger().info(
             f'simulating a gear of ratio {parameters.gear.gear_ratio} with '
             f'{type(self._model).__name__} at {values["rate"]:g} Hz'
@@ -154,25 +149,16 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         else:
             self._warn(f'{topics.LOAD_TORQUE} rejected: {message.data} is not finite')
 
-    def _lock_output(
-        self, request: SetBool.Request, response: SetBool.Response
-    ) -> SetBool.Response:
-        self._model.output_locked = request.data
-        return _told(response, f'the output shaft is {_locked(request.data)}')
+    def _lock(self, shaft: str, request: SetBool.Request, response: Any) -> Any:
+        setattr(self._model, f'{shaft}_locked', request.data)
+        return _told(response, f'the {shaft} is {"locked" if request.data else "free"}')
 
-    def _lock_rotor(
-        self, request: SetBool.Request, response: SetBool.Response
-    ) -> SetBool.Response:
-        self._model.rotor_locked = request.data
-        return _told(response, f'the rotor is {_locked(request.data)}')
-
-    def _power_cycle(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def _power_cycle(self, _: Trigger.Request, response: Any) -> Any:
         self._driver.power_cycle()
         position, *_ = self._driver.rotor()
-        counts = f'the driver is on again, the rotor is free and at {position:.3f} rad'
-        return _told(response, counts)
+        return _told(response, f'the driver is on again: the rotor is free, at {position:.3f} rad')
 
-    def _wear(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+    def _wear(self, _: Trigger.Request, response: Any) -> Any:
         angle = self.get_parameter('wear').value
         gear = self._model.gear = self._model.gear.worn(angle)
         left = f'a preload of {gear.preload:.2f} N·m is left'
@@ -214,20 +200,12 @@ def read_command(data: bytes, joint: str) -> Command:
 
 
 def _make_model(kind: str, gear: TwinGear) -> Model:
-    """Make the model that the parameter `model` selects; ValueError if it cannot be made."""
-    if kind == 'fast':
+    """Make the model that the parameter `model` selects; raises ImportError if it is missing."""
+    if kind == 'fast' or (kind == 'auto' and not find_spec('mujoco')):
         return FastModel(gear)
-    try:
-        from gear_kinematics.twin.mujoco_model import MujocoModel  # noqa: PLC0415, an extra
+    from gear_kinematics.twin.mujoco_model import MujocoModel  # noqa: PLC0415, an extra
 
-        return MujocoModel(gear)
-    except ImportError:
-        if kind == 'mujoco':
-            raise ValueError('model: there is no MuJoCo: pip install mujoco') from None
-    except MechanismError:
-        if kind == 'mujoco':
-            raise
-    return FastModel(gear)
+    return MujocoModel(gear)
 
 
 def _check_parameters(changed: list[Parameter]) -> SetParametersResult:
@@ -240,7 +218,3 @@ def _check_parameters(changed: list[Parameter]) -> SetParametersResult:
 def _told(response: Any, message: str) -> Any:
     response.success, response.message = True, message
     return response
-
-
-def _locked(locked: bool) -> str:  # noqa: FBT001
-    return 'locked' if locked else 'free'

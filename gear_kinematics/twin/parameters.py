@@ -42,9 +42,6 @@ PARAMETERS: Mapping[str, Parameter] = {
         *(0.0, 1e6),
         read_only=True,
     ),
-    'bandwidth': Parameter(
-        "Bandwidth of the speed loop of the motor's driver, Hz", 0.1, 200.0, read_only=True
-    ),
     'rotor_counts': Parameter(
         'Steps per turn of the encoder of the rotor; 0: exact', 0, 2**31, kind=int, read_only=True
     ),

@@ -176,7 +176,7 @@ def test_a_locked_rotor_tells_its_torque_and_a_locked_output_stays(bench):
     assert bench.call('lock_rotor', data=False) == 'the rotor is free'
     bench.load(0.0)
     _, output = bench.rest()
-    assert bench.call('lock_output', data=True) == 'the output shaft is locked'
+    assert bench.call('lock_output', data=True) == 'the output is locked'
     bench.load(100.0)
     bench.command(effort=[0.2])
     bench.wait_until(lambda: bench.rotor[-1].effort[0] == 0.2, 'the torque')
@@ -186,7 +186,7 @@ def test_a_locked_rotor_tells_its_torque_and_a_locked_output_stays(bench):
     assert held == {output.position[0]}
     bench.load(0.0)
     bench.command(position=[20.0])
-    assert bench.call('lock_output', data=False) == 'the output shaft is free'
+    assert bench.call('lock_output', data=False) == 'the output is free'
 
 
 def test_a_power_cycle_loses_the_turns_of_the_rotor_alone(bench):
@@ -194,7 +194,7 @@ def test_a_power_cycle_loses_the_turns_of_the_rotor_alone(bench):
     bench.wait_until(lambda: abs(bench.rotor[-1].position[0] - 50.0) < 1e-3, 'the position')
     _, output = bench.rest()
     said = bench.call('power_cycle')
-    assert said == 'the driver is on again, the rotor is free and at 0.000 rad'
+    assert said == 'the driver is on again: the rotor is free, at 0.000 rad'
     rotor, after = bench.rest()
     assert rotor.position[0] == pytest.approx(0.0, abs=1e-2)
     assert after.position[0] == pytest.approx(output.position[0], abs=1e-3)
@@ -212,7 +212,7 @@ def test_wear_takes_the_preload_and_then_leaves_play(bench):
 
 def test_parameters_that_cannot_be_are_refused(context, tmp_path):
     for name, cause in {
-        'bandwith': 'did you mean `bandwidth`?',
+        'drop_out': 'did you mean `dropout`?',
         'loads.rotor_inertia': 'loads.rotor_inertia must be',
     }.items():
         given = [Parameter(name, value=0.0)]

@@ -16,9 +16,9 @@ INERTIA = 1e-5 + 0.005 / 361.0
 FREE = Command(None, None, None)
 
 
-def driver(shared=(), *, max_torque=0.5, bandwidth=30.0, **options) -> Driver:
+def driver(shared=(), *, max_torque=0.5, **options) -> Driver:
     gear = TwinGear.of(NodeParameters.of({**SHARED, **dict(shared)}), VALUES)
-    return Driver(FastModel(gear), max_torque=max_torque, bandwidth=bandwidth, **options)
+    return Driver(FastModel(gear), max_torque=max_torque, **options)
 
 
 def run(driver: Driver, command: Command, seconds: float, load: float = 0.0) -> None:
@@ -51,7 +51,7 @@ def test_position_is_reached_and_held_against_a_load(direction):
 def test_step_overshoots_little_with_any_inertia_of_the_output(heavy):
     values = {**VALUES, 'output_inertia': heavy * 0.005}
     gear = TwinGear.of(NodeParameters.of(SHARED), values)
-    stepped = Driver(FastModel(gear), max_torque=0.5, bandwidth=30.0)
+    stepped = Driver(FastModel(gear), max_torque=0.5)
     stepped.follow(Command(5.0, None, None))
     reached = []
     for _ in range(20_000):
@@ -62,8 +62,8 @@ def test_step_overshoots_little_with_any_inertia_of_the_output(heavy):
 
 
 def test_velocity_is_reached_by_the_bandwidth():
-    turned = driver(bandwidth=10.0)
-    run(turned, Command(None, 10.0, None), 1.0 / (math.tau * 10.0))
+    turned = driver()
+    run(turned, Command(None, 10.0, None), 1.0 / (math.tau * 30.0))
     assert turned.model.rotor_velocity == pytest.approx(10.0 * (1.0 - math.exp(-1.0)), rel=0.15)
     run(turned, Command(None, 10.0, None), 1.0)
     assert turned.rotor()[1] == pytest.approx(10.0, rel=1e-3)
