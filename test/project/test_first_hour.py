@@ -170,9 +170,8 @@ def test_commands_of_ros2_name_what_there_is(person):
             case 'ros2', 'topic', 'pub', '--once', topic, kind, values:
                 message_type = found(kind)
                 publisher = person.node.create_publisher(message_type, topic, QoSProfile(depth=10))
-                person.wait_until(publisher.get_subscription_count, topic)
-                [listener] = person.node.get_subscriptions_info_by_topic(topic)
-                assert (listener.node_name, listener.topic_type) == ('gear_simulator', kind)
+                expected = [('gear_simulator', kind)]
+                person.wait_until(lambda t=topic, e=expected: listeners(person, t) == e, topic)
                 publisher.publish(message_type(**yaml.safe_load(values)))
             case 'ros2', 'service', 'call', name, kind, *values:
                 client = person.node.create_client(found(kind), name)
@@ -189,6 +188,12 @@ def test_commands_of_ros2_name_what_there_is(person):
                     )
             case ['ros2', *_]:
                 pytest.fail(command)
+
+
+def listeners(person: Participant, topic: str) -> list[tuple[str, str]]:
+    """The nodes that listen to a topic, and its types."""
+    known = person.node.get_subscriptions_info_by_topic(topic)
+    return [(listener.node_name, listener.topic_type) for listener in known]
 
 
 def found(kind: str) -> type:
