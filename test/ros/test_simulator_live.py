@@ -34,6 +34,7 @@ class Bench(Participant):
     def __init__(self, log):
         super().__init__('bench', NAMESPACE)
         self._log, qos = log, QoSProfile(depth=2000)
+        self.process: subprocess.Popen | None = None
         self.rotor: list[JointState] = []
         self.output: list[JointState] = []
         self.node.create_subscription(JointState, 'rotor_state', self.rotor.append, qos)
@@ -91,7 +92,7 @@ def bench(tmp_path_factory):
             [*COMMAND, '--ros-args', '-r', f'__ns:={NAMESPACE}'],
             stdout=stream, stderr=stream, env={**os.environ, 'ROS_LOG_DIR': str(folder)},
         )  # fmt: skip
-    bench.alive = lambda: process.poll() is None
+    bench.process, bench.alive = process, lambda: process.poll() is None
     try:
         bench.connect()
         yield bench
@@ -198,6 +199,16 @@ def test_a_power_cycle_loses_the_turns_of_the_rotor_alone(bench):
     rotor, after = bench.rest()
     assert rotor.position[0] == pytest.approx(0.0, abs=1e-2)
     assert after.position[0] == pytest.approx(output.position[0], abs=1e-3)
+
+
+def test_time_that_is_not_made_up_for_is_left_out_and_said(bench):
+    bench.process.send_signal(signal.SIGSTOP)
+    time.sleep(0.8)  # what a busy processor does
+    bench.process.send_signal(signal.SIGCONT)
+    bench.wait_until(lambda: 's behind real time, which are left out' in bench.text(), 'a warning')
+    bench.rotor.clear()
+    bench.wait_until(lambda: len(bench.rotor) > 100, 'messages')
+    assert abs(time.time_ns() - stamp_of(bench.rotor[-1])) < 1e9
 
 
 def test_wear_takes_the_preload_and_then_leaves_play(bench):
