@@ -22,8 +22,9 @@ from gear_kinematics.twin.model import Model
 
 _PERIOD = 2e-4  # s, of the servo loop
 _BANDWIDTH = 30.0  # ω/2π, Hz, at most
-_AHEAD = 0.02
-"""s, for which a commanded position moves on with its velocity, so that commands are no steps."""
+_FRESH = 0.02
+"""s, for which the velocity beside a position counts, and the position moves on with it: a stream
+of commands makes no steps, and a single one is held."""
 _SEED = 0
 _SHARE = 0.9
 """Of the greatest speed: what is commanded, as it is exceeded a little on the way there."""
@@ -32,8 +33,8 @@ _SHARE = 0.9
 class Command(NamedTuple):
     """What a JointState asks of the motor, as the encoder counts; None: not commanded.
 
-    A position is held, with the velocity as feedforward. Without a position the velocity is held,
-    and only without either the effort acts.
+    A position is held; with a velocity as well it moves on for a moment, until the next command
+    comes. Without a position the velocity is held, and only without either the effort acts.
     """
 
     position: float | None
@@ -146,7 +147,9 @@ class Driver:
             return _within(torque, self._max_torque)
         speed = direction * (velocity or 0.0)
         if position is not None:
-            angle = direction * (position - self._origin) + speed * min(self._age, _AHEAD)
+            if self._age > _FRESH:
+                speed = 0.0
+            angle = direction * (position - self._origin) + speed * self._age
             self._age += period
             speed += 0.25 * omega * (angle - model.rotor_angle)
         error = _within(speed, fastest) - model.rotor_velocity

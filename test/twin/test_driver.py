@@ -85,6 +85,18 @@ def test_position_goes_before_velocity_and_effort():
     assert held.model.rotor_velocity == pytest.approx(0.0, abs=1e-3)
 
 
+def test_stream_of_positions_is_followed_smoothly_and_a_single_one_is_held():
+    """At 100 Hz and 50 rad/s: the torque is that of the friction, not of steps of 0.5 rad."""
+    streamed = driver()
+    efforts = []
+    for step in range(100):
+        run(streamed, Command(0.5 * step, 50.0, None), 0.01)
+        efforts.append(streamed.rotor()[2])
+    assert efforts[50:] == pytest.approx([0.05 / 19.0] * 50, rel=0.1)
+    run(streamed, Command(0.5 * 100, 50.0, None), 1.0)
+    assert streamed.rotor()[0] == pytest.approx(50.0, abs=1e-3)
+
+
 def test_limits_hold():
     limited = driver({'max_rotor_speed': 50.0}, max_torque=0.1)
     efforts, speeds = [], []
