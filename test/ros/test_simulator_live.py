@@ -54,7 +54,10 @@ class Bench(Participant):
         self._commands.publish(data)
 
     def load(self, torque: float) -> None:
+        """Load the output, and wait until it is loaded, unless it cannot be."""
         self._loads.publish(Float64(data=torque))
+        if math.isfinite(torque):
+            self.wait_until(lambda: self.output and self.output[-1].effort[0] == torque, 'a load')
 
     def rest(self, messages: int = 300) -> tuple[JointState, JointState]:
         """Wait until neither shaft turns, from some messages after now."""
