@@ -51,6 +51,7 @@ setup(
         *shared('bags', '*'),
         *shared('policies', '*.policy.xml'),
         *shared('meshes', '*.stl'),
+        *shared('urdf', '*.xacro'),
         *shared('docs', 'report.*'),
         *shared('docs', 'security.md'),
     ],

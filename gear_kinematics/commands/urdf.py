@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""`gearkin urdf`: print the URDF, and write its meshes."""
+"""`gearkin urdf`: print the URDF or a xacro macro, and write the meshes."""
 
 import argparse
 from dataclasses import replace
@@ -11,12 +11,20 @@ from gear_kinematics.commands.files import write_file
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.parameters import meshes
 from gear_kinematics.shape.solids import STL_HEADER, solids, to_stl
+from gear_kinematics.shape.urdf import MACRO_PREFIX, as_macro
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command."""
     arguments.add_config(parser)
-    arguments.group(parser, 'output').add_argument(
+    output = arguments.group(parser, 'output')
+    output.add_argument(
+        '--macro',
+        action='store_true',
+        help='print a xacro macro that fixes the actuator to a link of a robot; its prefix takes '
+        'the place of the parameter frame_prefix',
+    )
+    output.add_argument(
         '--meshes',
         type=Path,
         metavar='DIR',
@@ -34,7 +42,10 @@ def run(options: argparse.Namespace) -> ExitCode:
         _write(mechanism, module, options.meshes)
         if config.meshes in {meshes.AUTO, meshes.NONE}:
             config = replace(config, meshes=options.meshes.resolve().as_uri())
-    print(config.urdf(), end='')
+    if options.macro:
+        print(as_macro(replace(config, frame_prefix=MACRO_PREFIX).urdf()), end='')
+    else:
+        print(config.urdf(), end='')
     return ExitCode.DONE
 
 

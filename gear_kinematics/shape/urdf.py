@@ -7,6 +7,7 @@ the joint positions in mechanism_joint_states close the loops through the arms o
 """
 
 import math
+import re
 from xml.etree import ElementTree as ET
 
 from gear_kinematics.kinematics import Gear, Mechanism
@@ -19,6 +20,20 @@ from gear_kinematics.shape.visuals import (
     simple,
 )
 
+MACRO_PREFIX = '${prefix}'
+"""The `frame_prefix` of a URDF that `as_macro` takes."""
+_MACRO = """<?xml version="1.0" encoding="utf-8"?>
+<!-- Printed by gearkin urdf. The block is the origin of the stator in the parent link:
+  <xacro:gear_actuator parent="base" prefix="shoulder_"><origin xyz="0 0 0"/></xacro:gear_actuator>
+-->
+<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:macro name="gear_actuator" params="parent *origin prefix:=''">
+  <joint name="${prefix}stator" type="fixed">
+    <parent link="${parent}" />
+    <child link="${prefix}stator" />
+    <xacro:insert_block name="origin" />
+  </joint>
+"""
 _STEEL = 7850.0  # kg/m³
 
 
@@ -90,6 +105,18 @@ def urdf(
         )
     ET.indent(robot)
     return ET.tostring(robot, encoding='unicode', xml_declaration=True) + '\n'
+
+
+def as_macro(urdf: str) -> str:
+    """Wrap a URDF in the xacro macro `gear_actuator`, which fixes the stator to a link of a robot.
+
+    Args:
+        urdf: with the `frame_prefix` `MACRO_PREFIX`.
+    """
+    _, _, *elements, end = urdf.splitlines(keepends=True)
+    # Nobody edits these lines: inertials and visuals have one each.
+    joined = re.sub(r'\n {6,}|\n {4}(?=</)', '', ''.join(elements))
+    return f'{_MACRO}{joined}</xacro:macro>\n{end}'
 
 
 def _link(robot: ET.Element, name: str, cylinder: Cylinder) -> ET.Element:

@@ -145,7 +145,7 @@ def metadata(wheel) -> Message:
 def shared_files(root: Path) -> set[str]:
     """Return every file that belongs into share/gear_kinematics."""
     folders = {'config': '*', 'launch': '*.launch.py', 'bags': '*', 'policies': '*'}
-    folders['meshes'] = '*'
+    folders |= {'meshes': '*', 'urdf': '*'}
     files = {
         path.relative_to(root).as_posix()
         for folder, pattern in folders.items()
