@@ -226,11 +226,14 @@ def backlash_of(
 
 
 def reconciled(found: Sequence[Backlash | None]) -> Backlash:
-    """The backlash that ramps of all amplitudes leave room for; a gear has only one."""
+    """The backlash that ramps of ascending amplitudes leave room for; a gear has only one."""
     known = [(own.high, own.low, own.cause) for own in found if own and own.high is not None]
     if not known:
         return Backlash(0.0, None, Cause.FRICTION)
-    highs, lows, _ = zip(*known, strict=True)
+    highs, lows, causes = zip(*known, strict=True)
+    if Cause.SOFT in causes:
+        # A soft middle, which small ramps have not left, is play to larger ones.
+        lows = lows[: causes.index(Cause.SOFT) + 1]
     if max(lows) > min(highs):
         return Backlash(min(lows), max(highs), Cause.CONTRADICTION)
     high, _, cause = min(known, key=itemgetter(0))

@@ -82,6 +82,8 @@ def test_friction_that_takes_up_the_torque_leaves_everything_open():
         ([Backlash(1.0, 4.0, Cause.NONE), Backlash(0.0, 9.0, Cause.BENT)], (1.0, 4.0)),
         ([Backlash(1.0, 4.0, Cause.NONE), Backlash(2.0, 9.0, Cause.BENT)], (2.0, 4.0)),
         ([Backlash(0.0, 4.0, Cause.SOFT), None], (0.0, 4.0)),
+        ([Backlash(0.0, 4.0, Cause.SOFT), Backlash(3.0, 3.5, Cause.NONE)], (0.0, 3.5)),
+        ([Backlash(1.0, 4.0, Cause.NONE), Backlash(0.0, 3.0, Cause.SOFT)], (1.0, 3.0)),
         ([Backlash(1.0, 4.0, Cause.NONE), Backlash(5.0, 9.0, Cause.BENT)], (1.0, 9.0)),
         ([None], (0.0, None)),
     ],
