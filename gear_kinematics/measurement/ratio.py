@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 ENCODER_ERROR = math.radians(1.0)
 """rad. Magnetic encoders deviate by ±1° over a turn (datasheets of ams AS5046 and AS5600), and
 printed gears by about as much: that of the rotor's encoder, and of gear and output's encoder."""
+_ACCURACY = math.radians(2.0 / 3600.0) / math.sqrt(3.0)
+"""rad, standard deviation. Few encoders are accurate to ±2″ over the travel, and a gear on its
+springs follows its errors a little more the faster it turns."""
 _BLOCKS = 23
 """Prime, as blocks of whole cycles of an error would not differ."""
 _SAMPLES = 230, 10_000
@@ -149,7 +152,11 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         terms, spread, scatter = _fitted(columns, output[kept] - slope * at)
         travel = float(np.ptp(at))
         slope, late = slope + terms[0] / travel, late - _DELAY * terms[3]
-    parts = Component(spread / travel), Component(scatter / travel, _BLOCKS - 1)
+    parts = (
+        Component(spread / travel),
+        Component(scatter / travel, _BLOCKS - 1),
+        Component(_ACCURACY / travel),
+    )
     measured = Estimate(slope, *combined(parts), _BLOCKS)
     if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):
         raise RecordingError('the output does not follow the rotor, or turns too little')
