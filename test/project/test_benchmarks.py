@@ -23,6 +23,7 @@ ACTUATOR = oracle.Numbers(80, 76, 0.0011, ((0.0, 0.04), (math.pi, -0.04)))
         ['compute.py', '--messages', '300', '--rounds', '1'],
         ['validation.py', '--messages', '300', '--rounds', '1', '--memory', '300'],
         ['calibration.py', '--gears', '1', '--duration', '20', '--scenario', 'usual'],
+        ['twin.py', '--seconds', '0.05', '--rounds', '1'],
     ],
     ids=lambda arguments: arguments[0],
 )
