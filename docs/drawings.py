@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Draw what `gearkin` does not: the flow of messages, and the bodies as viewers show them."""
+"""Draw what `gearkin` does not: messages, bodies as viewers show them, and a simulated gear."""
 
 import math
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pinocchio
+import printed_gear
 from links import pinocchio_configuration
 from matplotlib.figure import Figure
 from PIL import Image
@@ -17,6 +18,7 @@ from gear_kinematics.shape.urdf import urdf
 BRANCHES = Branch('a', 0.0, 0.04), Branch('b', math.pi, -0.04)
 ACTUATOR = Mechanism(80, 76, 0.0011, BRANCHES)
 MESHES = Path(__file__).resolve().parents[1] / 'meshes' / '80_76_0_0011_0_0005'
+SHARED = Path(__file__).resolve().parents[2] / 'shared' / 'data'
 NAMES = {'output_joint': 'output_shaft', 'frame_prefix': ''}
 MODULE = 0.0005  # m
 ROTOR_ANGLE = 0.6  # rad
@@ -117,6 +119,22 @@ def draw_flow(flow: Flow, target: Path) -> None:
         share = (0.5 * (right + left) - x0) / (x1 - x0)  # in the middle between the boxes
         place = x0 + share * (x1 - x0), y0 + share * (y1 - y0)
         axes.text(*place, topic, ha='center', va='center', fontsize=8, color=INK, bbox=label)
+    figure.savefig(target, metadata={'Date': None})
+
+
+def draw_printed_gear(target: Path) -> None:
+    """Draw the recorded loop of COMPAct's printed gear, its image, and that of its twin."""
+    loops = printed_gear.loops(SHARED / printed_gear.RECORDING)
+    figure = Figure(figsize=(8.0, 4.5), layout='constrained')
+    axes = figure.add_subplot(xlabel='angle [mrad]', ylabel='torque [N·m]')
+    for sign, angle, style in (
+        (1.0, loops.recorded, {'label': 'recorded', 'color': INK, 'linewidth': 1.5}),
+        (-1.0, loops.recorded, {'label': 'turned about its centre', 'color': '#94a3b8'}),
+        (1.0, loops.simulated, {'label': 'twin', 'color': '#2563eb', 'linewidth': 1.5}),
+    ):
+        axes.plot(sign * 1e3 * angle, sign * loops.torque, **{'linewidth': 0.8} | style)
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False)
     figure.savefig(target, metadata={'Date': None})
 
 

@@ -23,7 +23,7 @@ from gear_kinematics.ros.live import running_node
 ROOT = Path(__file__).parents[1]
 sys.path.append(str(ROOT / 'test' / 'support'))
 
-from drawings import FLOWS, draw_bodies, draw_flow  # noqa: E402, see above
+from drawings import FLOWS, draw_bodies, draw_flow, draw_printed_gear  # noqa: E402, see above
 from gear_recordings import record_both_encoders  # noqa: E402, see above
 
 DOCS = Path('docs')
@@ -132,6 +132,7 @@ if __name__ == '__main__':
     for name, flow in FLOWS.items():
         draw_flow(flow, DOCS / name)
     draw_bodies(DOCS / 'pictures/viewing.png')
+    draw_printed_gear(DOCS / 'pictures/twin.svg')
     photograph(PAGES, 'pictures/watch.png', 'pictures/diagnostics.png')
     with tempfile.TemporaryDirectory() as folder, chdir(folder):
         record()

@@ -98,6 +98,7 @@ class Samples(NamedTuple):
     positions: Sequence[float]
     efforts: Sequence[float] | None = None
     received: Sequence[int] | None = None  # ns; None: at the stamps
+    velocities: Sequence[float] | None = None
 
 
 def write_recording(path: Path, rotor: Samples, encoder: Samples | None = None) -> Path:
@@ -119,8 +120,10 @@ def write_recording(path: Path, rotor: Samples, encoder: Samples | None = None) 
 
 
 def _messages(joint: str, samples: Samples):
-    template = JointStateTemplate([joint], velocity=False, effort=samples.efforts is not None)
-    columns = [samples.positions, *([] if samples.efforts is None else [samples.efforts])]
+    rates = samples.velocities, samples.efforts
+    velocity, effort = (each is not None for each in rates)
+    template = JointStateTemplate([joint], velocity=velocity, effort=effort)
+    columns = [samples.positions, *(each for each in rates if each is not None)]
     received = samples.stamps if samples.received is None else samples.received
     for at, stamp, *numbers in zip(received, samples.stamps, *columns, strict=True):
         yield int(at), template.encode(int(stamp), [*map(float, numbers)])
