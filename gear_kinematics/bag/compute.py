@@ -1,23 +1,27 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Compute the node's outputs for a recorded rotor topic into a new bag, without ROS."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import Literal
 
 import numpy as np
 
-from gear_kinematics.bag import Bag, BagError, ReportProgress, TopicError
+from gear_kinematics.bag import Bag, BagError, Message, ReportProgress, TopicError
 from gear_kinematics.bag.roles import Topics, beside
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.corrector import Corrector
+from gear_kinematics.correction.corrector import Correction, Corrector
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.loads import Loads
-from gear_kinematics.state.referenced_input import ReferencedInput
-from gear_kinematics.state.rotor_input import RotorInput
+from gear_kinematics.state.output_encoder import OutputEncoder
+from gear_kinematics.state.rotor_input import RotorInput, RotorSamples
 from gear_kinematics.state.state_messages import state_messages
+from gear_kinematics.state.turn_reference import TurnReference
+from gear_kinematics.wire.joint_reader import RejectedInputError
 from gear_kinematics.wire.topics import (
     BODY_POSES,
     CORRECTED_TOPICS,
@@ -97,14 +101,14 @@ def compute(
     if calibration:
         corrector = Corrector(calibration, parameters.max_rotor_acceleration)
         topic_of |= beside(CORRECTED_TOPICS, topics.output)
-    referenced = ReferencedInput(rotor_input, corrector) if encoder_topic else None
+    encoder = OutputEncoder(parameters, TurnReference(rotor_input))
     loads = Loads(parameters) if parameters.preload else None
     if loads:
         topic_of |= beside(LOAD_TOPICS, topics.output)
     if len(set(all_names := (rotor_topic, *topic_of.values()))) < len(all_names):
         raise ValueError(f'{", ".join(all_names)}: the names must differ')
     outputs = {topic: TOPICS[name].type for name, topic in topic_of.items()}
-    inputs = {rotor_topic, encoder_topic} if referenced else {rotor_topic}
+    inputs = {rotor_topic, encoder_topic} if encoder_topic else {rotor_topic}
     chosen = {*inputs, *(source.topics if others is None else others)}
     _check_topics(source, rotor_topic, chosen, outputs)
     kept, computed, copied = list[str](), 0, 0
@@ -126,8 +130,10 @@ def compute(
         for batch in source.batches({*kept, *outputs}, progress):
             messages, correction = [each for each in batch if each[0] not in outputs], None
             rotor = [place for place, (topic, *_) in enumerate(messages) if topic == rotor_topic]
-            if referenced:
-                samples, correction = referenced.take_batch(messages, rotor_topic, encoder_topic)
+            if encoder_topic:
+                samples, correction = _referenced(
+                    messages, rotor_topic, encoder_topic, rotor_input, encoder, corrector
+                )
                 answered = samples.row.tolist()
             else:
                 samples = rotor_input.accept_batch(
@@ -160,6 +166,36 @@ def compute(
         copied,
         left_out=tuple(sorted(source.topics.keys() - {*kept, *outputs})),
     )
+
+
+def _referenced(
+    messages: Sequence[Message],
+    rotor_topic: str,
+    encoder_topic: str,
+    rotor: RotorInput,
+    encoder: OutputEncoder,
+    corrector: Corrector | None,
+) -> tuple[RotorSamples, Correction | None]:
+    """Take messages of both encoders one by one, as the node does; rows are those of messages."""
+    rows, corrections = [], []
+    for row, (topic, received, data) in enumerate(messages):
+        with suppress(RejectedInputError):  # which is counted
+            if topic == encoder_topic:
+                encoder.accept(data, partial(int, received))
+            if topic != rotor_topic:
+                continue
+            sample, correction = rotor.accept(data, partial(int, received)), None
+            motion = *sample.position, sample.velocity, sample.effort
+            rows.append((sample.stamp, *motion, row, received, rotor.segment))
+            if corrector:
+                correction = corrector.correct(
+                    sample, segment=rotor.segment, referenced=rotor.referenced
+                )
+                corrections.append(correction)
+            if encoder.received:
+                encoder.follow(sample, correction)
+    columns = np.array(corrections, float).reshape(-1, len(Correction._fields)).T
+    return RotorSamples.of(rows, np.zeros(0, np.int64)), Correction(*columns)
 
 
 def _check_topics(

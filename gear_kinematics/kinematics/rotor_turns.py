@@ -7,7 +7,6 @@ the positions of the bodies are periodic in the turns of the rotor.
 """
 
 import math
-from functools import lru_cache
 from types import ModuleType
 from typing import Any, NamedTuple, overload
 
@@ -120,17 +119,14 @@ def whole_turns(turns: ArrayLike) -> NDArray[np.float64]:
     return array
 
 
-_split_zero = lru_cache(maxsize=1)(split_turns)  # the zero rarely changes
-
-
 class RotorTurns:
     """Follows the rotor's encoder and counts its whole turns.
 
     The position of a multi-turn encoder is used as it is. That of a single-turn encoder wraps once
     a turn and is unwrapped here; `referenced` is whether the number of turns is known. It
     is unknown at the start, and after a gap in which the rotor could have turned half a turn or
-    more either way from its expected angle; `home` and `refer` make it known. While it is unknown,
-    counting goes on from the nearest turn.
+    more either way from its expected angle; `home` makes it known. While it is unknown, counting
+    goes on from the nearest turn.
     """
 
     def __init__(
@@ -155,6 +151,7 @@ class RotorTurns:
         self.max_acceleration = max_acceleration
         self.longest_silence = longest_silence
         self.unknown_gaps = 0
+        """In which the rotor could have turned half a turn or more unseen."""
         self.reset()
 
     def reset(self) -> None:
@@ -214,21 +211,21 @@ class RotorTurns:
                 low, high = max(low, middle - spread), min(high, middle + spread)
         return 0.5 * (low + high), high - low < TURN
 
-    def relative_to(self, zero: float, direction: int) -> RotorPosition:
+    def relative_to(self, zero: RotorPosition, direction: int) -> RotorPosition:
         """Return the rotor angle φ2 = direction·(position - zero), without cancellation.
 
         Raises:
             RuntimeError: before the first update.
         """
         turns, angle = self._known_position()
-        zero_turns, zero_angle = _split_zero(zero)
+        zero_turns, zero_angle = zero
         return RotorPosition(direction * (turns - zero_turns), direction * (angle - zero_angle))
 
     def home(self, rotor_angle: float, direction: int) -> float:
         """Declare that the rotor angle φ2 is `rotor_angle` now; the turns are known from now on.
 
         Returns:
-            The zero with which `relative_to` gives `rotor_angle` at the present position.
+            The zero, rad, with which `relative_to` gives `rotor_angle` at the present position.
 
         Raises:
             RuntimeError: before the first update.
@@ -236,13 +233,11 @@ class RotorTurns:
         zero = self.zero_for(rotor_angle, direction)
         # Drop the turns counted so far for a single-turn encoder.
         self.position = split_turns(self._reading)
-        self.referenced, self.unseen_travel = True, 0.0
+        self.refer()
         return zero
 
-    def refer(self, turns: int) -> None:
-        """Add turns to those counted, after an update; they are known from now on."""
-        position = self._known_position()
-        self.position = position._replace(turns=position.turns + turns)
+    def refer(self) -> None:
+        """Take the turns counted as known from now on."""
         self.referenced, self.unseen_travel = True, 0.0
 
     def zero_for(self, rotor_angle: float, direction: int) -> float:

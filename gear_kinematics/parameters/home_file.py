@@ -12,9 +12,6 @@ from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.node_parameters import PARAMETERS, NodeParameters
 from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 
-SCHEMA = 'gear_kinematics/home/1'
-"""Identifies the files and their version."""
-
 
 def write_home(path: Path, parameters: NodeParameters) -> None:
     """Write the zero of the parameters, completely or not at all; else raise OSError."""
@@ -49,4 +46,5 @@ def _belonging(parameters: NodeParameters) -> dict[str, Any]:
     """What the zero belongs to, by names of parameters."""
     names = 'rotor_joint', 'rotor_direction', 'rotor_encoder'
     own = {name: getattr(parameters, name) for name in names}
-    return {'schema': SCHEMA, 'gear_ratio': str(parameters.gear.gear_ratio)} | own
+    ratio = str(parameters.gear.gear_ratio)
+    return {'schema': 'gear_kinematics/home/1', 'gear_ratio': ratio, **own}

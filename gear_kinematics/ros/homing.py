@@ -88,21 +88,20 @@ class Homing:
         return response
 
     def _home(self) -> tuple[bool, str]:
-        parameters, last = self._input.parameters, self._input.last
+        parameters, turns = self._input.parameters, self._input.turns
         ratio, limit = parameters.gear.gear_ratio, parameters.home_max_speed
         rotor_angle = ratio.rotor_angle(parameters.home_angle)
         try:
             zero = self._input.zero_for(rotor_angle)
+            before = turns.relative_to(self._input.zero, parameters.rotor_direction)
         except RuntimeError:  # after the joint was changed, too
-            last = None
-        if last is None:
             return False, f'there was no valid {topics.ROTOR_STATE} yet'
         if (age := time.monotonic() - self._seen) > parameters.input_timeout:
             return False, f'the last valid {topics.ROTOR_STATE} came {age:.1f} s ago'
         if (speed := abs(ratio.output_rate(self._speed))) > limit:
-            turns = f'the shaft turns at {speed:.3g} rad/s'
-            return False, f'{turns}; home_max_speed is {limit:g} rad/s'
-        whole, rest = ratio.output_angle(*last.position, math)
+            too_fast = f'the shaft turns at {speed:.3g} rad/s'
+            return False, f'{too_fast}; home_max_speed is {limit:g} rad/s'
+        whole, rest = ratio.output_angle(*before, math)
         result = self._node.set_parameters_atomically([Parameter('rotor_zero', value=zero)])
         if not result.successful:
             return False, result.reason

@@ -296,9 +296,7 @@ def _private_node(parameters: NodeParameters) -> Iterator[Replay]:
                 env=os.environ | {'ROS_LOG_DIR': folder},
             ) as process,
             Replay(
-                namespace,
-                alive=lambda: process.poll() is None,
-                outputs=outputs_of(parameters),
+                namespace, alive=lambda: process.poll() is None, outputs=outputs_of(parameters)
             ) as replay,
         ):
             try:

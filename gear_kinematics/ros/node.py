@@ -252,8 +252,7 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._look_at_graph()
         now = time.monotonic()
         errors = self._encoder_monitor.report(self._encoder, self._settings, now)
-        self._monitor.encoder_heard = bool(errors) and not self._encoder_monitor.silent
-        rotor = self._monitor.report(self._input, now, self._reference)
+        rotor = self._monitor.report(self._input, now, self._encoder.reference)
         preload = self._preload.report() if self._preload else None
         reports = {'rotor input': rotor, 'transmission error': errors, 'preload': preload}
         message = serialize_message(diagnostic_array(self, reports))

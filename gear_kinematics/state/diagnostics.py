@@ -23,10 +23,9 @@ OK, WARN, ERROR = 0, 1, 2
 _NO_INPUT = 'Check that the driver is running, and that its topic is remapped.'
 _NOT_REFERENCED = 'Move the output to its home angle, then call ~/home.'
 _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and the gear.'
-_UNSEEN = 'Lower max_rotor_speed to what the motor reaches, or let its driver send more often.'
-_AMBIGUOUS = 'Calibrate the gear, or lower transmission_error_limit to what it keeps.'
+_AMBIGUOUS = 'Stop the output; or calibrate the gear, or lower transmission_error_limit.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
-_NOT_COMPARED = 'Check that both drivers send often, and that their clocks agree.'
+_NOT_COMPARED = 'Check that both drivers run and send often, and that their clocks agree.'
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
 
@@ -108,13 +107,10 @@ class InputMonitor(DriverMonitor):
     """Messages that the middleware failed to send."""
     zero_kept: str = ''
     """Where `rotor_zero` is kept until the next start, or why it is not."""
-    encoder_heard: bool = False
-    """Whether the encoder at the output was heard lately."""
     graph: GraphFaults = field(default_factory=GraphFaults)
     """Faults at the last check of the ROS graph."""
     _reported: float = 0.0
     _received: int = 0
-    _unknown_turns: int = 0
     _unsent: int = 0
 
     def report(
@@ -124,9 +120,8 @@ class InputMonitor(DriverMonitor):
         elapsed = now - max(self._reported, self.started)
         received = rotor_input.received - self._received
         newly_unsent = self.unsent - self._unsent
-        gaps = rotor_input.unknown_turns - self._unknown_turns
         self._reported, self._received = now, rotor_input.received
-        self._unsent, self._unknown_turns = self.unsent, rotor_input.unknown_turns
+        self._unsent = self.unsent
         rate = received / elapsed if elapsed > 0.0 else 0.0
 
         age = now - (self.started if self.last_input is None else self.last_input)
@@ -134,10 +129,8 @@ class InputMonitor(DriverMonitor):
         errors: list[Fault] = []
         if overdue:
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
-        if not rotor_input.parameters.absolute:
-            reference = None
         if not rotor_input.referenced:
-            errors.append(_not_referenced(reference, gaps, encoder_heard=self.encoder_heard))
+            errors.append(_not_referenced(reference))
         elif reference and reference.decision and reference.decision.disagreement:
             errors.append(Fault(reference.decision.disagreement, _DISAGREES))
         errors += self.graph.errors
@@ -162,11 +155,12 @@ class InputMonitor(DriverMonitor):
             'clock resets': str(rotor_input.resets),
             'age of last input (s)': 'none' if self.last_input is None else f'{age:.3f}',
             'referenced': str(rotor_input.referenced).lower(),
-            'rotor zero (rad)': f'{rotor_input.zero:.9g}',
+            'rotor zero (rad)': f'{TURN * rotor_input.zero.turns + rotor_input.zero.angle:.9g}',
             'home file': self.zero_kept,
-            **({'reference': rotor_input.known_from} if reference else {}),
             'loop-closure residual (m)': _residual(rotor_input),
         }
+        if reference:
+            values['reference'] = rotor_input.origin if rotor_input.referenced else 'none'
         return self._report(errors, warnings, values)
 
 
@@ -174,8 +168,6 @@ class InputMonitor(DriverMonitor):
 class EncoderMonitor(DriverMonitor):
     """Monitors the encoder at the output, and the transmission error."""
 
-    silent: bool = False
-    """Whether no message came for too long before the last report."""
     _compared: int = 0
 
     def report(
@@ -190,16 +182,16 @@ class EncoderMonitor(DriverMonitor):
         age = now - self.last_input
         matched = encoder.comparison.matched
         compared = matched != self._compared
-        self.silent, self._compared = age > parameters.input_timeout, matched
+        silent, self._compared = age > parameters.input_timeout, matched
 
         warnings = []
-        if self.silent:
+        if silent:
             warnings.append(Fault(f'no output_encoder for {age:.1f} s', _NO_INPUT))
         elif not compared:
             warnings.append(Fault('no rotor angle of the same time', _NOT_COMPARED))
         warnings += self._new_faults(encoder.rejected)
         # Without new samples, the statistics are out of date.
-        error = encoder.window.statistics() if compared and not self.silent else ErrorStatistics()
+        error = encoder.window.statistics() if compared and not silent else ErrorStatistics()
         if (
             error.peak_to_peak is not None
             and error.peak_to_peak > parameters.transmission_error_limit
@@ -225,24 +217,16 @@ class EncoderMonitor(DriverMonitor):
         return self._report([], warnings, values)
 
 
-def _not_referenced(reference: TurnReference | None, gaps: int, *, encoder_heard: bool) -> Fault:
-    """Why nothing has told the turns, which were lost in so many gaps since the last report."""
+def _not_referenced(reference: TurnReference | None) -> Fault:
+    """Why nothing has told the turns."""
     if not reference:
         return Fault('not referenced', _NOT_REFERENCED)
-    decision = reference.decision
-    if gaps > 1:
-        cause, advice = f'{gaps} gaps could hide half a turn', _UNSEEN
-    elif not encoder_heard:
-        cause, advice = 'output_encoder is silent', _NO_INPUT
-    elif decision is None:
+    if not (decision := reference.decision):
         cause, advice = f'no {SAMPLES} samples of output_encoder in a row', _NOT_COMPARED
     else:
         used, margin = (f'{math.degrees(x):.3g}°' for x in (decision.used, decision.margin))
-        cause, advice = f'{used} of {margin} margin', _AMBIGUOUS
-        if decision.budget < decision.margin:
-            advice = _UNEXPLAINED
-        elif decision.budget - decision.delay < decision.margin:
-            advice = 'Stop the output.'
+        cause = f'{used} of {margin} margin'
+        advice = _UNEXPLAINED if decision.budget < decision.margin else _AMBIGUOUS
     return Fault(f'not referenced: {cause}', f'{advice} Or: {_NOT_REFERENCED}')
 
 

@@ -39,7 +39,7 @@ class OutputEncoder:
             travel=parameters.transmission_error_travel,
         )
         """Counts the measured angles that were compared, and those that were not by cause."""
-        self._reference = reference if parameters.absolute else None
+        self.reference = reference if parameters.absolute else None
         self._segment: int | None = None
 
     def accept(self, data: bytes, now: Callable[[], int]) -> Sequence[ErrorSample]:
@@ -75,16 +75,16 @@ class OutputEncoder:
         return self._note(self.comparison.add_ideal(sample.stamp, *ideal, *corrected))
 
     def _note(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
-        if self._reference and samples:
-            samples = self._reference.follow(samples)
+        if self.reference and samples:
+            samples = self.reference.follow(samples)
         for sample in samples:
             self.window.add(sample)
         return samples
 
     def _compare_one_segment(self) -> None:
         """Compare anew where the rotor's count has become another one."""
-        if self._reference and self._reference.rotor.segment != self._segment:
-            self._segment = self._reference.rotor.segment
+        if self.reference and self.reference.rotor.segment != self._segment:
+            self._segment = self.reference.rotor.segment
             self.comparison.reset()
             self.window.clear()
-            self._reference.restart()
+            self.reference.restart()

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from gear_kinematics.kinematics import RotorSample, RotorTurns, split_turns
+from gear_kinematics.kinematics import RotorPosition, RotorSample, RotorTurns, split_turns
 from gear_kinematics.kinematics.rotor_turns import LARGEST_ANGLE
 from gear_kinematics.parameters import PARAMETERS, NodeParameters
 from gear_kinematics.wire.batches import Array, decode_joint_states
@@ -79,17 +79,19 @@ class RotorInput:
         self.last: RotorSample | None = None
         self._parameters = parameters
         self._reader = JointReader(parameters.rotor_joint)
-        self.zero = parameters.rotor_zero
-        """The one in use, rad: `rotor_zero`, or what a reference put in its place."""
-        self._origin = 'none'
+        self.zero = split_turns(parameters.rotor_zero)
+        """The position in use: `rotor_zero`, or what a reference put in its place."""
+        self.origin = ''
+        """What told the turns last."""
         self._restarts = 0
         """Counts homing, references by the output, and changes of the encoders' parameters."""
-        self._turns = RotorTurns(
+        self.turns = RotorTurns(
             single_turn=parameters.single_turn,
             max_speed=parameters.max_rotor_speed,
             max_acceleration=parameters.max_rotor_acceleration,
             longest_silence=_longest_silence(parameters),
         )
+        """Follows the encoder."""
 
     @property
     def parameters(self) -> NodeParameters:
@@ -98,19 +100,19 @@ class RotorInput:
 
     @parameters.setter
     def parameters(self, parameters: NodeParameters) -> None:
-        self._turns.max_speed = parameters.max_rotor_speed
-        self._turns.max_acceleration = parameters.max_rotor_acceleration
-        self._turns.longest_silence = _longest_silence(parameters)
+        self.turns.max_speed = parameters.max_rotor_speed
+        self.turns.max_acceleration = parameters.max_rotor_acceleration
+        self.turns.longest_silence = _longest_silence(parameters)
         before = self._parameters
         if any(getattr(parameters, name) != getattr(before, name) for name in _ENCODERS):
-            self.zero = parameters.rotor_zero
+            self.zero = split_turns(parameters.rotor_zero)
             self._restarts += 1
             if parameters.absolute or before.absolute:
-                self._turns.forget_turns()
+                self.turns.forget_turns()
         joint, kind = parameters.rotor_joint, parameters.rotor_encoder
         if (joint, kind) != (before.rotor_joint, before.rotor_encoder):
-            self._turns.single_turn = parameters.single_turn
-            self._turns.reset()
+            self.turns.single_turn = parameters.single_turn
+            self.turns.reset()
             self._reader = JointReader(parameters.rotor_joint)
             self.missing_joint = ''
         self._parameters = parameters
@@ -118,22 +120,7 @@ class RotorInput:
     @property
     def referenced(self) -> bool:
         """Whether the rotor's turn count is known."""
-        return self._turns.referenced
-
-    @property
-    def known_from(self) -> str:
-        """What has told the turns since they were unknown."""
-        return self._origin if self.referenced else 'none'
-
-    @property
-    def unseen_travel(self) -> float:
-        """Rad, at most, since the turn count was known; infinite since the start or a reset."""
-        return self._turns.unseen_travel
-
-    @property
-    def unknown_turns(self) -> int:
-        """Gaps in which the rotor could have turned half a turn or more unseen."""
-        return self._turns.unknown_gaps
+        return self.turns.referenced
 
     @property
     def mostly_rejected(self) -> bool:
@@ -150,7 +137,7 @@ class RotorInput:
     @property
     def segment(self) -> int:
         """Number that rises where the turn count restarts, is uncertain or is referenced."""
-        return self._turns.unknown_gaps + self.resets + self._restarts
+        return self.turns.unknown_gaps + self.resets + self._restarts
 
     def accept(self, data: bytes, now: Callable[[], int]) -> RotorSample:
         """Process the next message.
@@ -174,33 +161,30 @@ class RotorInput:
             raise
 
     def home(self, rotor_angle: float) -> float:
-        """Declare that the rotor angle is `rotor_angle` now, also in `last`; returns the zero.
+        """Declare that the rotor angle is `rotor_angle` now; returns the zero, rad.
 
         Raises:
             RuntimeError: before the first valid message.
         """
-        direction = self._parameters.rotor_direction
-        self.zero = self._turns.home(rotor_angle, direction)
-        self._origin = 'homed'
+        zero = self.turns.home(rotor_angle, self._parameters.rotor_direction)
+        self.zero, self.origin = split_turns(zero), 'homed'
         self._restarts += 1
-        if self.last:
-            self.last = self.last._replace(position=self._turns.relative_to(self.zero, direction))
-        return self.zero
+        return zero
 
     def refer(self, origin: str, turns: int = 0, angle: float = 0.0) -> None:
         """Add 2π `turns` + `angle`, rad, to the rotor angle from the next message on.
 
         The turns are known then, from an origin, and a new segment begins; `parameters` remain.
         """
-        self._origin = origin
-        direction = self._parameters.rotor_direction
-        self._turns.refer(direction * turns)
-        self.zero -= direction * angle
+        direction, (zero_turns, zero_angle) = self._parameters.rotor_direction, self.zero
+        self.zero = RotorPosition(zero_turns - direction * turns, zero_angle - direction * angle)
+        self.origin = origin
+        self.turns.refer()
         self._restarts += 1
 
     def zero_for(self, rotor_angle: float) -> float:
         """Return, or raise, what `home` would, and change nothing."""
-        return self._turns.zero_for(rotor_angle, self._parameters.rotor_direction)
+        return self.turns.zero_for(rotor_angle, self._parameters.rotor_direction)
 
     def accept_batch(self, messages: Sequence[bytes], received: Sequence[int]) -> RotorSamples:
         """Process many messages at once, with the same result as one by one.
@@ -245,7 +229,7 @@ class RotorInput:
         self, rows: Array, stamps: Array, values: Array, received: Array, rejected: Array
     ) -> RotorSamples:
         turns, angle = split_turns(values[:, 0])
-        zero_turns, zero_angle = split_turns(self.zero)
+        zero_turns, zero_angle = self.zero
         direction = self._parameters.rotor_direction
         samples = RotorSamples(
             stamps,
@@ -301,11 +285,11 @@ class RotorInput:
     ) -> RotorSample:
         if self.last is not None and stamp <= self.last.stamp:
             self._check_order(stamp, self.last.stamp)
-        self._turns.update(position, stamp, velocity)
+        self.turns.update(position, stamp, velocity)
         direction = self._parameters.rotor_direction
         self.last = RotorSample(
             stamp,
-            self._turns.relative_to(self.zero, direction),
+            self.turns.relative_to(self.zero, direction),
             None if velocity is None else direction * velocity,
             None if effort is None else direction * effort,
         )
@@ -318,7 +302,7 @@ class RotorInput:
             raise RejectedInputError(OUT_OF_ORDER)
         else:
             self.resets += 1
-            self._turns.reset()
+            self.turns.reset()
 
 
 def _longest_silence(parameters: NodeParameters) -> float:

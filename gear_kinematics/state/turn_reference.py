@@ -31,7 +31,6 @@ class Decision(NamedTuple):
     turns: int  # of a single-turn rotor, to add to its count, modulo |N|
     distance: float  # what they leave of the error
     budget: float  # what measured and true angle may differ by
-    delay: float  # the part of it that a delay makes at this speed
     margin: float  # of which the budget must be less, as it could explain other turns
     tolerance: float  # beyond which the error contradicts a count that is known
 
@@ -88,11 +87,11 @@ def decide(samples: Sequence[ErrorSample], parameters: NodeParameters) -> Decisi
     angle = TURN * samples[-1].turns + samples[-1].ideal
     if parameters.single_turn:
         found, margin = nearest_turns(ratio, error), math.pi / abs(ratio.numerator)
-        return Decision(angle, error, *found, budget, delay, margin, budget)
+        return Decision(angle, error, *found, budget, margin, budget)
     # Any angle has its zero: wait until noise and delay are less than the gear's error. A zero
     # that was found so is as uncertain.
     margin = 2.0 * known
-    return Decision(angle, error, 0, 0.0, budget, delay, margin, budget + margin)
+    return Decision(angle, error, 0, 0.0, budget, margin, budget + margin)
 
 
 class ErrorBlock:
@@ -157,13 +156,13 @@ class TurnReference:
         rotor, output_angle = self.rotor, decision.output_angle
         ratio, turns = rotor.parameters.gear.gear_ratio, decision.turns
         if rotor.parameters.single_turn:
-            if rotor.unseen_travel >= math.pi * abs(ratio.numerator):  # half a period
+            if rotor.turns.unseen_travel >= math.pi * abs(ratio.numerator):  # half a period
                 periods = output_angle / (TURN * ratio.denominator) + turns / ratio.numerator
                 turns -= ratio.numerator * round(periods)
             rotor.refer('turns of a single-turn encoder, exact', turns)
             return
         missing = math.remainder(decision.error, TURN)
-        if abs(missing) <= decision.budget and math.isfinite(rotor.unseen_travel):
+        if abs(missing) <= decision.budget and math.isfinite(rotor.turns.unseen_travel):
             missing = 0.0
         else:
             missing = math.remainder(output_angle + decision.error, TURN) - output_angle

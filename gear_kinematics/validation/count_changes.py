@@ -59,12 +59,12 @@ class CountChanges:
         self._referenced = -1  # the latest segment in which an encoder has done it
         self._latest = -1, 0.0, 0.0  # segment, angle and error of the latest output
 
-    def move(self, samples: Array) -> None:
-        """Move samples, (n,), by the changes so far."""
+    def move(self, samples: Array, way: int = 1) -> None:
+        """Move samples, (n,), by the changes so far, or, -1, back."""
         if len(self._steps) > 1:
             count = self._count_at(samples['number'])
-            samples['turns'] += count['turns']
-            samples['angle'] += count['angle']
+            samples['turns'] += way * count['turns']
+            samples['angle'] += way * count['angle']
 
     def learn(self, samples: Array, position: FieldSamples) -> bool:
         """Learn from output angles at moved samples, (n,), and move these by what is found.
@@ -108,13 +108,11 @@ class CountChanges:
         if not steps:
             return False
         self.count += len(steps)
-        earlier = self._count_at(samples['number'])
+        self.move(samples, -1)
         found = np.concatenate([self._steps, np.array(steps, _STEP)])
         # An output can come late.
         self._steps = found[np.argsort(found['number'], kind='stable')][-_MAX_STEPS:]
-        count = self._count_at(samples['number'])
-        samples['turns'] += count['turns'] - earlier['turns']
-        samples['angle'] += count['angle'] - earlier['angle']
+        self.move(samples)
         return True
 
     def notes(self) -> Iterator[Finding]:

@@ -72,11 +72,11 @@ class InputHealth:
             rate=1.0 / self._period if self._period else 0.0,
             duration=self._duration,
             gaps=self._gaps,
-            jumps=rotor_input.unknown_turns,
+            jumps=rotor_input.turns.unknown_gaps,
             overspeed=self._overspeed,
             max_speed=self._fastest,
             longest_gaps=tuple(self._longest),
-            referenced=not rotor_input.unknown_turns,
+            referenced=not rotor_input.turns.unknown_gaps,
         )
 
 

@@ -37,7 +37,7 @@ class Bench:
         self.rotor = RotorInput(settings)
         self.reference = TurnReference(self.rotor)
         self.encoder = OutputEncoder(settings, self.reference)
-        self.monitor = InputMonitor(started=0.0, last_input=0.0, encoder_heard=True)
+        self.monitor = InputMonitor(started=0.0, last_input=0.0)
         self.stamp, self.errors = START, []
 
     def set(self, **changes) -> None:
@@ -118,9 +118,9 @@ def test_a_rotor_that_counts_from_its_start_is_set_to_the_measured_angle(positio
     ('changes', 'error', 'speed', 'message', 'advice'),
     [
         ({}, math.radians(8.1), 0.0, '8.1° of 9.47° margin', 'Check gear_ratio, the directions'),
-        ({'transmission_error_limit': 0.2}, 0.0, 0.0, '11.5° of 9.47° margin', 'Calibrate'),
-        ({'gear_ratio': '1457/26'}, 0.0, 0.0, '0.172° of 0.124° margin', 'Calibrate'),
-        ({'rotor_encoder': 'multi_turn'}, 0.0, 30.0, '1.89° of 0.344° margin', 'Stop the output.'),
+        ({'transmission_error_limit': 0.2}, 0.0, 0.0, '11.5° of 9.47° margin', 'Stop'),
+        ({'gear_ratio': '1457/26'}, 0.0, 0.0, '0.172° of 0.124° margin', 'Stop'),
+        ({'rotor_encoder': 'multi_turn'}, 0.0, 30.0, '1.89° of 0.344° margin', 'Stop'),
         ({'transmission_error_max_gap': 0.006}, 0.0, 30.0, '10.5° of 9.47° margin', 'Stop'),
     ],
 )
@@ -142,9 +142,6 @@ def test_a_calibration_is_subtracted_and_noise_is_added():
 
 def test_when_turns_are_searched():
     bench = Bench()
-    bench.monitor.encoder_heard = False
-    assert bench.report()[0] == 'not referenced: output_encoder is silent'
-    bench.monitor.encoder_heard = True
     bench.rest(1.0, 40)
     bench.rest(1.0, 5, measured=False)
     bench.rest(1.0, 40)  # in a row
@@ -174,19 +171,14 @@ def test_when_turns_are_searched():
     assert bench.rest(1.0) == pytest.approx(1.0)
 
 
-def test_an_encoder_that_is_too_slow_and_gaps_in_every_period_are_named():
+def test_an_encoder_that_is_too_slow_is_named():
     bench = Bench()
     for _ in range(2 * SAMPLES):
         bench.rest(1.0, 1)
         bench.rest(1.0, 1, measured=False)
     message, advice, _ = bench.report()
     assert message == 'not referenced: no 60 samples of output_encoder in a row'
-    assert advice.startswith('Check that both drivers send often')
-    # At 650 rad/s half a turn takes 4.8 ms.
-    bench.rest(1.0, 10, step=5 * MS)
-    message, advice, _ = bench.report()
-    assert message == 'not referenced: 10 gaps could hide half a turn'
-    assert advice.startswith('Lower max_rotor_speed to what the motor reaches')
+    assert advice.startswith('Check that both drivers run and send often')
 
 
 @pytest.mark.parametrize('settings', [SINGLE, MULTI])
