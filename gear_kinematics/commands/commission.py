@@ -21,9 +21,7 @@ from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.parameters import NodeParameters, default_config
 from gear_kinematics.parameters.new_config import write_new
 from gear_kinematics.report.document import Verdict
-from gear_kinematics.wire.topics import JOINT_STATE, TOPICS, base_name
-
-_OUTPUTS = {name for name, topic in TOPICS.items() if topic.publisher == 'node'}
+from gear_kinematics.wire.topics import JOINT_STATE
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -81,7 +79,7 @@ def run(options: argparse.Namespace) -> ExitCode:
         file=file,
     )
     result = _hear(request) if options.live else _read(options, request)
-    if not (file or result.fault):
+    if result.between and not file:
         write_new(path, actuator_file(result, path.name))
     report = document(result, str(options.check or path))
     reporter.write(report, [options.check] if file else [])
@@ -104,10 +102,9 @@ def _read(options: argparse.Namespace, request: analysis.Request) -> analysis.Co
 
 
 def _recorded(path: Path) -> list[analysis.Channel]:
-    """The joints of drivers in a bag."""
+    """The joints in a bag."""
     with Bag(path) as bag:
-        states = [topic for topic, kind in bag.topics.items() if kind == JOINT_STATE]
-        heard = joints_on(bag, [topic for topic in states if base_name(topic) not in _OUTPUTS])
+        heard = joints_on(bag, [topic for topic in bag.topics if bag.topics[topic] == JOINT_STATE])
     return [analysis.Channel(topic, joint) for topic, joints in heard.items() for joint in joints]
 
 
@@ -135,7 +132,7 @@ def _hear(request: analysis.Request) -> analysis.Commissioning:
         guide(live, console, stopped)
         if stopped():
             raise KeyboardInterrupt
-    return analysis.commission([live.recording()], request)
+    return live.result()
 
 
 def _ratio(options: argparse.Namespace) -> GearRatio | None:

@@ -10,9 +10,6 @@ from gear_kinematics.report.document import printable
 from gear_kinematics.wire.nearest import listed
 from gear_kinematics.wire.topics import OUTPUT_ENCODER, ROTOR_STATE, TOPICS, base_name
 
-_USUAL = {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}
-"""Names of topics."""
-
 
 def choose_joint(
     joints: Sequence[Channel], given: Channel, role: Literal['rotor', 'output']
@@ -29,8 +26,10 @@ def choose_joint(
     """
     topic = given.topic and f'/{given.topic.removeprefix("/")}'
     found = [j for j in joints if topic in {'', j.topic} and given.joint in {'', j.joint}]
-    usual = [joint for joint in found if base_name(joint.topic) == _USUAL[role]]
-    found = usual or [joint for joint in found if base_name(joint.topic) not in TOPICS] or found
+    base = {'rotor': ROTOR_STATE, 'output': OUTPUT_ENCODER}[role]
+    usual = [joint for joint in found if base_name(joint.topic) == base]
+    others = [joint for joint in found if base_name(joint.topic) not in TOPICS]
+    found = usual or others or (found if any(given) else [])  # of this package, if they are named
     if len(found) == 1:
         return found[0]
     names = [f'{printable(joint)} on {topic}' for topic, joint in found or joints]

@@ -47,6 +47,13 @@ def rounded(estimate: Estimate, scale: float) -> tuple[str, str]:
     return f'{round(value, decimals) + 0.0:.{decimals}f}', f'{spread:.{decimals}f}'
 
 
+def shown(value: str | float | None) -> str:
+    """Write the value of a parameter; None is one that is open."""
+    if value is None:
+        return 'open'
+    return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
+
+
 def plain(value: Any) -> Any:
     """Convert dataclasses to mappings for JSON, without arrays."""
     match value:

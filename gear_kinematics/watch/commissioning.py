@@ -15,15 +15,15 @@ import numpy as np
 
 from gear_kinematics.bag import Message, by_topic
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.commissioning.analysis import Request, commission
+from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
 from gear_kinematics.measurement.commissioning.file import actuator_file
 from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.reading import States
-from gear_kinematics.measurement.recording import Encoders, Recording
+from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_config
 from gear_kinematics.parameters.new_config import start_command, write_new
 from gear_kinematics.watch.gear import GearNode
-from gear_kinematics.watch.view import Entry, Guide, shown
+from gear_kinematics.watch.view import Entry, Guide, Tone
 
 _MOST_STATES = 40_000
 """20 s of both encoders at 1 kHz, analysed in 0.2 s of a processor; of more, one of every two,
@@ -56,11 +56,11 @@ class LiveCommissioning:
             self._due = time.monotonic() + _PAUSE
             self.shown = before.result()
 
-    def recording(self) -> tuple[Recording, Encoders]:
-        """Return what was taken; raises ValueError if there is nothing to measure."""
-        return self._pool.submit(self._recording).result()
+    def result(self) -> Commissioning:
+        """Return what has been taken tells; raises ValueError if there is nothing to measure."""
+        return self._pool.submit(self._analyse).result()
 
-    def _recording(self) -> tuple[Recording, Encoders]:
+    def _analyse(self) -> Commissioning:
         while not self._taken.empty():
             messages = self._taken.get()
             found = by_topic(messages, self._topics)
@@ -69,7 +69,7 @@ class LiveCommissioning:
         name = f'live on {datetime.now().astimezone():%Y-%m-%d at %H:%M}'
         recording = self._states.recording(Path(name), Sources())
         assert recording.encoders  # noqa: S101, there is a topic of the output
-        return recording, recording.encoders
+        return commission([(recording, recording.encoders)], self.request)
 
     def write(self) -> str:
         """Write the parameter file into the working directory; it replaces nothing.
@@ -81,8 +81,7 @@ class LiveCommissioning:
             ValueError: if the ratio is open, or the file cannot be written.
         """
         name = default_config().name
-        result = commission([self.recording()], self.request)
-        write_new(Path(name), actuator_file(result, name))
+        write_new(Path(name), actuator_file(self.result(), name))
         return start_command(self._topics[0], name, self._topics[1])
 
     def changes(self, gear: GearNode) -> dict[str, Any]:
@@ -91,14 +90,13 @@ class LiveCommissioning:
         Raises:
             ValueError: if the ratio is open, or the node is not of this gear or needs a restart.
         """
-        result, parameters = commission([self.recording()], self.request), gear.parameters
-        if result.fault:
-            raise ValueError(result.fault)
+        result, parameters = self.result(), gear.parameters
+        if not result.between:
+            raise ValueError(result.answer)
         if not parameters or not all(map(gear.hears, self._topics)):
             topics = ' and '.join(self._topics)
             raise ValueError(f'{gear.name} does not hear {topics}: write the file, and start it.')
-        has = parameters.values() | {'gear_ratio': str(parameters.gear.gear_ratio)}
-        changed = {v.name: v.value for v in result.values if has[v.name] != v.value}
+        changed = {name: new for name, (_, new) in result.changes(parameters).items()}
         if fixed := [f'{name} {changed[name]}' for name in changed if PARAMETERS[name].read_only]:
             needed = f'{", ".join(fixed)} needs a restart'
             raise ValueError(f'Nothing is changed: {needed}; write the file, and start it.')
@@ -107,7 +105,7 @@ class LiveCommissioning:
     def _guide(self) -> Guide:
         """Show how much is known of what a parameter file needs, and what to do for the rest."""
         try:
-            result = commission([self._recording()], self.request)
+            result = self._analyse()
         except ValueError as error:  # there is nothing to measure yet
             return Guide(GUIDE, 0.0, (Entry('heard', f'{self._count} messages', str(error)),))
         angle = result.longest.encoders.measured
@@ -115,10 +113,10 @@ class LiveCommissioning:
         ways = [float(way.max()) for way in (on, back)]
         heard = 'the output turned {:.0f}° on and {:.0f}° back'.format(*map(math.degrees, ways))
         moved = [min(way / _STROKE, 1.0) for way in ways]
-        moved.append(any(value.name == 'rotor_encoder' for value in result.values))
+        moved.append(any(v.name == 'rotor_encoder' and v.value is not None for v in result.values))
         entries = [Entry('heard', f'{self._count} messages', heard)]
-        entries += [Entry(v.name, shown(v.value), v.evidence) for v in result.values]
-        for left in result.open:
-            entries.append(Entry(left.what, 'open', f'{left.known}; {left.advice}', 'notable'))
+        for found in result.values:
+            tone: Tone = 'notable' if found.value is None else ''
+            entries.append(Entry(found.name, shown(found.value), found.evidence, tone))
         advice = result.answer if min(moved) == 1.0 else GUIDE
-        return Guide(advice, float(np.mean([*moved, not result.fault])), tuple(entries))
+        return Guide(advice, float(np.mean([*moved, bool(result.between)])), tuple(entries))

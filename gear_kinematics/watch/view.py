@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from gear_kinematics.kinematics.rotor_turns import TURN
+from gear_kinematics.measurement.wording import shown
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.shape.angles import arc
 from gear_kinematics.state.diagnostics import ERROR, OK, WARN
@@ -105,11 +106,6 @@ def _state_of(gear: GearNode | None) -> tuple[str, str]:
     if _freshness(output, gear.parameters):
         return 'no output', f'The last was {output.age:.1f} s ago.'
     return 'connected', ''
-
-
-def shown(value: str | float) -> str:
-    """Write the value of a parameter."""
-    return f'{value:.6g}' if isinstance(value, float) else str(value) or "''"
 
 
 def values_of(gear: GearNode) -> Iterator[Entry]:

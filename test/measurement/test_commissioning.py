@@ -133,8 +133,8 @@ def test_several_recordings_tell_the_ratio_by_the_longest_and_the_zero_by_the_la
 def test_less_than_a_rotor_turn_leaves_the_kind_open():
     times, rotor, output = readings(profile=ramped_strokes(0.2, 10.0, 1.0))
     result = commissioned(recorded(rotor, output, times), ratio=GearRatio(-19))
-    (kind,) = (each for each in result.open if each.what == 'rotor_encoder')
-    assert kind.known == 'the rotor turned 0.605 turns'
+    (kind,) = (each for each in result.values if each.name == 'rotor_encoder')
+    assert (kind.value, kind.evidence[:28]) == (None, 'the rotor turned 0.605 turns')
     assert 'rotor_encoder' not in actuator_file(result).split('# Open')[0]
 
 
@@ -176,7 +176,7 @@ def test_rotor_and_output_that_are_exchanged_give_no_file():
     times, rotor, output = readings()
     result = commissioned(recorded(output, rotor, times))
     assert 'the output turns more than the rotor: exchange the two' in result.answer
-    assert result.answer == result.fault
+    assert not result.between
 
 
 def test_turns_that_pass_in_a_gap_leave_the_ratio_open():
@@ -216,4 +216,4 @@ def test_check_names_what_a_new_recording_contradicts(change, contradicted, tmp_
     file = replace(file, **change)
     result = commissioned(recorded(rotor, output, times), ratio=file.gear.gear_ratio, file=file)
     assert set(document(result, 'a.yaml').data['contradicted']) == contradicted
-    assert bool(result.fault) == (change == {'gear_ratio': '-18'})
+    assert (result.between is None) == (change == {'gear_ratio': '-18'})

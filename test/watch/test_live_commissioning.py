@@ -19,7 +19,7 @@ from terminals import Person
 from watching import ENCODER, MOTOR, NAMESPACE, NODE, driving, gearkin, node
 
 from gear_kinematics.kinematics import GearRatio
-from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
+from gear_kinematics.measurement.commissioning.analysis import Channel, Request
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.watch import commissioning
 from gear_kinematics.watch.commissioning import GUIDE, LiveCommissioning
@@ -77,8 +77,7 @@ def test_advice_and_bar_follow_what_is_known(monkeypatch, degrees, ratio, advice
 
 def test_parameters_are_those_of_the_gear(monkeypatch):
     live = hear(monkeypatch, 90.0, '121')
-    found = commission([live.recording()], live.request).values
-    values = {value.name: value.value for value in found}
+    values = {v.name: v.value for v in live.result().values if v.value is not None}
     zero = values.pop('rotor_zero')
     assert values == {
         'rotor_joint': 'm',
@@ -96,7 +95,7 @@ def test_file_has_the_zero_of_the_end(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     live = hear(monkeypatch, 90.0, '121', seconds=7.0, zero_here='END')
     assert '--params-file actuator.yaml -r rotor_state:=/j' in live.write()
-    at_end = live.recording()[1].measured[-1]
+    at_end = live.result().longest.encoders.measured[-1]
     assert abs(at_end) > 0.1
     zero = NodeParameters.load(tmp_path / 'actuator.yaml').output_encoder_zero
     assert zero == pytest.approx(at_end, abs=1e-8)
@@ -112,9 +111,9 @@ def test_node_of_another_gear_is_not_changed(monkeypatch):
 def test_memory_is_bounded(monkeypatch):
     live = hear(monkeypatch, 90.0, '121', most=4000)
     assert live.shown.known == 1.0
-    recording, encoders = live.recording()
-    assert 1000 <= len(encoders.rotor.stamp) <= 2000
-    assert 'one state of 4 is used' in recording.remarks[0]
+    joint = live.result().longest
+    assert 1000 <= len(joint.encoders.rotor.stamp) <= 2000
+    assert 'one state of 4 is used' in joint.recording.remarks[0]
 
 
 # Beside a driver

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -57,23 +57,13 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A parameter of the node that is determined."""
+    """A parameter of the node, or what else is to be determined."""
 
     name: str
-    value: str | int | float
+    value: str | int | float | None
+    """None if it is open."""
     evidence: str
-    """In one line."""
-
-
-@dataclass(frozen=True, slots=True)
-class Open:
-    """What is not determined."""
-
-    what: str
-    known: str
-    """A clause."""
-    advice: str
-    """What to do, as a clause."""
+    """In one line; of what is open, what is known, and what to do."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -88,15 +78,18 @@ class Commissioning:
     ratio: RatioEstimate | None
     """Between the encoders; None where it cannot be estimated."""
     between: GearRatio | None
-    """The exact ratio between the encoders; None where it is open."""
-    fault: str
-    """Why there is no file, in a sentence; else empty."""
+    """The exact ratio between the encoders; None where it is open, so that there is no file."""
     answer: str
     """The result in a sentence."""
     values: tuple[Value, ...]
-    open: tuple[Open, ...]
     notes: tuple[str, ...]
     """Sentences on what is no parameter."""
+
+    def changes(self, parameters: NodeParameters) -> dict[str, tuple[Any, Any]]:
+        """What parameters have, and what it has to be, by names."""
+        has = parameters.values() | {'gear_ratio': str(parameters.gear.gear_ratio)}
+        pairs = ((v.name, has.get(v.name), v.value) for v in self.values)
+        return {name: (old, new) for name, old, new in pairs if new not in (None, old)}
 
 
 def commission(
@@ -116,8 +109,7 @@ def commission(
     joints = tuple(Joint.of(*recording) for recording in recordings)
     longest = max(joints, key=lambda joint: joint.travel)
     ratio, between, evidence = _decided(longest, request.ratio)
-    fault = answer = evidence
-    encoders, known = longest.encoders, request.file or NodeParameters.load()
+    answer, encoders, known = evidence, longest.encoders, request.file or NodeParameters.load()
     speed = float(np.max(np.abs(encoders.speed(Fraction(1)))))
     both = encoders.rotor.seconds, encoders.seconds
     rotor, output = (f'{(len(times) - 1) / np.ptp(times):.4g} Hz' for times in both)
@@ -125,25 +117,23 @@ def commission(
     notes = [f'{reached}. Rates: {rotor} of the rotor, {output} of the output.']
     named = ('rotor_joint', request.rotor), ('output_encoder_joint', request.output)
     names = (Value(name, joint, f'a joint of {topic}') for name, (topic, joint) in named if topic)
-    found: list[Value | Open] = [*(() if request.file else names), _kind(joints)]
+    values = [*(() if request.file else names), _kind(joints)]
     if between:
-        fault, answer = '', f'The gear has the ratio {request.ratio or between} ({evidence}).'
-        found += _ratio(between, evidence, request)
-        found += _zeros(joints, between, request)
+        answer = f'The gear has the ratio {request.ratio or between} ({evidence}).'
+        values += _ratio(between, evidence, request)
+        values += _zeros(joints, between, request)
         travel = known.transmission_error_travel
         if delay := transmission_figures(encoders, between, travel).delay:
             notes.append(f'The stamps of the output are late by {plus_minus(delay, 1e3)} ms.')
         else:
             advice = 'turn the output there and back three times, at different speeds'
-            found.append(Open('delay', 'it is not told from hysteresis', advice))
+            values.append(Value('delay', None, f'it is not told from hysteresis; {advice}'))
     elif ratio and ratio.advice:
-        found.append(Open('ratio', ratio.plus_minus, ratio.advice))
+        values.append(Value('ratio', None, f'{ratio.plus_minus}; {ratio.advice}'))
     if speed > known.max_rotor_speed:
-        found.append(Value('max_rotor_speed', _FASTER * speed, reached))
-    values = tuple(each for each in found if isinstance(each, Value))
-    left = tuple(each for each in found if isinstance(each, Open))
+        values.append(Value('max_rotor_speed', _FASTER * speed, reached))
     return Commissioning(
-        request, joints, longest, ratio, between, fault, answer, values, left, tuple(notes)
+        request, joints, longest, ratio, between, answer, tuple(values), tuple(notes)
     )
 
 
@@ -168,14 +158,14 @@ def _decided(
     return ratio, None, f'The given ratio {exact} does not agree with the measured {seen}.'
 
 
-def _kind(joints: Sequence[Joint]) -> Value | Open:
+def _kind(joints: Sequence[Joint]) -> Value:
     """The kind of the rotor's encoder."""
     if wraps := sum(joint.rotor_wraps for joint in joints):
         return Value('rotor_encoder', 'single_turn', f'{counted(wraps, "wrap")} of a turn')
     turns = max(float(np.ptp(joint.turned)) for joint in joints) / TURN
     seen = f'the rotor turned {number(turns)} turns'
     if turns <= _ONE_TURN:
-        return Open('rotor_encoder', seen, 'turn the rotor by more than one')
+        return Value('rotor_encoder', None, f'{seen}; turn it by more than one')
     return Value('rotor_encoder', 'multi_turn', f'{seen} without a wrap')
 
 

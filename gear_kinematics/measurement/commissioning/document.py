@@ -1,14 +1,15 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The report on the commissioning of a gear, or on the check of a parameter file."""
 
+from collections.abc import Callable
+
 import numpy as np
 
 from gear_kinematics.kinematics.rotor_turns import TURN
-from gear_kinematics.measurement.commissioning.analysis import Commissioning
+from gear_kinematics.measurement.commissioning.analysis import Commissioning, Value
 from gear_kinematics.measurement.envelope import envelope
-from gear_kinematics.measurement.wording import plain
+from gear_kinematics.measurement.wording import plain, shown
 from gear_kinematics.report.document import (
-    Cell,
     Document,
     Figure,
     Finding,
@@ -25,23 +26,22 @@ from gear_kinematics.report.document import (
 def document(result: Commissioning, target: str) -> Document:
     """Return the document on a commissioning, whose file is the target, or which judges it."""
     file, ratio, answer = result.request.file, result.ratio, result.answer
-    written = file.values() | {'gear_ratio': str(file.gear.gear_ratio)} if file else {}
-    wrong = [each for each in result.values if written.get(each.name, each.value) != each.value]
+    wrong = result.changes(file) if file else {}
     if wrong:
-        said = (f'{v.name} is {_shown(written[v.name])}, not {_shown(v.value)}' for v in wrong)
+        said = (f'{n} is {shown(old)}, not {shown(new)}' for n, (old, new) in wrong.items())
         answer = f'{target} is contradicted: {"; ".join(said)}.'
-    elif not result.fault:
+    elif result.between:
         answer += f' {target} agrees.' if file else f' It is written to {target}.'
-    rows = [(v.name, v.value, written.get(v.name, ''), v.evidence) for v in result.values]
-    rows += [(each.what, 'open', '', f'{each.known}; {each.advice}') for each in result.open]
-    columns = 'parameter', 'value', 'file', 'evidence'
-    table = Table(
-        columns, tuple(tuple(Cell(_shown(each)) for each in row) for row in rows), ('', *columns)
-    )
+    columns: dict[str, Callable[[Value], str]] = {
+        'parameter': lambda v: v.name,
+        'value': lambda v: printable(shown(v.value)),
+        'evidence': lambda v: printable(v.evidence),
+    }
+    table = Table.of_items(columns, result.values, ('', *columns))
     remarks, names = [*result.notes], [joint.recording.name for joint in result.joints]
     for joint in result.joints:
         remarks += [f'{joint.recording.name}: {what}' for what in joint.recording.sentences]
-    verdict = Verdict.FAIL if wrong or result.fault else None
+    verdict = None if result.between and not wrong else Verdict.FAIL
     section = Section(
         printable(', '.join(names)),
         (table,),
@@ -59,15 +59,10 @@ def document(result: Commissioning, target: str) -> Document:
         'gear_ratio': plain(result.between and (result.request.ratio or result.between)),
         'travel': result.longest.travel,
         'values': plain(result.values),
-        'open': plain(result.open),
-        'contradicted': [each.name for each in wrong],
+        'contradicted': [*wrong],
         'remarks': remarks,
     }
     return Document('gearkin commission', (section,), data, verdict)
-
-
-def _shown(value: str | float) -> str:
-    return f'{value:.6f}' if isinstance(value, float) else printable(str(value))
 
 
 def _figure(result: Commissioning) -> Figure | None:

@@ -15,8 +15,8 @@ _INDENT = '    '
 
 def actuator_file(result: Commissioning, name: str = default_config().name) -> str:
     """Return the text of a parameter file of a name; ValueError if the ratio is open."""
-    if result.fault:
-        raise ValueError(result.fault)
+    if not result.between:
+        raise ValueError(result.answer)
     names = ', '.join(joint.recording.name for joint in result.joints)
     command = start_command(result.request.rotor.topic, name, result.request.output.topic)
     lines = [
@@ -25,12 +25,14 @@ def actuator_file(result: Commissioning, name: str = default_config().name) -> s
         '/**:',
         '  ros__parameters:',
     ]
-    for value in result.values:
-        lines += _comment(value.evidence, _INDENT)
-        lines.append(f'{_INDENT}{value.name}: {_yaml(value.value)}')
-    left = (f'Open: {each.what}: {each.known}; {each.advice}.' for each in result.open)
-    for text in (*left, *result.notes):
-        lines += _comment(text, _INDENT)
+    for found in result.values:
+        if found.value is None:
+            lines += _comment(f'Open: {found.name}: {found.evidence}.', _INDENT)
+        else:
+            lines += _comment(found.evidence, _INDENT)
+            lines.append(f'{_INDENT}{found.name}: {_yaml(found.value)}')
+    for note in result.notes:
+        lines += _comment(note, _INDENT)
     return '\n'.join([*lines, ''])
 
 
