@@ -14,8 +14,7 @@ from gear_kinematics.commands.output import Console, message_progress, warn_of_s
 from gear_kinematics.commands.reporter import Reporter, add_report_forms
 from gear_kinematics.kinematics import GearRatio
 from gear_kinematics.measurement.commissioning import analysis
-from gear_kinematics.measurement.commissioning.document import document
-from gear_kinematics.measurement.commissioning.file import actuator_file
+from gear_kinematics.measurement.commissioning.document import actuator_file, document
 from gear_kinematics.measurement.csv_files import is_csv
 from gear_kinematics.measurement.reading import read_encoders
 from gear_kinematics.parameters import NodeParameters, default_config

@@ -32,10 +32,8 @@ def new_config(topic: str, joint: str, name: str) -> str:
 
 
 def quoted(text: str) -> str:
-    """Write a text as a scalar of YAML."""
-    if text.isascii() and text.isprintable():
-        return "'{}'".format(text.replace("'", "''"))
-    return str(yaml.safe_dump(text, default_style='"', width=math.inf)).strip()
+    """Write a text as a scalar of YAML, in double quotes where single ones cannot hold it."""
+    return str(yaml.safe_dump(text, default_style="'", width=math.inf)).strip()
 
 
 def start_command(topic: str, name: str, encoder: str = '') -> str:

@@ -16,7 +16,7 @@ import numpy as np
 from gear_kinematics.bag import Message, by_topic
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.commissioning.analysis import Commissioning, Request, commission
-from gear_kinematics.measurement.commissioning.file import actuator_file
+from gear_kinematics.measurement.commissioning.document import actuator_file
 from gear_kinematics.measurement.csv_files import Sources
 from gear_kinematics.measurement.reading import States
 from gear_kinematics.measurement.wording import shown

@@ -16,8 +16,7 @@ from simulated_encoders import TURN, Drive, ramped_strokes, stamps
 
 from gear_kinematics.kinematics.gear_ratio import GearRatio
 from gear_kinematics.measurement.commissioning.analysis import Channel, Request, commission
-from gear_kinematics.measurement.commissioning.document import document
-from gear_kinematics.measurement.commissioning.file import actuator_file
+from gear_kinematics.measurement.commissioning.document import actuator_file, document
 from gear_kinematics.measurement.recording import Recording, RecordingError
 from gear_kinematics.parameters import NodeParameters
 
