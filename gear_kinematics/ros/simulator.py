@@ -2,7 +2,6 @@
 """The node gear_simulator: an actuator without hardware, in real time."""
 
 import math
-import struct
 import time
 from collections.abc import Collection
 from functools import partial
@@ -31,14 +30,8 @@ from gear_kinematics.twin.fast_model import FastModel
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.model import Model
 from gear_kinematics.wire import topics
-from gear_kinematics.wire.cdr import (
-    SECOND,
-    JointStateTemplate,
-    MalformedMessageError,
-    joint_index,
-    joint_state_layout,
-)
-from gear_kinematics.wire.joint_reader import MALFORMED, describe_missing
+from gear_kinematics.wire.cdr import SECOND, JointStateTemplate
+from gear_kinematics.wire.nearest import among
 
 _MOST_LATE = SECOND // 2  # ns of real time that are made up for
 _ACCURACY = 100_000  # ns, of stamps
@@ -90,7 +83,7 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
             self._outputs.create(topic, JointState, qos)
             template = JointStateTemplate([joint], velocity=True, effort=True)
             self._joints.append((topic, template, read))
-        self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos, raw=True)
+        self.create_subscription(JointState, topics.ROTOR_COMMAND, self._on_command, qos)
         self.create_subscription(Float64, topics.LOAD_TORQUE, self._on_load, qos)
         for shaft in ('output', 'rotor'):
             self.create_service(SetBool, f'~/lock_{shaft}', partial(self._lock, shaft))
@@ -124,7 +117,7 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
             self._driver.advance(self._period / SECOND, self._load)
             stamp = max(self._due + self._offset, 0)
             self._outputs.send(
-                (topic, template.encode(stamp, *([value] for value in read())))
+                (topic, template.encode(stamp, read()))
                 for topic, template, read in self._joints
                 if not self._driver.drops()
             )
@@ -137,11 +130,21 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         if time.monotonic_ns() - before < _ACCURACY or not self._offset:
             self._offset = now - before
 
-    def _on_command(self, data: bytes) -> None:
-        try:
-            self._driver.follow(read_command(data, self._joint))
-        except ValueError as error:
-            self._warn(f'{topics.ROTOR_COMMAND} rejected: {error}')
+    def _on_command(self, message: JointState) -> None:
+        """Follow a command; values that are absent or not finite are not commanded."""
+        joint = self._joint or next(iter(message.name), '')
+        if joint not in message.name:
+            there = among(joint, message.name)
+            self._warn(f'{topics.ROTOR_COMMAND} rejected: no joint {joint!r} in it{there}')
+            return
+        index = message.name.index(joint)
+        arrays = message.position, message.velocity, message.effort
+        values = (values[index] if index < len(values) else math.nan for values in arrays)
+        command = Command(*(value if math.isfinite(value) else None for value in values))
+        if any(value is not None for value in command):
+            self._driver.follow(command)
+        else:
+            self._warn(f'{topics.ROTOR_COMMAND} rejected: no value in it is finite')
 
     def _on_load(self, message: Float64) -> None:
         if math.isfinite(message.data):
@@ -173,30 +176,6 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         if time.monotonic() >= self._next_warning:
             self.get_logger().warning(text)
             self._next_warning = time.monotonic() + _WARNING_PERIOD
-
-
-def read_command(data: bytes, joint: str) -> Command:
-    """Read a serialised JointState; values that are absent or not finite are not commanded.
-
-    Raises:
-        ValueError: if it commands nothing of the joint.
-    """
-    try:
-        layout = joint_state_layout(data)
-    except MalformedMessageError as error:
-        raise ValueError(MALFORMED) from error
-    index = joint_index(layout, joint.encode())
-    if index is None:
-        raise ValueError(describe_missing(joint, data))
-    values = [
-        struct.unpack_from(f'{layout.order}d', data, offset + 8 * index)[0]
-        if index < count
-        else math.nan
-        for offset, count in layout.arrays
-    ]
-    if not any(map(math.isfinite, values)):
-        raise ValueError('neither position, velocity nor effort is finite')
-    return Command(*(value if math.isfinite(value) else None for value in values))
 
 
 def _make_model(kind: str, gear: TwinGear) -> Model:

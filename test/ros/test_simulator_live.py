@@ -50,9 +50,6 @@ class Bench(Participant):
     def command(self, **values) -> None:
         self._commands.publish(rotor_state(0, **values))
 
-    def send(self, data: bytes) -> None:
-        self._commands.publish(data)
-
     def load(self, torque: float) -> None:
         """Load the output, and wait until it is loaded, unless it cannot be."""
         self._loads.publish(Float64(data=torque))
@@ -148,9 +145,8 @@ def test_what_cannot_be_followed_is_one_warning_a_second(bench):
         "no joint 'rotor' in it; there are: wheel": lambda: bench.command(
             names=['wheel'], position=[1.0]
         ),
-        'is finite': lambda: bench.command(position=[math.nan]),
+        'no value in it is finite': lambda: bench.command(position=[math.nan]),
         "no joint 'rotor' in it; there are none": lambda: bench.command(names=[]),
-        'not a JointState': lambda: bench.send(b'\0\1\0\0'),
         'nan is not finite': lambda: bench.load(math.nan),
     }.items():
         before = bench.text()
