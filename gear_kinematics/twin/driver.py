@@ -21,6 +21,7 @@ from gear_kinematics.twin.fast_model import inertias
 from gear_kinematics.twin.model import Model
 
 _PERIOD = 2e-4  # s, of the servo loop
+_BANDWIDTH = 30.0  # Hz, ω/2π; less if the inertia of the output needs it
 _FRESH = 0.02
 """s, for which the velocity beside a position counts, and the position moves on with it: a stream
 of commands makes no steps, and a single one is held."""
@@ -52,7 +53,6 @@ class Driver:
         model: Model,
         *,
         max_torque: float,
-        bandwidth: float = 30.0,
         rotor_counts: int = 0,
         output_counts: int = 0,
         dropout: float = 0.0,
@@ -62,7 +62,6 @@ class Driver:
         Args:
             model: the gear, whose parameters have directions, zeros and the greatest speed.
             max_torque: of the motor, N·m.
-            bandwidth: ω/2π, Hz, of the speed; less if the inertia of the output needs it.
             rotor_counts: steps per turn of the encoder; 0: exact.
             output_counts: the same of the output's encoder.
             dropout: share of the messages that are not sent.
@@ -77,7 +76,7 @@ class Driver:
         rotor, output = inertias(model.gear)
         self._inertia = rotor + output / model.gear.ratio**2
         # On short notice the torque moves the rotor alone, by at most half of the error in speed.
-        self._omega = min(TURN * bandwidth, 0.5 / _PERIOD * rotor / self._inertia)
+        self._omega = min(TURN * _BANDWIDTH, 0.5 / _PERIOD * rotor / self._inertia)
         self._origin = self._parameters.rotor_zero
         """Position at rotor angle 0, rad."""
         self._load = 0.0
