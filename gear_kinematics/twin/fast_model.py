@@ -1,19 +1,17 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """A model in plain floats: rotor and output shaft as two inertias, with the branches between them.
 
-    J2 φ2'' = motor torque - damping φ2' - Σ T_k/i        J5 φ5'' = load torque + Σ T_k - Σ F_j
+    J2 φ2'' = motor torque - damping φ2' - Σ T_k/i        J5 φ5'' = load torque + Σ T_k - friction
 
 Satellites and couplings circle with the rotor and turn with the output. Arm A has no mass: the
-shaft is in series with the spring of its branch. A slider's friction F_j is a stop operator,
-F ← clip(F + stiffness · Δφ5, ±torque), which sticks and slides without a case for either.
+shaft is in series with the spring of its branch.
 
 Velocities step before angles (the symplectic Euler method): oscillations on the springs neither
-grow nor die while their angular frequency stays below 2/h. Damping and sliders are implicit, one
-after another, and have no bound.
+grow nor die while their angular frequency stays below 2/h. Damping is implicit, and has no bound.
+Friction stops the output within a step if it can, and slows it down by all of its torque if not.
 """
 
 import math
-from collections.abc import Sequence
 
 from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.twin.gear import Spring, TwinGear, greatest_stiffness, spring_torque
@@ -34,19 +32,20 @@ class FastModel:
         self.rotor_angle = self.rotor_velocity = self.output_velocity = 0.0
         self.output_angle = gear.error(0.0)
         self.rotor_locked = self.output_locked = False
-        self._friction = [0.0] * len(gear.friction)
         self.gear = gear
 
     @property
     def gear(self) -> TwinGear:
-        """The gear; one that replaces it has the same mechanism and as many sliders."""
+        """The gear; one that replaces it has the same mechanism."""
         return self._gear
 
     @gear.setter
     def gear(self, gear: TwinGear) -> None:
         springs = [*gear.springs]
         if gear.has_shaft:
-            springs[0] = in_series(springs[0], gear.shaft_stiffness)
+            [spring] = springs[0]
+            both = 1.0 / (1.0 / spring.stiffness + 1.0 / gear.shaft_stiffness)
+            springs[0] = (Spring(0.0, both),)
         self._ratio = gear.ratio
         self._rotor_inertia, self._output_inertia = inertias(gear)
         reduced = self._ratio**2 * self._rotor_inertia
@@ -67,12 +66,7 @@ class FastModel:
         rotor_gain = 0.0 if self.rotor_locked else h / self._rotor_inertia
         output_gain = 0.0 if self.output_locked else h / self._output_inertia
         damped = 1.0 + rotor_gain * self._gear.rotor_damping
-        ratio, friction = self._ratio, self._friction
-        # What a slider's force grows by, for each rad/s of the output without it.
-        sliders = [
-            (number, 1.0 / (1.0 / (h * each.stiffness) + output_gain), each.torque)
-            for number, each in enumerate(() if self.output_locked else self._gear.friction)
-        ]
+        ratio, slowed = self._ratio, output_gain * self._gear.friction
         rotor, output = self.rotor_angle, self.output_angle
         rotor_velocity = 0.0 if self.rotor_locked else self.rotor_velocity
         output_velocity = 0.0 if self.output_locked else self.output_velocity
@@ -81,11 +75,8 @@ class FastModel:
             torque = sum(torques)
             rotor_velocity += rotor_gain * (rotor_torque - torque / ratio)
             rotor_velocity /= damped
-            output_velocity += output_gain * (load_torque + torque - sum(friction))
-            for number, growth, most in sliders:
-                before = friction[number]
-                force = friction[number] = max(-most, min(before + growth * output_velocity, most))
-                output_velocity -= output_gain * (force - before)
+            output_velocity += output_gain * (load_torque + torque)
+            output_velocity -= max(-slowed, min(output_velocity, slowed))
             rotor += h * rotor_velocity
             output += h * output_velocity
             torques = self._torques(rotor, output)
@@ -123,15 +114,3 @@ def inertias(gear: TwinGear) -> tuple[float, float]:
     circling = bodies.satellite_mass + 0.25 * (1.0 + kappa**2) * bodies.coupling_mass
     turning = bodies.satellite_inertia + bodies.coupling_inertia
     return bodies.rotor_inertia + count * e**2 * circling, gear.output_inertia + count * turning
-
-
-def in_series(springs: Sequence[Spring], stiffness: float) -> tuple[Spring, ...]:
-    """The springs of a branch behind a shaft, whose twist adds to where each of them begins."""
-    found, before, total = [], 0.0, 0.0
-    for spring in springs:
-        total += spring.stiffness
-        both = 1.0 / (1.0 / total + 1.0 / stiffness)
-        twist = spring_torque(springs, spring.beyond) / stiffness
-        found.append(Spring(spring.beyond + twist, both - before))
-        before = both
-    return tuple(found)

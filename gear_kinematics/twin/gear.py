@@ -20,19 +20,17 @@ All signs are the opposite if branch A pushes the output in the negative directi
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate, pairwise
+from itertools import accumulate
 from pathlib import Path
 from typing import Any, NamedTuple, Self
-
-import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.kinematics.preload import braced
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.twin.parameters import NODE, load
+from gear_kinematics.twin.parameters import NODE, PARAMETERS, own_values
 
-_BRACED = 2  # branches, which have a shaft between their arms
+BRACED = 2  # branches, which have a shaft between their arms
 
 
 class Spring(NamedTuple):
@@ -42,15 +40,6 @@ class Spring(NamedTuple):
     """rad at the output, at least 0."""
     stiffness: float
     """N·m/rad; less than 0 where the sum gets softer."""
-
-
-class Slider(NamedTuple):
-    """Friction that holds like a spring until it slides, as of Jenkins or Prandtl."""
-
-    stiffness: float
-    """N·m/rad; infinite: it does not yield until it slides."""
-    torque: float
-    """N·m, at which it slides."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,15 +53,18 @@ class TwinGear:
     parameters: NodeParameters
     """Of its mechanism, bodies and encoders."""
     springs: tuple[tuple[Spring, ...], ...]
-    """Of each branch, in ascending order; the first one acts from the flanks on."""
+    """Of each branch, in ascending order; the first one acts from the flanks on.
+
+    Two branches have one spring each.
+    """
     shaft_stiffness: float
     """N·m/rad, between both arms; infinite: rigid."""
     interference: float
     """rad: twist of the loop at the arms by the preload; if negative, the play that is left."""
     play: float
     """rad: between the flanks of a branch, at least the play that is left."""
-    friction: tuple[Slider, ...] = ()
-    """They add up."""
+    friction: float = 0.0
+    """N·m."""
     errors: tuple[Order, ...] = ()
     """Of the output angle, by the rotor angle."""
     rotor_damping: float = 0.0
@@ -96,8 +88,8 @@ class TwinGear:
         if faults:
             raise MechanismError(faults)
         torque, bands = 0.0, ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
-        if len(self.springs) == _BRACED:
-            torque = self._torque_by_twist(self.interference)
+        if len(self.springs) == BRACED:
+            torque = max(self.interference, 0.0) / self._compliance
             bands = self._braced_bands(torque)
         object.__setattr__(self, 'ratio', float(self.parameters.gear.gear_ratio))
         object.__setattr__(self, 'preload', math.copysign(torque, self.parameters.preload))
@@ -115,7 +107,8 @@ class TwinGear:
         Raises:
             ValueError: if a file cannot be used, or the gear cannot be simulated.
         """
-        return cls.of(*load(config, node), calibration)
+        shared = NodeParameters.load(config, node, PARAMETERS)
+        return cls.of(shared, own_values(config, node), calibration)
 
     @classmethod
     def of(
@@ -128,7 +121,6 @@ class TwinGear:
         if len(stiffness) not in {1, count}:
             fault = f'branch_stiffness has {len(stiffness)} values for {count} branches'
             raise MechanismError([fault])
-        friction = values['friction']
         made = cls(
             parameters=parameters,
             springs=tuple(
@@ -137,7 +129,7 @@ class TwinGear:
             shaft_stiffness=parameters.shaft_stiffness or math.inf,
             interference=-values['play'],
             play=values['play'],
-            friction=(Slider(math.inf, friction),) if friction else (),
+            friction=values['friction'],
             errors=Calibration.load(Path(file), gear).orders if file else (),
             rotor_damping=values['rotor_damping'],
             output_inertia=values['output_inertia'],
@@ -149,7 +141,7 @@ class TwinGear:
     @property
     def has_shaft(self) -> bool:
         """Whether a shaft twists between the arms of two branches."""
-        return len(self.springs) == _BRACED and math.isfinite(self.shaft_stiffness)
+        return len(self.springs) == BRACED and math.isfinite(self.shaft_stiffness)
 
     @property
     def shaft_twist(self) -> float:
@@ -166,7 +158,7 @@ class TwinGear:
 
     def preloaded(self, torque: float) -> Self:
         """The same gear with a preload of this magnitude, N·m; as it is if that is 0."""
-        return replace(self, interference=self._twist(torque)) if torque else self
+        return replace(self, interference=torque * self._compliance) if torque else self
 
     def worn(self, angle: float) -> Self:
         """The same gear with flanks that wore off by an angle of the output, rad, together."""
@@ -180,30 +172,19 @@ class TwinGear:
             deviation += order.cos * math.cos(phase) + order.sin * math.sin(phase)
         return deviation
 
+    @property
+    def _compliance(self) -> float:
+        """The twist of branches and shaft by a torque, rad/(N·m)."""
+        [spring_a], [spring_b] = self.springs
+        return 1.0 / spring_a.stiffness + 1.0 / spring_b.stiffness + 1.0 / self.shaft_stiffness
+
     def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:
-        low_b = wind_up(self.springs[1], torque) + min(0.5 * self.interference, 0.0)
+        low_b = torque / self.springs[1][0].stiffness + min(0.5 * self.interference, 0.0)
         high_a = low_b - self.interference
         bands = (high_a - self.play, high_a), (low_b, low_b + self.play)
         if self.parameters.preload < 0.0:
             return tuple((-high, -low) for low, high in bands)
         return bands
-
-    def _torque_by_twist(self, twist: float) -> float:
-        """The torque that a twist of branches and shaft, rad, gives: T0 for the interference."""
-        if twist <= 0.0:
-            return 0.0
-        ends = {
-            spring_torque(springs, spring.beyond) for springs in self.springs for spring in springs
-        }
-        # Beyond all ends, the twist grows at least as fast as that of the stiffest branch alone.
-        stiffest = max(map(greatest_stiffness, self.springs))
-        torques = [*sorted(ends), max(ends) + stiffest * twist]
-        return float(np.interp(twist, [*map(self._twist, torques)], torques))
-
-    def _twist(self, torque: float) -> float:
-        """The twist of branches and shaft by a torque, rad: the interference for a preload."""
-        branches = sum(wind_up(springs, torque) for springs in self.springs)
-        return branches + torque / self.shaft_stiffness
 
 
 def spring_torque(springs: Sequence[Spring], distance: float) -> float:
@@ -218,15 +199,3 @@ def spring_torque(springs: Sequence[Spring], distance: float) -> float:
 def greatest_stiffness(springs: Sequence[Spring]) -> float:
     """The greatest stiffness of springs at any distance, N·m/rad."""
     return max(accumulate(spring.stiffness for spring in springs))
-
-
-def wind_up(springs: Sequence[Spring], torque: float) -> float:
-    """The distance from the dead band, rad, at which springs give a torque, N·m, at least 0."""
-    held = stiffness = 0.0
-    for spring, after in pairwise([*springs, Spring(math.inf, 0.0)]):
-        stiffness += spring.stiffness
-        distance = spring.beyond + (torque - held) / stiffness
-        if distance <= after.beyond:
-            break
-        held += stiffness * (after.beyond - spring.beyond)
-    return distance

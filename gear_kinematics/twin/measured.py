@@ -17,7 +17,7 @@ from typing import Any
 
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.kinematics.preload import braced
-from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.gear import BRACED, Spring, TwinGear
 
 Report = Mapping[str, Any]
 
@@ -78,7 +78,7 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     """Take friction, play and stiffness from torque ramps, and note what they leave open."""
     friction, backlash = data['friction']['value'], data['backlash']
     if friction is None:
-        friction = sum(slider.torque for slider in gear.friction)
+        friction = gear.friction
         notes.append(f'friction: {friction:.4g} N·m, as configured')
     play, low, high = backlash['value'], backlash['low'], backlash['high']
     if gear.preload or high is None:
@@ -88,11 +88,11 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
         play = 0.5 * (low + high)
         notes.append(f'play: {play:.4g} rad, the middle of {low:.4g} to {high:.4g} rad')
     ranges = data['stiffness']
-    if gear.preload:
-        ranges = ranges[:1]  # beyond, one branch may be alone
-        notes.append(f'stiffness beyond {ranges[0]["high"]:.4g} N·m: as below')
-    elif play and not ranges[0]['low']:
+    if play and not gear.preload and not ranges[0]['low']:
         ranges = ranges[1:] or ranges  # the play is in the first
+    if len(gear.springs) == BRACED:
+        ranges = ranges[:1]  # each has one spring; beyond, one branch may be alone
+        notes.append(f'stiffness beyond {ranges[0]["high"]:.4g} N·m: as below')
     # While the torque rises, the springs hold what friction leaves.
     loads = [0.0, *(max(each['low'] - friction, 0.0) for each in ranges[1:])]
     return replace(
@@ -100,7 +100,7 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
         springs=_springs(gear, loads, [each['value'] for each in ranges]),
         play=play,
         interference=-play,
-        friction=(Slider(math.inf, friction),) if friction else (),
+        friction=friction,
     ).preloaded(abs(gear.preload))
 
 
@@ -109,16 +109,13 @@ def _springs(
 ) -> tuple[tuple[Spring, ...], ...]:
     """The springs of all branches, for a stiffness at the output from each load on, N·m."""
     count, shaft = len(gear.springs), gear.shaft_stiffness
-    found: list[list[Spring]] = [[] for _ in gear.springs]
-    beyond, before = [0.0] * count, 0.0
+    if gear.has_shaft:
+        [total] = stiffness
+        own = 0.5 * (total - 2.0 * shaft + math.hypot(total, 2.0 * shaft))
+        return ((Spring(0.0, own),),) * count
+    springs, beyond, before = [], 0.0, 0.0
     for (load, after), total in zip(pairwise([*loads, math.inf]), stiffness, strict=True):
-        own = total / count
-        if gear.has_shaft:
-            own = 0.5 * (total - 2.0 * shaft + math.hypot(total, 2.0 * shaft))
-        turn = (after - load) / total
-        for branch in range(count):
-            found[branch].append(Spring(beyond[branch], own - before))
-            behind_shaft = gear.has_shaft and not branch
-            beyond[branch] += turn * shaft / (own + shaft) if behind_shaft else turn
-        before = own
-    return tuple(map(tuple, found))
+        springs.append(Spring(beyond, (total - before) / count))
+        beyond += (after - load) / total
+        before = total
+    return (tuple(springs),) * count

@@ -46,13 +46,11 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
     if missing := [f'loads.{name}' for name in needed if not getattr(loads, name)]:
         raise MechanismError([f'MuJoCo needs more than 0 for {", ".join(missing)}'])
     step, error = _time_step(gear), gear.error(0.0)
-    rigid = sum(slider.torque for slider in gear.friction if math.isinf(slider.stiffness))
     parts: defaultdict[str, str] = defaultdict(str)
     if shown:
         _add_shapes(gear.parameters, parts)
     for number in range(len(mechanism.branches)):
         _add_branch(gear, number, parts)
-    _add_sliders(gear, step, parts)
     orders = ''.join(
         f'<numeric name={quoteattr(order.name)}'
         f' data="{float(order.cycles)!r} {order.cos!r} {order.sin!r}"/>'
@@ -99,10 +97,9 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
   {parts['arm']}
   <body name="output_shaft" euler="0 0 {error!r}">
     {_inertial(gear.output_inertia)}
-    <joint name="output_shaft" ref="{error!r}" frictionloss="{rigid!r}"/>
+    <joint name="output_shaft" ref="{error!r}" frictionloss="{gear.friction!r}"/>
     {parts['on_shaft']}{parts['output_shaft']}
   </body>
-  {parts['sliders']}
 </worldbody>
 <equality>
   {parts['equality']}
@@ -135,7 +132,6 @@ def _time_step(gear: TwinGear) -> float:
     """The time step, s: a whole number of them is a millisecond."""
     stiffness = sum(map(greatest_stiffness, gear.springs))
     reflected = stiffness / gear.ratio**2 / gear.parameters.loads.rotor_inertia
-    stiffness += sum(each.stiffness for each in gear.friction if math.isfinite(each.stiffness))
     lightest = _turning_inertia(gear) + gear.output_inertia
     if gear.has_shaft:
         stiffness += gear.shaft_stiffness
@@ -207,21 +203,6 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
 <weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="200"/>"""
     parts['sensor'] += f"""
 <torque name="{topics.BRANCH_LOADS}_{name}" site="slot_arm_{name}"/>"""
-
-
-def _add_sliders(gear: TwinGear, step: float, parts: dict[str, str]) -> None:
-    """Add friction that yields: bodies on springs, as light as the time step allows."""
-    for number, slider in enumerate(gear.friction):
-        if math.isinf(slider.stiffness):
-            continue
-        name = f'friction_{number}'
-        joints = {'output_shaft': 1.0, name: -1.0}
-        parts['tendon'] += _spring(name, slider.stiffness, joints)
-        parts['sliders'] += f"""
-<body name="{name}">
-  {_inertial(slider.stiffness * (step / _PHASE) ** 2)}
-  <joint name="{name}" ref="{gear.error(0.0)!r}" frictionloss="{slider.torque!r}"/>
-</body>"""
 
 
 def _inertial(inertia: float = 1e-9, mass: float = 1e-9) -> str:

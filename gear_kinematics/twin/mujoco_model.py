@@ -21,7 +21,7 @@ class MujocoModel:
 
     @property
     def gear(self) -> TwinGear:
-        """The gear; one that replaces it has the same mechanism and as many sliders."""
+        """The gear; one that replaces it has the same mechanism."""
         return self._gear
 
     @gear.setter

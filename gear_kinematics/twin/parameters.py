@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gear_kinematics import parameters
-from gear_kinematics.parameters import ConfigError, NodeParameters
+from gear_kinematics.parameters import ConfigError
 from gear_kinematics.parameters.files import given_parameters
 from gear_kinematics.parameters.parameter import Parameter
 from gear_kinematics.share import share_directory
@@ -70,19 +70,11 @@ def default_value(name: str) -> Any:
     return values[name] if name in values else parameters.default_value(name)
 
 
-def load(path: Path, node: str = NODE) -> tuple[NodeParameters, dict[str, Any]]:
-    """Read a parameter file as the simulating node would.
-
-    Returns:
-        The parameters that all nodes share, and the values of `PARAMETERS`.
-
-    Raises:
-        ConfigError: as `NodeParameters.load`.
-    """
-    shared = NodeParameters.load(path, node, PARAMETERS)
+def own_values(path: Path, node: str) -> dict[str, Any]:
+    """What a file gives a node of `PARAMETERS`; raises ConfigError if a value is invalid."""
     given = given_parameters(path, node)
     values = {name: given.get(name, default_value(name)) for name in PARAMETERS}
     faults = (PARAMETERS[name].fault(name, value) for name, value in values.items())
     if found := [fault for fault in faults if fault]:
         raise ConfigError(f'{path}: {"; ".join(found)}')
-    return shared, values
+    return values

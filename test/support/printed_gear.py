@@ -19,7 +19,7 @@ from gear_kinematics.measurement.middle_line import MiddleLine
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel
-from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.gear import Spring, TwinGear
 
 RECORDING = 'dual_encoders/transmission_stiffness_sspg.csv'
 _RATIO = '36/5'
@@ -87,7 +87,7 @@ def loops(recording: Path) -> Loops:
         shaft_stiffness=math.inf,
         interference=0.0,
         play=0.0,
-        friction=(Slider(math.inf, friction),),
+        friction=friction,
         output_inertia=1e-3,
     )
     return Loops(

@@ -12,7 +12,7 @@ from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import Branch, GearRatio
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.gear import Spring, TwinGear
 
 
 class PutIn(NamedTuple):
@@ -56,7 +56,7 @@ class PutIn(NamedTuple):
             shaft_stiffness=self.shaft,
             interference=abs(self.preload) * compliance - self.remaining,
             play=self.play,
-            friction=(Slider(math.inf, self.friction),),
+            friction=self.friction,
             errors=self.errors,
             output_inertia=1e-4,
         )

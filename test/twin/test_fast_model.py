@@ -13,8 +13,8 @@ from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.twin.fast_model import FastModel, in_series
-from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.fast_model import FastModel
+from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.model import Model
 
 VALUES = {'play': 1e-3, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 0.005}
@@ -70,7 +70,7 @@ def test_output_turns_as_the_preload_says(interference):
     braced = replace(gear(play=4e-3), interference=interference)
     loads = np.linspace(0.0, 6.0, 13)
     expected = Preload(Stiffness(3000.0, 3000.0, 1000.0), interference).split(loads).output_turn
-    model = FastModel(replace(braced, friction=(Slider(math.inf, 1e-3),)))  # ends the oscillation
+    model = FastModel(replace(braced, friction=1e-3))  # ends the oscillation
     model.rotor_locked = True
     found = []
     for before, load in zip([0.0, *loads], loads, strict=False):
@@ -126,19 +126,6 @@ def test_friction_holds_until_it_slides_and_opens_the_loop_by_twice_its_torque()
     assert 3000.0 * model.output_angle == pytest.approx(1.5, rel=2e-3)
 
 
-def test_sliders_add_up_and_yield_before_they_slide():
-    """Two of 1000 and 2000 N·m/rad that slide at 0.5 and 2 N·m: at 0.5 mrad and 1 mrad."""
-    sliders = Slider(1000.0, 0.5), Slider(2000.0, 2.0)
-    model = FastModel(replace(branch(), friction=sliders))
-    model.rotor_locked = True
-    ramp(model, 0.0, 3.0)  # 3000 + 1000 + 2000 N·m/rad
-    assert 1e3 * model.output_angle == pytest.approx(0.5, rel=0.01)
-    ramp(model, 3.0, 5.5)  # 3000 + 2000
-    assert 1e3 * model.output_angle == pytest.approx(1.0, rel=0.01)
-    ramp(model, 5.5, 8.5)  # 3000
-    assert 1e3 * model.output_angle == pytest.approx(2.0, rel=0.01)
-
-
 def test_output_follows_the_errors_of_the_gear():
     error = Order('output', Fraction(1, 19), 0.0, 2e-3)
     model = FastModel(replace(gear(friction=0.02), errors=(error,)))
@@ -167,13 +154,6 @@ def test_wear_takes_the_preload():
     assert model.branch_torques == pytest.approx((0.75, -0.75))
 
 
-def test_a_hardening_branch_behind_a_shaft_yields_with_both():
-    """100 N·m/rad, and 300 more beyond 10 mrad (1 N·m), behind 100 N·m/rad."""
-    soft, hard = in_series((Spring(0.0, 100.0), Spring(0.01, 300.0)), 100.0)
-    assert soft == pytest.approx((0.0, 50.0))
-    assert hard == pytest.approx((0.02, 80.0 - 50.0))
-
-
 def test_a_gear_that_is_too_stiff_for_its_inertia_is_refused():
     with pytest.raises(MechanismError, match='rad/s: give them more inertia'):
         FastModel(gear(output_inertia=1e-6))
@@ -182,7 +162,7 @@ def test_a_gear_that_is_too_stiff_for_its_inertia_is_refused():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     'changed',
-    [{}, {'interference': -1e-3}, {'friction': (Slider(math.inf, 0.3), Slider(5000.0, 0.2))}],
+    [{}, {'interference': -1e-3}, {'friction': 0.5}],
     ids=['preload', 'play', 'friction'],
 )
 def test_both_models_agree_on_torque_ramps(changed):

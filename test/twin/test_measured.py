@@ -10,7 +10,7 @@ from blocked_bags import gearkin_here
 
 from gear_kinematics.kinematics import Branch
 from gear_kinematics.kinematics.preload import Preload, Stiffness
-from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.gear import Spring, TwinGear
 from gear_kinematics.twin.measured import measured
 from gear_kinematics.twin.parameters import default_config
 
@@ -73,34 +73,33 @@ def test_one_branch_has_the_springs_of_the_output(loose, ramps):
     found, notes = measured(gear, [report])
     expected = Spring(0.0, 1000.0), Spring(1.5e-3, 1000.0), Spring(3e-3, -500.0)
     assert in_order(*found.springs[0]) == pytest.approx(in_order(*expected))
-    assert found.friction == (Slider(math.inf, 0.5),)
+    assert found.friction == 0.5
     assert found.play == 0.0
     assert notes == ['play of the flanks: 0 rad, as configured']
 
 
 def test_a_range_that_friction_takes_up_has_no_length(loose, ramps):
     ranges = [(0.0, 1.0, 500.0), (1.0, 5.0, 3000.0), (5.0, 9.0, 4000.0)]
-    gear = replace(loose, shaft_stiffness=math.inf)
+    three = tuple(map(Branch, 'abc'))
+    gear = replace(
+        loose, parameters=replace(loose.parameters, branches=three), springs=loose.springs[:1] * 3
+    )
     found, _ = measured(gear, [ramps(ranges, friction=2.0, backlash=0.0, high=0.0)])
-    expected = [0.0, 250.0, 0.0, 1250.0, 1e-3, 500.0]
+    expected = [0.0, 500.0 / 3.0, 0.0, 2500.0 / 3.0, 1e-3, 1000.0 / 3.0]
     assert in_order(*found.springs[0]) == pytest.approx(expected)
 
 
 def test_two_branches_share_the_stiffness_of_the_output(loose, ramps):
-    """With ks of 1000, k of 3000 is 3000 + 750 at the output, and 1000 is 1000 + 500.
-
-    3 N·m at 3750 turn the output, and wind up B, by 0.8 mrad, A by a quarter of it.
-    """
+    """With ks of 1000, k of 3000 is 3000 + 750 at the output, below the load of one alone."""
     report = ramps([(0.0, 3.0, 3750.0), (3.0, 9.0, 1500.0)], friction=0.0, backlash=0.0, high=0.0)
     found, notes = measured(replace(loose, shaft_stiffness=1000.0), [report])
     branch_a, branch_b = found.springs
-    assert in_order(*branch_b) == pytest.approx([0.0, 3000.0, 8e-4, -2000.0])
-    assert in_order(*branch_a) == pytest.approx([0.0, 3000.0, 2e-4, -2000.0])
-    assert found.friction == ()
+    assert in_order(*branch_a) == in_order(*branch_b) == pytest.approx([0.0, 3000.0])
+    assert found.friction == 0.0
     assert found.play == 0.0
-    assert notes == []
+    assert notes == ['stiffness beyond 3 N·m: as below']
     rigid, _ = measured(replace(loose, shaft_stiffness=math.inf), [report])
-    assert in_order(*rigid.springs[0]) == pytest.approx([0.0, 1875.0, 8e-4, -1125.0])
+    assert in_order(*rigid.springs[0]) == pytest.approx([0.0, 1875.0])
 
 
 def test_play_is_not_in_the_springs_and_its_interval_is_noted(loose, ramps):
@@ -109,14 +108,16 @@ def test_play_is_not_in_the_springs_and_its_interval_is_noted(loose, ramps):
         loose, [ramps(ranges, friction=0.1, backlash=2e-3, low=1e-3, high=3e-3)]
     )
     assert found.play == -found.interference == 2e-3
-    assert [len(springs) for springs in found.springs] == [1, 1]
-    assert notes == []
+    [own] = {spring.stiffness for [spring] in found.springs}
+    assert own + 1.0 / (1.0 / own + 1.0 / 1069.0) == pytest.approx(3000.0)
+    assert notes == ['stiffness beyond 4 N·m: as below']
     found, notes = measured(loose, [ramps(ranges, low=1e-3, high=4e-3)])
     assert found.play == 2.5e-3
     assert found.friction == loose.friction
     assert notes == [
         'friction: 0.1 N·m, as configured',
         'play: 0.0025 rad, the middle of 0.001 to 0.004 rad',
+        'stiffness beyond 4 N·m: as below',
     ]
 
 
@@ -159,11 +160,11 @@ def test_a_later_report_replaces_figures_of_an_earlier_one(gear, ramps, pins):
     preload = pins('--wanted-preload', 1.0, '--branch-stiffness', 10, '--shaft-stiffness', 1000)
     found, _ = measured(gear, [preload, loop])
     assert found.preload == pytest.approx(1.0, abs=0.02)
-    assert found.friction == (Slider(math.inf, 0.3),)
+    assert found.friction == 0.3
     assert found.springs[0][0].stiffness > 1000.0
     found, _ = measured(gear, [loop, preload])
     assert found.preload == pytest.approx(1.0, abs=0.02)
-    assert found.friction == (Slider(math.inf, 0.3),)
+    assert found.friction == 0.3
     assert found.springs[0][0].stiffness == 10.0
 
 

@@ -11,7 +11,7 @@ import pytest
 from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import Branch, MechanismError, solve
 from gear_kinematics.shape.solids import solids
-from gear_kinematics.twin.gear import Slider, TwinGear
+from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.mjcf import mjcf
 from gear_kinematics.twin.parameters import default_config
 
@@ -70,7 +70,7 @@ def test_tendons_have_the_springs_and_the_play(gear):
 def test_it_begins_at_rest_and_stays_there(gear):
     """Also with a kinematic error at the beginning."""
     for error in ((), (Order('cam', Fraction(1), 1e-3, 0.0),)):
-        model, data = loaded(replace(gear, errors=error, friction=()))
+        model, data = loaded(replace(gear, errors=error, friction=0.0))
         for name in ('branch_a', 'branch_b'):  # whose springs know nothing of the error
             slack(model, name)[:] -= sum(order.cos for order in error)
         before = data.qpos.copy()
@@ -88,7 +88,7 @@ def test_the_rotor_moves_the_bodies_as_the_kinematics_say(gear):
         shaft_stiffness=math.inf,
         interference=0.0,
         play=0.0,
-        friction=(),
+        friction=0.0,
         rotor_damping=2e-4,
     )
     model, data = loaded(gear)
@@ -160,16 +160,12 @@ def test_simple_shapes_need_no_meshes(gear):
 
 
 def test_what_surrounds_the_springs_is_written(gear):
-    """Sliders, orders, a rigid shaft and further branches."""
+    """Orders, a rigid shaft and further branches."""
     orders = (Order('tooth <1>', Fraction(4), 1e-5, 2e-5),)
-    sliders = Slider(500.0, 0.2), Slider(math.inf, 0.3)
-    model, data = loaded(replace(gear, friction=sliders, errors=orders))
-    assert data.ten_length[model.tendon('friction_0').id] == 0.0
-    assert model.joint('friction_0').frictionloss[0] == 0.2
-    assert model.joint('output_shaft').frictionloss[0] == 0.3
+    model, _ = loaded(replace(gear, errors=orders))
     assert model.numeric('tooth <1>').data.tolist() == [4.0, 1e-5, 2e-5]
     rigid, _ = loaded(replace(gear, shaft_stiffness=math.inf))
-    assert rigid.nv == model.nv - 2
+    assert rigid.nv == model.nv - 1
     three = tuple(Branch(name, 2.1 * k, 0.02 * k) for k, name in enumerate('abc'))
     model, _ = loaded(
         replace(changed(gear, branches=three, preload=0.0), springs=gear.springs[:1] * 3)

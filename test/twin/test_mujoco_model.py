@@ -13,7 +13,7 @@ from gear_kinematics.kinematics import solve
 from gear_kinematics.kinematics.loads import solve as solve_loads
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.twin.fast_model import FastModel
-from gear_kinematics.twin.gear import Slider, Spring, TwinGear
+from gear_kinematics.twin.gear import Spring, TwinGear
 from gear_kinematics.twin.parameters import default_config
 
 mujoco = pytest.importorskip('mujoco')
@@ -27,7 +27,7 @@ PRELOAD = Preload.from_torque(STIFFNESS, 2.0)
 @pytest.fixture(scope='module')
 def gear() -> TwinGear:
     """The default one, whose branches do not reach their other flanks, without friction."""
-    return replace(TwinGear.load(default_config()), friction=(), play=0.05)
+    return replace(TwinGear.load(default_config()), friction=0.0, play=0.05)
 
 
 def settled(model: MujocoModel, load: float) -> MujocoModel:
@@ -144,19 +144,19 @@ def test_energy_is_kept(gear):
     'values',
     [
         {},
-        {'friction': (Slider(math.inf, 0.4),)},
-        {'friction': (Slider(800.0, 0.3), Slider(2000.0, 0.2))},
+        {'friction': 0.4},
         {'interference': -1e-3, 'play': 1e-3},
         {'shaft_stiffness': math.inf},
-        {'springs': ((Spring(0.0, 1000.0), Spring(1e-3, 2500.0)),) * 2},
+        {'springs': ((Spring(0.0, 1000.0), Spring(1e-3, 2500.0)),), 'play': 1e-3},
     ],
-    ids=['braced', 'friction', 'sliders', 'play', 'rigid shaft', 'bent'],
+    ids=['braced', 'friction', 'play', 'rigid shaft', 'one bent branch'],
 )
 def test_a_ramp_is_that_of_the_fast_model(gear, values):
     """Within 1 % of its greatest turn, with the rotor locked."""
-    gear = replace(gear, **values)
     if 'springs' in values:
-        gear = gear.preloaded(2.0)
+        alone = replace(gear.parameters, branches=gear.parameters.branches[:1], preload=0.0)
+        values = {**values, 'parameters': alone}
+    gear = replace(gear, **values)
     loops = []
     for kind in (MujocoModel, FastModel):
         model = kind(gear)
