@@ -14,7 +14,7 @@ Friction stops the output within a step if it can, and slows it down by all of i
 import math
 
 from gear_kinematics.kinematics import Mechanism, MechanismError
-from gear_kinematics.twin.gear import Spring, TwinGear, greatest_stiffness, spring_torque
+from gear_kinematics.twin.gear import TwinGear
 
 _STEP = 1e-4  # h, s, at most
 _FASTEST = 1.0 / _STEP
@@ -41,15 +41,13 @@ class FastModel:
 
     @gear.setter
     def gear(self, gear: TwinGear) -> None:
-        springs = [*gear.springs]
+        springs = [*gear.stiffness]
         if gear.has_shaft:
-            [spring] = springs[0]
-            both = 1.0 / (1.0 / spring.stiffness + 1.0 / gear.shaft_stiffness)
-            springs[0] = (Spring(0.0, both),)
+            springs[0] = 1.0 / (1.0 / springs[0] + 1.0 / gear.shaft_stiffness)
         self._ratio = gear.ratio
         self._rotor_inertia, self._output_inertia = inertias(gear)
         reduced = self._ratio**2 * self._rotor_inertia
-        stiffness = sum(map(greatest_stiffness, springs))
+        stiffness = sum(springs)
         frequency = math.sqrt(stiffness / reduced + stiffness / self._output_inertia)
         if frequency > _FASTEST:
             fault = f'rotor and output would oscillate at {frequency:.0f} rad/s; the fast model '
@@ -90,13 +88,9 @@ class FastModel:
         if self._gear.errors:
             wind_up += self._gear.error(rotor)
         torques = []
-        for (low, high), springs in self._branches:
-            if wind_up > high:
-                torques.append(spring_torque(springs, wind_up - high))
-            elif wind_up < low:
-                torques.append(-spring_torque(springs, low - wind_up))
-            else:
-                torques.append(0.0)
+        for (low, high), stiffness in self._branches:
+            beyond = wind_up - high if wind_up > high else min(wind_up - low, 0.0)
+            torques.append(stiffness * beyond)
         return tuple(torques)
 
 

@@ -18,11 +18,9 @@ All signs are the opposite if branch A pushes the output in the negative directi
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import accumulate
 from pathlib import Path
-from typing import Any, NamedTuple, Self
+from typing import Any, Self
 
 from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
@@ -30,16 +28,7 @@ from gear_kinematics.kinematics.preload import braced
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.parameters import NODE, PARAMETERS, own_values
 
-BRACED = 2  # branches, which have a shaft between their arms
-
-
-class Spring(NamedTuple):
-    """A spring that acts beyond a distance from the dead band; several of them add up."""
-
-    beyond: float
-    """rad at the output, at least 0."""
-    stiffness: float
-    """N·m/rad; less than 0 where the sum gets softer."""
+_BRACED = 2  # branches, which have a shaft between their arms
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,11 +41,8 @@ class TwinGear:
 
     parameters: NodeParameters
     """Of its mechanism, bodies and encoders."""
-    springs: tuple[tuple[Spring, ...], ...]
-    """Of each branch, in ascending order; the first one acts from the flanks on.
-
-    Two branches have one spring each.
-    """
+    stiffness: tuple[float, ...]
+    """N·m/rad, of each branch from its flanks on."""
     shaft_stiffness: float
     """N·m/rad, between both arms; infinite: rigid."""
     interference: float
@@ -81,14 +67,14 @@ class TwinGear:
     def __post_init__(self) -> None:
         """Check the gear, and place its dead bands."""
         faults = []
-        if math.inf in map(greatest_stiffness, self.springs):
+        if math.inf in self.stiffness:
             faults.append('branch_stiffness must be greater than 0: no simulated branch is rigid')
         if not self.parameters.loads.rotor_inertia:
             faults.append('loads.rotor_inertia must be greater than 0 to be simulated')
         if faults:
             raise MechanismError(faults)
-        torque, bands = 0.0, ((-0.5 * self.play, 0.5 * self.play),) * len(self.springs)
-        if len(self.springs) == BRACED:
+        torque, bands = 0.0, ((-0.5 * self.play, 0.5 * self.play),) * len(self.stiffness)
+        if len(self.stiffness) == _BRACED:
             torque = max(self.interference, 0.0) / self._compliance
             bands = self._braced_bands(torque)
         object.__setattr__(self, 'ratio', float(self.parameters.gear.gear_ratio))
@@ -123,9 +109,7 @@ class TwinGear:
             raise MechanismError([fault])
         made = cls(
             parameters=parameters,
-            springs=tuple(
-                (Spring(0.0, each or math.inf),) for each in (stiffness * count)[:count]
-            ),
+            stiffness=tuple(each or math.inf for each in (stiffness * count)[:count]),
             shaft_stiffness=parameters.shaft_stiffness or math.inf,
             interference=-values['play'],
             play=values['play'],
@@ -141,7 +125,7 @@ class TwinGear:
     @property
     def has_shaft(self) -> bool:
         """Whether a shaft twists between the arms of two branches."""
-        return len(self.springs) == BRACED and math.isfinite(self.shaft_stiffness)
+        return len(self.stiffness) == _BRACED and math.isfinite(self.shaft_stiffness)
 
     @property
     def shaft_twist(self) -> float:
@@ -151,10 +135,7 @@ class TwinGear:
     def branch_torque(self, branch: int, angle: float) -> float:
         """T_k, N·m, of a branch wound up by the angle x_k, rad."""
         low, high = self.dead_bands[branch]
-        if low <= angle <= high:
-            return 0.0
-        beyond = angle - (high if angle > high else low)
-        return math.copysign(spring_torque(self.springs[branch], abs(beyond)), beyond)
+        return self.stiffness[branch] * (max(angle - high, 0.0) + min(angle - low, 0.0))
 
     def preloaded(self, torque: float) -> Self:
         """The same gear with a preload of this magnitude, N·m; as it is if that is 0."""
@@ -175,27 +156,12 @@ class TwinGear:
     @property
     def _compliance(self) -> float:
         """The twist of branches and shaft by a torque, rad/(N·m)."""
-        [spring_a], [spring_b] = self.springs
-        return 1.0 / spring_a.stiffness + 1.0 / spring_b.stiffness + 1.0 / self.shaft_stiffness
+        return sum(1.0 / each for each in (*self.stiffness, self.shaft_stiffness))
 
     def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:
-        low_b = torque / self.springs[1][0].stiffness + min(0.5 * self.interference, 0.0)
+        low_b = torque / self.stiffness[1] + min(0.5 * self.interference, 0.0)
         high_a = low_b - self.interference
         bands = (high_a - self.play, high_a), (low_b, low_b + self.play)
         if self.parameters.preload < 0.0:
             return tuple((-high, -low) for low, high in bands)
         return bands
-
-
-def spring_torque(springs: Sequence[Spring], distance: float) -> float:
-    """The torque of springs, N·m, at a distance from the dead band, rad, at least 0."""
-    torque = 0.0
-    for spring in springs:  # a sum of a generator takes twice as long
-        if distance > spring.beyond:
-            torque += spring.stiffness * (distance - spring.beyond)
-    return torque
-
-
-def greatest_stiffness(springs: Sequence[Spring]) -> float:
-    """The greatest stiffness of springs at any distance, N·m/rad."""
-    return max(accumulate(spring.stiffness for spring in springs))

@@ -1,23 +1,22 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The figures of a real gear for a simulated one, from reports of gearkin as JSON.
 
-A loop at the output shows the sum of the branches. Two of them have the same springs, of which
-those of branch A act through the shaft: a stiffness K at the output is that of k in both where
+A loop at the output shows the sum of the branches, which have the same stiffness. Of two of them,
+branch A acts through the shaft: a stiffness K at the output is that of k in both where
 
     K = k + k ks/(k + ks)
 """
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.kinematics.preload import braced
-from gear_kinematics.twin.gear import BRACED, Spring, TwinGear
+from gear_kinematics.twin.gear import TwinGear
 
 Report = Mapping[str, Any]
 
@@ -67,7 +66,7 @@ def _set(gear: TwinGear, data: Report) -> TwinGear:
     return replace(
         gear,
         parameters=replace(gear.parameters, preload=math.copysign(torque, turn)),
-        springs=((Spring(0.0, branch_a),), (Spring(0.0, branch_b),)),
+        stiffness=(branch_a, branch_b),
         shaft_stiffness=shaft,
         play=max(gear.play, pins['play']),
         interference=-pins['play'],
@@ -87,35 +86,18 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     elif play is None:
         play = 0.5 * (low + high)
         notes.append(f'play: {play:.4g} rad, the middle of {low:.4g} to {high:.4g} rad')
-    ranges = data['stiffness']
-    if play and not gear.preload and not ranges[0]['low']:
-        ranges = ranges[1:] or ranges  # the play is in the first
-    if len(gear.springs) == BRACED:
-        ranges = ranges[:1]  # each has one spring; beyond, one branch may be alone
-        notes.append(f'stiffness beyond {ranges[0]["high"]:.4g} N·m: as below')
-    # While the torque rises, the springs hold what friction leaves.
-    loads = [0.0, *(max(each['low'] - friction, 0.0) for each in ranges[1:])]
+    first, *others = data['stiffness']
+    if play and others and not (gear.preload or first['low']):
+        first = others[0]  # the play is in the other
+    notes.append(f'stiffness beyond {first["high"]:.4g} N·m: as below')  # a branch may be alone
+    total, shaft = first['value'], gear.shaft_stiffness
+    own = total / len(gear.stiffness)
+    if gear.has_shaft:
+        own = 0.5 * (total - 2.0 * shaft + math.hypot(total, 2.0 * shaft))
     return replace(
         gear,
-        springs=_springs(gear, loads, [each['value'] for each in ranges]),
+        stiffness=(own,) * len(gear.stiffness),
         play=play,
         interference=-play,
         friction=friction,
     ).preloaded(abs(gear.preload))
-
-
-def _springs(
-    gear: TwinGear, loads: Sequence[float], stiffness: Sequence[float]
-) -> tuple[tuple[Spring, ...], ...]:
-    """The springs of all branches, for a stiffness at the output from each load on, N·m."""
-    count, shaft = len(gear.springs), gear.shaft_stiffness
-    if gear.has_shaft:
-        [total] = stiffness
-        own = 0.5 * (total - 2.0 * shaft + math.hypot(total, 2.0 * shaft))
-        return ((Spring(0.0, own),),) * count
-    springs, beyond, before = [], 0.0, 0.0
-    for (load, after), total in zip(pairwise([*loads, math.inf]), stiffness, strict=True):
-        springs.append(Spring(beyond, (total - before) / count))
-        beyond += (after - load) / total
-        before = total
-    return (tuple(springs),) * count

@@ -20,7 +20,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.parameters.meshes import NONE
 from gear_kinematics.shape.solids import Solid, solids, triangles
 from gear_kinematics.shape.visuals import Visual, cam_centre, meshed, simple
-from gear_kinematics.twin.gear import TwinGear, greatest_stiffness
+from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.wire import topics
 
 _MILLISECOND = 1e-3  # s
@@ -122,15 +122,9 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
 """)
 
 
-def branch_tendons(gear: TwinGear, number: int) -> list[str]:
-    """The names of the tendons of a branch, one for each of its springs."""
-    name = f'branch_{gear.parameters.branches[number].name}'
-    return [f'{name}_{k}' if k else name for k in range(len(gear.springs[number]))]
-
-
 def _time_step(gear: TwinGear) -> float:
     """The time step, s: a whole number of them is a millisecond."""
-    stiffness = sum(map(greatest_stiffness, gear.springs))
+    stiffness = sum(gear.stiffness)
     reflected = stiffness / gear.ratio**2 / gear.parameters.loads.rotor_inertia
     lightest = _turning_inertia(gear) + gear.output_inertia
     if gear.has_shaft:
@@ -187,18 +181,16 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
   <joint name="arm_{name}" ref="{turn!r}"/>
   {slot}
 </body>"""
-        stiffness = greatest_stiffness(gear.springs[0]) + gear.shaft_stiffness
+        stiffness = gear.stiffness[0] + gear.shaft_stiffness
         damping = 2.0 * _ARM_DAMPING * math.sqrt(stiffness * _turning_inertia(gear))
         joints = {f'arm_{name}': 1.0, 'output_shaft': -1.0}
         parts['tendon'] += _spring('shaft', gear.shaft_stiffness, joints, damping=damping)
     else:
         parts['on_shaft'] += slot
-    low, high = gear.dead_bands[number]
     # The arm turns with the satellite, whose joint is on the rotor.
     joints = {'rotor': 1.0 / gear.ratio - 1.0, f'satellite_{name}': -1.0}
-    for tendon, spring in zip(branch_tendons(gear, number), gear.springs[number], strict=True):
-        ends = low - spring.beyond, high + spring.beyond
-        parts['tendon'] += _spring(tendon, spring.stiffness, joints, ends)
+    spring = gear.stiffness[number], joints, gear.dead_bands[number]
+    parts['tendon'] += _spring(f'branch_{name}', *spring)
     parts['equality'] += f"""
 <weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="200"/>"""
     parts['sensor'] += f"""

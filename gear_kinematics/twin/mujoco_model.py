@@ -4,7 +4,7 @@
 import mujoco
 
 from gear_kinematics.twin.gear import TwinGear
-from gear_kinematics.twin.mjcf import branch_tendons, mjcf
+from gear_kinematics.twin.mjcf import mjcf
 
 
 class MujocoModel:
@@ -55,8 +55,7 @@ class MujocoModel:
         self.model = mujoco.MjModel.from_xml_string(mjcf(gear, shown=False))
         self.data = mujoco.MjData(self.model)
         branches = gear.parameters.branches
-        names = [name for number in range(len(branches)) for name in branch_tendons(gear, number)]
-        self._tendons = [self.model.tendon(name).id for name in names]
+        self._tendons = [self.model.tendon(f'branch_{each.name}').id for each in branches]
         self._springs = self.model.tendon_lengthspring[self._tendons]
         # Each joint has one coordinate.
         self._rotor, self._output, *self._satellites = (

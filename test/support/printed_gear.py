@@ -19,7 +19,7 @@ from gear_kinematics.measurement.middle_line import MiddleLine
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel
-from gear_kinematics.twin.gear import Spring, TwinGear
+from gear_kinematics.twin.gear import TwinGear
 
 RECORDING = 'dual_encoders/transmission_stiffness_sspg.csv'
 _RATIO = '36/5'
@@ -80,16 +80,17 @@ def loops(recording: Path) -> Loops:
     load[0] = 0.0
     friction = float(np.mean(line.friction))
     slopes = np.diff(load) / np.diff(angle)
-    springs = map(Spring, angle[:-1].tolist(), np.diff(slopes, prepend=0.0).tolist())
     gear = TwinGear(
         parameters=replace(parameters, loads=replace(parameters.loads, rotor_inertia=1e-5)),
-        springs=(tuple(springs),),
+        stiffness=tuple(np.diff(slopes, prepend=0.0).tolist()),
         shaft_stiffness=math.inf,
         interference=0.0,
         play=0.0,
         friction=friction,
         output_inertia=1e-3,
     )
+    # A bent spring is many branches that touch one after another.
+    object.__setattr__(gear, 'dead_bands', tuple((-each, each) for each in angle[:-1].tolist()))
     return Loops(
         recorded.torque,
         recorded.angle - centre,

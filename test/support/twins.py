@@ -12,7 +12,7 @@ from gear_kinematics.correction.calibration_file import Order
 from gear_kinematics.kinematics import Branch, GearRatio
 from gear_kinematics.kinematics.loads import Bodies
 from gear_kinematics.parameters import NodeParameters
-from gear_kinematics.twin.gear import Spring, TwinGear
+from gear_kinematics.twin.gear import TwinGear
 
 
 class PutIn(NamedTuple):
@@ -52,7 +52,7 @@ class PutIn(NamedTuple):
         compliance = 1.0 / self.path_a + 1.0 / self.branch_b
         return TwinGear(
             parameters=self.parameters,
-            springs=((Spring(0.0, self.branch_a),), (Spring(0.0, self.branch_b),)),
+            stiffness=(self.branch_a, self.branch_b),
             shaft_stiffness=self.shaft,
             interference=abs(self.preload) * compliance - self.remaining,
             play=self.play,

@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""A simulated gear: where its branches touch, its springs and errors, and how it is loaded."""
+"""A simulated gear: where its branches touch, its errors, and how it is loaded."""
 
 import math
 from dataclasses import replace
@@ -14,13 +14,11 @@ from gear_kinematics.kinematics import Branch
 from gear_kinematics.kinematics.loads import TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import ConfigError, NodeParameters
-from gear_kinematics.twin.gear import Spring, TwinGear, spring_torque
+from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.parameters import default_config
 
 STIFFNESS = 3000.0, 2000.0, 1000.0
 """kA, kB, ks, N·m/rad."""
-BENT = Spring(0.0, 1000.0), Spring(1e-3, 2000.0), Spring(2e-3, -500.0)
-"""1 N·m after 1 mrad, 4 N·m after 2 mrad, then 2500 N·m/rad."""
 
 
 @pytest.fixture(scope='module')
@@ -34,7 +32,7 @@ def braced(default) -> TwinGear:
     kA, kB, ks = STIFFNESS
     return replace(
         default,
-        springs=((Spring(0.0, kA),), (Spring(0.0, kB),)),
+        stiffness=(kA, kB),
         shaft_stiffness=ks,
         interference=5.5e-3,
         play=1e-3,
@@ -48,7 +46,7 @@ def mirrored(gear: TwinGear) -> TwinGear:
 def with_branches(gear: TwinGear, count: int) -> TwinGear:
     branches = tuple(Branch(name) for name in 'abc'[:count])
     parameters = replace(gear.parameters, branches=branches, preload=0.0)
-    return replace(gear, parameters=parameters, springs=gear.springs[:1] * count)
+    return replace(gear, parameters=parameters, stiffness=gear.stiffness[:1] * count)
 
 
 # Where the branches touch.
@@ -76,6 +74,9 @@ def test_play_that_is_left_is_centred(braced):
 def test_branches_that_are_not_braced_have_their_play_around_no_load(braced, count):
     gear = with_branches(braced, count)
     assert gear.dead_bands == ((-5e-4, 5e-4),) * count
+    assert gear.branch_torque(0, 4.9e-4) == gear.branch_torque(0, -4.9e-4) == 0.0
+    assert gear.branch_torque(0, 1.5e-3) == pytest.approx(3.0)
+    assert gear.branch_torque(0, -1.5e-3) == pytest.approx(-3.0)
     assert gear.preload == 0.0
     assert not gear.has_shaft
 
@@ -115,20 +116,7 @@ def test_statics_are_those_of_the_audited_preload(braced, sign, interference):
             assert abs(output) <= abs(interference) / 2.0 + 1e-15
 
 
-# Springs and errors.
-
-
-@pytest.mark.parametrize(
-    ('distance', 'torque'),
-    [(0.0, 0.0), (5e-4, 0.5), (1e-3, 1.0), (1.5e-3, 2.5), (2e-3, 4.0), (4e-3, 9.0)],
-)
-def test_springs_add_up(braced, distance, torque):
-    assert spring_torque(BENT, distance) == pytest.approx(torque, rel=1e-14)
-    gear = with_branches(replace(braced, springs=(BENT,)), 1)
-    for sign in (1.0, -1.0):
-        assert gear.branch_torque(0, sign * (5e-4 + distance)) == pytest.approx(
-            sign * torque, abs=1e-12
-        )
+# Errors.
 
 
 def test_error_is_the_sum_of_its_orders(default):
@@ -144,7 +132,7 @@ def test_error_is_the_sum_of_its_orders(default):
 def test_the_default_gear_is_as_its_file_says(default):
     assert default.preload == pytest.approx(2.0)
     assert default.interference == pytest.approx(2.0 * (2.0 / 3000.0 + 1.0 / 1069.0))
-    assert default.springs == ((Spring(0.0, 3000.0),),) * 2
+    assert default.stiffness == (3000.0, 3000.0)
     assert default.friction == 0.1
     assert default.ratio == -19.0
 

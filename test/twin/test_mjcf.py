@@ -168,7 +168,7 @@ def test_what_surrounds_the_springs_is_written(gear):
     assert rigid.nv == model.nv - 1
     three = tuple(Branch(name, 2.1 * k, 0.02 * k) for k, name in enumerate('abc'))
     model, _ = loaded(
-        replace(changed(gear, branches=three, preload=0.0), springs=gear.springs[:1] * 3)
+        replace(changed(gear, branches=three, preload=0.0), stiffness=gear.stiffness[:1] * 3)
     )
     assert slack(model, 'branch_c').tolist() == [-1.45e-4, 1.45e-4]
 
