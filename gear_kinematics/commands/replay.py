@@ -24,19 +24,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     playing.add_argument(
         '--no-wait', action='store_true', help='do not wait for a subscriber before the start'
     )
-    output = arguments.group(parser, 'output')
-    output.add_argument(
+    arguments.group(parser, 'output').add_argument(
         '--as',
         dest='published',
         default=ROTOR_STATE,
         metavar='NAME',
         help=f'publish the topic under this name (default: {ROTOR_STATE})',
-    )
-    output.add_argument(
-        '--record',
-        type=Path,
-        metavar='FOLDER',
-        help='also record both encoders and the state of the node meanwhile, as a new rosbag2',
     )
     arguments.add_quiet(parser)
 
@@ -64,7 +57,6 @@ def run(options: argparse.Namespace) -> ExitCode:
                 rate=options.rate,
                 loop=options.loop,
                 wait=not options.no_wait,
-                record=options.record,
                 stopped=stopped,
                 progress=lambda sent, _: progress(sent, total),
             )

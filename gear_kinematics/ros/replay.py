@@ -1,18 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""Plays the rotor topic of a bag with its timing, and records what comes of it."""
+"""Plays the rotor topic of a bag with the timing of the recording."""
 
 import signal
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
 
-from geometry_msgs.msg import PoseArray
 from rclpy.duration import Duration
 from rclpy.exceptions import NameValidationException
-from rclpy.node import Node
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
@@ -20,12 +16,9 @@ from gear_kinematics.bag import Bag, ReportProgress
 from gear_kinematics.bag.schedule import due_messages, throttled
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.live import POLL, ReplayError, replay_node
-from gear_kinematics.ros.workarounds.executor import make_executor
-from gear_kinematics.wire.topics import JOINT_STATE, OUTPUT_ENCODER, RECORDED_TOPICS
+from gear_kinematics.wire.topics import JOINT_STATE
 
 _GRACE = 5.0  # s; subscribers acknowledge messages every 3 s
-_AFTERWARDS = 0.2  # s, of which a recording goes on
-_RECORDED = {**RECORDED_TOPICS, f'/{OUTPUT_ENCODER}': JOINT_STATE}
 
 
 @contextmanager
@@ -60,7 +53,6 @@ def play(
     rate: float = 1.0,
     loop: bool = False,
     wait: bool = True,
-    record: Path | None = None,
     stopped: Callable[[], bool] = lambda: False,
     progress: ReportProgress = lambda _done, _total: None,
 ) -> Played:
@@ -76,13 +68,12 @@ def play(
         rate: bag time / real time.
         loop: whether to restart at the end, a mean period after the last message, until stopped.
         wait: whether to wait for a subscriber first.
-        record: a folder to create, for a recording of both encoders and of the node meanwhile.
         stopped: returns whether to stop; called at least every 0.1 s.
         progress: called with the number of messages sent.
 
     Raises:
         BagError: if the bag lacks the topic, has nothing to play or is damaged; the messages
-            before the damage have been played. If the recording cannot be written.
+            before the damage have been played.
         ReplayError: if nothing can be published under that name.
         ValueError: if the rate is out of range.
     """
@@ -90,61 +81,27 @@ def play(
     schedule = due_messages(source, [topic], rate, loop=loop)
     played = Played()
     report = throttled(progress)
-    with replay_node('') as node, _recorded(node, record) as pause:
+    with replay_node('') as node:
         try:
             publisher = node.create_publisher(JointState, published, QoSProfile(depth=DEPTH))
         except NameValidationException as error:
             raise ReplayError(' '.join(str(error).split())) from error
         while wait and not (stopped() or publisher.get_subscription_count()):
-            pause(0.01)
+            time.sleep(0.01)
         progress(0, None)
         start = time.monotonic()
         try:
             for due, (_, _, data) in schedule:
                 while (left := start + due - time.monotonic()) > 0.0 and not stopped():
-                    pause(min(left, POLL))
+                    time.sleep(min(left, POLL))
                 if stopped():
                     break
                 publisher.publish(data)
                 played.messages += 1
                 played.worst_delay = max(played.worst_delay, time.monotonic() - start - due)
                 report(played.messages, None)
-            if record:
-                pause(_AFTERWARDS)
         finally:
             # Lost messages are sent again as long as the publisher exists.
             publisher.wait_for_all_acked(Duration(seconds=0.0 if stopped() else _GRACE))
     progress(played.messages, None)
     return played
-
-
-@contextmanager
-def _recorded(node: Node, path: Path | None) -> Iterator[Callable[[float], None]]:
-    """Record to a path, if there is one; yields a function that waits some s and records."""
-    if path is None:
-        yield time.sleep
-        return
-    from gear_kinematics.bag.writing import BagWriter  # noqa: PLC0415, an extra
-
-    with BagWriter(path) as bag:
-        executor = make_executor(context=node.context)
-        executor.add_node(node)
-
-        def keep(topic: str, data: bytes) -> None:
-            bag.write(topic, time.time_ns(), data)
-
-        for topic, kind in _RECORDED.items():
-            bag.add_topic(topic, kind)
-            message_type = JointState if kind == JOINT_STATE else PoseArray
-            take = partial(keep, topic)
-            node.create_subscription(message_type, topic, take, QoSProfile(depth=DEPTH), raw=True)
-
-        def pause(seconds: float) -> None:
-            end = time.monotonic() + seconds
-            while (left := end - time.monotonic()) > 0.0:
-                executor.spin_once(timeout_sec=left)
-
-        try:
-            yield pause
-        finally:
-            executor.shutdown()

@@ -141,15 +141,6 @@ def test_a_loop_repeats_until_it_is_stopped(bag_path, recorded, listener):
     assert back == list(range(COUNT, len(heard), COUNT))
 
 
-def test_what_comes_meanwhile_is_recorded(bag_path, recorded, tmp_path):
-    """Here what it plays itself, as if a driver answered with its commands."""
-    with Bag(bag_path) as bag:
-        play(bag, ROTOR, ROTOR, record=tmp_path / 'heard')
-    with Bag(tmp_path / 'heard') as heard:
-        assert heard.topics == {**TYPES, '/output_encoder': JOINT_STATE}
-        assert [data for _, _, data in heard.messages([ROTOR])] == recorded
-
-
 @pytest.mark.parametrize('subscribed', [True, False])
 def test_a_long_silence_and_the_wait_for_a_subscriber_can_be_stopped(
     tmp_path, listener, subscribed
