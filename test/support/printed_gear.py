@@ -41,8 +41,17 @@ class Loops(NamedTuple):
     @property
     def scatter(self) -> float:
         """rad, rms: the recorded way up less the way down, turned about the centre of the loop."""
+        return float(np.sqrt(np.mean(self._asymmetry**2)))
+
+    @property
+    def scatter_once_loaded(self) -> float:
+        """The same from -20 N·m to 0, without the first loading from an unknown rest."""
+        return float(np.sqrt(np.mean(self._asymmetry[_TORQUES <= 0.0] ** 2)))
+
+    @property
+    def _asymmetry(self) -> np.ndarray:
         up, down = self._ways(self.recorded)
-        return float(np.sqrt(np.mean((up + down[::-1]) ** 2)))
+        return up + down[::-1]
 
     @property
     def off(self) -> float:

@@ -62,7 +62,7 @@ def proving() -> Iterator[list[Future[Proof]]]:
 
 
 def answer(proofs: Sequence[Proof]) -> str:
-    """Say in a sentence what came back, with the worst deviation of each figure."""
+    """Say what came back, with the worst deviation of each figure."""
     widths, frictions, plays = zip(*(proof.figures[:3] for proof in proofs), strict=True)
     springs = [each for proof in proofs for each in proof.figures[3:]]
     stiffness = max(abs(each.deviation / each.put_in) for each in springs)
@@ -75,12 +75,13 @@ def answer(proofs: Sequence[Proof]) -> str:
     count = sum(len(proof.apart) for proof in proofs)
     late, forces = (max(each) for each in zip(*((p.late, p.forces) for p in proofs), strict=True))
     return (
-        f'What was put into {GEARS} random gears comes back: stiffnesses within '
-        f'{100 * stiffness:.2f} %, friction within {100 * friction:.1f} %, hysteresis within '
-        f'{width:.3f}′, the play within the interval of the backlash in {held} of {GEARS}; ratios '
-        f'and directions exactly, errors of the gear within {error:.2f}″, zeros within '
-        f'{zero:.2f}″; {count} moments without mesh within {late} ms; forces within '
-        f'{100 * forces:.2f} %.'
+        f'Yes, for {GEARS} random gears. Stiffnesses come back within {100 * stiffness:.2f} %, '
+        f'friction within {100 * friction:.1f} %, hysteresis within {width:.3f}′, and the play '
+        f'lies within the interval of the backlash in {held} of {GEARS}. Ratios and directions '
+        f'come back exactly, errors of the gear within {error:.2f}″, zeros within {zero:.2f}″. '
+        f'{count} moments without mesh begin and end within {late} ms of the true ones, and '
+        f'forces agree within {100 * forces:.2f} %. The twin of a real, printed gear is less '
+        'exact: [see below](#a-printed-gear).'
     )
 
 

@@ -21,5 +21,7 @@ def test_its_loop_is_reproduced_within_its_own_scatter(loops):
     assert 0.0 < loops.off < loops.scatter
     page = PAGE.read_text('utf-8')
     assert f'off by {1e3 * loops.off:.1f} mrad' in page
-    assert f'scatter is {1e3 * loops.scatter:.1f} mrad' in page
+    assert f'rms difference is {1e3 * loops.scatter:.1f} mrad' in page
+    assert f'alone, the difference is {1e3 * loops.scatter_once_loaded:.1f} mrad' in page
+    assert loops.scatter_once_loaded < loops.off  # as the page says
     assert f'along it, {loops.friction:.1f} N·m' in page
