@@ -10,7 +10,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool, Trigger
 
-RESTING = 0.01  # rad/s
+RESTING = 0.001  # rad/s, which a step of the torque exceeds within a sample
 rclpy.init()
 node, output = rclpy.create_node('bench'), [JointState(effort=[math.nan])]
 
