@@ -12,16 +12,17 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.workarounds.executor import make_executor
 
-AFTERWARDS = 1.0  # s, of which the recording goes on after the last command
+AFTERWARDS = 3.0  # s, of which the recording goes on after the last command
 RECORDED = ('/rotor_state', '/output_encoder', '/output_state', '/body_poses')
 rclpy.init()
-node, commanded = rclpy.create_node('recorder'), [math.inf]  # s
+node, heard, commanded = rclpy.create_node('recorder'), set(), [math.inf]  # s
 executor = make_executor()  # that of rclpy is too slow for four topics at 1 kHz
 executor.add_node(node)
 with BagWriter(sys.argv[1]) as bag:
     for topic in RECORDED:
 
         def keep(data: bytes, topic: str = topic) -> None:
+            heard.add(topic)
             bag.write(topic, time.time_ns(), data)
 
         kind, room = (PoseArray, 'geometry') if 'poses' in topic else (JointState, 'sensor')
@@ -30,6 +31,8 @@ with BagWriter(sys.argv[1]) as bag:
     node.create_subscription(
         JointState, '/rotor_command', lambda _: commanded.append(time.monotonic()), 2000, raw=True
     )
+    while heard != set(RECORDED):
+        executor.spin_once(timeout_sec=AFTERWARDS)
     print('recording', flush=True)
     while time.monotonic() < commanded[-1] + AFTERWARDS:
         executor.spin_once(timeout_sec=AFTERWARDS)
