@@ -205,9 +205,9 @@ def test_time_that_is_not_made_up_for_is_left_out_and_said(bench):
     time.sleep(0.8)  # what a busy processor does
     bench.process.send_signal(signal.SIGCONT)
     bench.wait_until(lambda: 's behind real time, which are left out' in bench.text(), 'a warning')
-    bench.rotor.clear()
-    bench.wait_until(lambda: len(bench.rotor) > 100, 'messages')
-    assert abs(time.time_ns() - stamp_of(bench.rotor[-1])) < 1e9
+    bench.wait_until(
+        lambda: abs(time.time_ns() - stamp_of(bench.rotor[-1])) < 4e8, 'stamps of the present time'
+    )
 
 
 def test_wear_takes_the_preload_and_then_leaves_play(bench):
