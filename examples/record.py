@@ -12,18 +12,28 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.workarounds.executor import make_executor
 
+SETTLING = 2.0  # s after all topics are heard: DDS can lose what is sent while it connects
 AFTERWARDS = 3.0  # s, of which the recording goes on after the last command
 RECORDED = ('/rotor_state', '/output_encoder', '/output_state', '/body_poses')
 rclpy.init()
-node, heard, commanded = rclpy.create_node('recorder'), set(), [math.inf]  # s
+node = rclpy.create_node('recorder')
+heard: dict[str, float] = {}  # since when, s
+commanded = [math.inf]  # when, s
 executor = make_executor()  # that of rclpy is too slow for four topics at 1 kHz
 executor.add_node(node)
+
+
+def settled() -> bool:
+    return len(heard) == len(RECORDED) and time.monotonic() > max(heard.values()) + SETTLING
+
+
 with BagWriter(sys.argv[1]) as bag:
     for topic in RECORDED:
 
         def keep(data: bytes, topic: str = topic) -> None:
-            heard.add(topic)
-            bag.write(topic, time.time_ns(), data)
+            heard.setdefault(topic, time.monotonic())
+            if settled():
+                bag.write(topic, time.time_ns(), data)
 
         kind, room = (PoseArray, 'geometry') if 'poses' in topic else (JointState, 'sensor')
         bag.add_topic(topic, f'{room}_msgs/msg/{kind.__name__}')
@@ -31,7 +41,7 @@ with BagWriter(sys.argv[1]) as bag:
     node.create_subscription(
         JointState, '/rotor_command', lambda _: commanded.append(time.monotonic()), 2000, raw=True
     )
-    while heard != set(RECORDED):
+    while not settled():
         executor.spin_once(timeout_sec=AFTERWARDS)
     print('recording', flush=True)
     while time.monotonic() < commanded[-1] + AFTERWARDS:
