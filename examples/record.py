@@ -12,27 +12,19 @@ from sensor_msgs.msg import JointState
 from gear_kinematics.bag.writing import BagWriter
 from gear_kinematics.ros.workarounds.executor import make_executor
 
-SETTLING = 2.0  # s after all topics are heard: DDS can lose what is sent while it connects
+CONNECTING = 5.0  # s: nodes announce themselves every 3 s, and DDS can lose messages meanwhile
 AFTERWARDS = 3.0  # s, of which the recording goes on after the last command
 RECORDED = ('/rotor_state', '/output_encoder', '/output_state', '/body_poses')
 rclpy.init()
-node = rclpy.create_node('recorder')
-heard: dict[str, float] = {}  # since when, s
-commanded = [math.inf]  # when, s
+node, commanded = rclpy.create_node('recorder'), [math.inf]  # s
+begin = time.monotonic() + CONNECTING
 executor = make_executor()  # that of rclpy is too slow for four topics at 1 kHz
 executor.add_node(node)
-
-
-def settled() -> bool:
-    return len(heard) == len(RECORDED) and time.monotonic() > max(heard.values()) + SETTLING
-
-
 with BagWriter(sys.argv[1]) as bag:
     for topic in RECORDED:
 
         def keep(data: bytes, topic: str = topic) -> None:
-            heard.setdefault(topic, time.monotonic())
-            if settled():
+            if time.monotonic() > begin:
                 bag.write(topic, time.time_ns(), data)
 
         kind, room = (PoseArray, 'geometry') if 'poses' in topic else (JointState, 'sensor')
@@ -41,7 +33,7 @@ with BagWriter(sys.argv[1]) as bag:
     node.create_subscription(
         JointState, '/rotor_command', lambda _: commanded.append(time.monotonic()), 2000, raw=True
     )
-    while not settled():
+    while time.monotonic() < begin:
         executor.spin_once(timeout_sec=AFTERWARDS)
     print('recording', flush=True)
     while time.monotonic() < commanded[-1] + AFTERWARDS:
