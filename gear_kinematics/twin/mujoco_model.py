@@ -33,10 +33,10 @@ class MujocoModel:
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Let time pass, to the nearest time step of MuJoCo; see `Model`."""
-        self._lock('rotor', self.rotor_locked)
-        self._lock('output_shaft', self.output_locked)
-        self.data.joint('rotor').qfrc_applied[:] = rotor_torque
-        self.data.joint('output_shaft').qfrc_applied[:] = load_torque
+        self._lock(self._rotor, self._rotor_lock, self.rotor_locked)
+        self._lock(self._output, self._output_lock, self.output_locked)
+        self.data.qfrc_applied[self._rotor] = rotor_torque
+        self.data.qfrc_applied[self._output] = load_torque
         step = self.model.opt.timestep
         self._owed += duration
         steps = round(self._owed / step)
@@ -62,15 +62,17 @@ class MujocoModel:
             self.model.joint(name).id
             for name in ('rotor', 'output_shaft', *(f'satellite_{each.name}' for each in branches))
         )
+        self._rotor_lock, self._output_lock = (
+            self.model.equality(f'{name}_lock').id for name in ('rotor', 'output_shaft')
+        )
         self._read()
 
-    def _lock(self, joint: str, locked: bool) -> None:  # noqa: FBT001
+    def _lock(self, joint: int, equality: int, locked: bool) -> None:  # noqa: FBT001
         """Hold a joint where it is, or let it go."""
-        equality, state = self.model.equality(f'{joint}_lock'), self.data.joint(joint)
-        if locked and not self.data.eq_active[equality.id]:
-            equality.data[0] = state.qpos[0] - self.model.joint(joint).qpos0[0]
-            state.qvel[:] = 0.0
-        self.data.eq_active[equality.id] = locked
+        if locked and not self.data.eq_active[equality]:
+            self.model.eq_data[equality, 0] = self.data.qpos[joint] - self.model.qpos0[joint]
+            self.data.qvel[joint] = 0.0
+        self.data.eq_active[equality] = locked
 
     def _read(self) -> None:
         angles, velocities, gear = self.data.qpos, self.data.qvel, self._gear
