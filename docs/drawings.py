@@ -3,14 +3,15 @@
 
 import math
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 import numpy as np
 import pinocchio
-import printed_gear
 from links import pinocchio_configuration
 from matplotlib.figure import Figure
 from PIL import Image
+from real_twins import PRINTED, READ_PRINTED, loops, real_gear
 
 from gear_kinematics.kinematics import Branch, Mechanism, solve
 from gear_kinematics.shape.urdf import urdf
@@ -124,15 +125,18 @@ def draw_flow(flow: Flow, target: Path) -> None:
 
 def draw_printed_gear(target: Path) -> None:
     """Draw the recorded loop of COMPAct's printed gear, its image, and that of its twin."""
-    loops = printed_gear.loops(SHARED / printed_gear.RECORDING)
+    with TemporaryDirectory() as folder:
+        report = Path(folder) / 'report.json'
+        gear, [ramps] = real_gear(SHARED / PRINTED, report, *READ_PRINTED)
+    found = loops(gear, ramps)
     figure = Figure(figsize=(8.0, 4.5), layout='constrained')
-    axes = figure.add_subplot(xlabel='angle [mrad]', ylabel='torque [N·m]')
-    for sign, angle, style in (
-        (1.0, loops.recorded, {'label': 'recorded', 'color': INK, 'linewidth': 1.5}),
-        (-1.0, loops.recorded, {'label': 'turned about its centre', 'color': '#94a3b8'}),
-        (1.0, loops.simulated, {'label': 'twin', 'color': '#2563eb', 'linewidth': 1.5}),
+    axes = figure.add_subplot(xlabel='wind-up [mrad]', ylabel='torque [N·m]')
+    for angle, style in (
+        (found.image, {'label': 'its image', 'color': '#94a3b8', 'linewidth': 4.0}),
+        (found.recorded[0], {'label': 'recorded', 'color': INK, 'linewidth': 1.8}),
+        (found.simulated, {'label': 'twin', 'color': '#ea580c', 'linewidth': 1.2}),
     ):
-        axes.plot(sign * 1e3 * angle, sign * loops.torque, **{'linewidth': 0.8} | style)
+        axes.plot(1e3 * angle, found.torque, **style)
     axes.grid(alpha=0.3)
     axes.legend(frameon=False)
     figure.savefig(target, metadata={'Date': None})

@@ -34,8 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action='append',
         default=[],
         metavar='REPORT.json',
-        help='of gearkin preload: stiffness and preload; of gearkin lost-motion: friction, play '
-        'and stiffness (repeat the option for both)',
+        help='of gearkin preload: stiffness and preload; of gearkin lost-motion: springs and '
+        'friction (repeat the option for both)',
     )
     arguments.group(parser, 'output').add_argument(
         '-o', '--output', default='-', metavar='FILE', help='the model (default: stdout)'

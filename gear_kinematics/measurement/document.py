@@ -172,6 +172,10 @@ def _of_gear(found: GearFigures) -> dict[str, Any]:
         'hysteresis': _with_unit(found.hysteresis, 'rad'),
         'lost_motion': _with_unit(found.lost_motion, 'rad'),
         'friction': _with_unit(found.friction, 'N·m'),
+        'middle_line': {
+            name: getattr(found.middle_line, name).tolist()
+            for name in ('angle', 'load', 'friction')
+        },
         'backlash': {
             **_with_unit(found.backlash.value, 'rad'),
             'low': found.backlash.low,

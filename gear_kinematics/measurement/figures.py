@@ -16,6 +16,7 @@ from gear_kinematics.measurement.middle_line import (
     Backlash,
     MiddleLine,
     backlash_of,
+    mean_line,
     middle_lines,
     reconciled,
     stiffness_of,
@@ -58,6 +59,8 @@ class GearFigures:
     """The width of the curve at zero torque."""
     friction: Estimate | None
     """Half the width of the curve in torque; None without a complete loop."""
+    middle_line: MiddleLine
+    """The mean of the largest ramps."""
     backlash: Backlash
     """What all ramps together leave room for."""
     lost_motion: Estimate | None
@@ -117,6 +120,7 @@ def gear_figures(
         tuple(ramps),
         widths[0],
         _friction(lines[0], small, angle_step),
+        mean_line(large),
         reconciled(rooms),
         _lost_motion(large.loops, rated, angle_step),
         _stiffness(large, rated, angle_step),

@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import NamedTuple
 
@@ -95,6 +95,14 @@ class Loop(NamedTuple):
     def complete(self) -> bool:
         """Whether both halves go from peak to peak; a recording may end before."""
         return min(-self.fall.end, self.rise.end) >= _COMPLETE * self.amplitude
+
+    @property
+    def completed(self) -> 'Loop':
+        """The longer half, and its image: the loop of a gear that is alike in both directions."""
+        half = max(self, key=lambda half: abs(half.end - half.start))
+        angle = half.angle[0] + half.angle[-1] - half.angle
+        image = replace(half, torque=-half.torque, angle=angle)
+        return Loop(image, half) if half.rising else Loop(half, image)
 
     def width(self, torque: float) -> float:
         """The angle between the half loops, rad."""

@@ -9,7 +9,7 @@ the backlash is the angle in its middle over which there is no load.
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from operator import itemgetter
 from typing import NamedTuple
@@ -21,6 +21,9 @@ from gear_kinematics.measurement.loops import Array, Loop, Ramps
 
 _ANGLES = 400
 """At which a loop is known."""
+_POINTS = 20
+"""Of the mean line on either side: springs and frictions of 5, 10, 20 and 40 give back the loops
+of 30 real recordings within 3.1, 2.2, 1.8 and 1.7 mrad (median), whose repeats differ by 2.5."""
 _LOADS = 40
 """At which the angle is read for a line through one side."""
 _SIDE, _LOWER_HALF, _UPPER_HALF = (0.1, 0.9), (0.1, 0.35), (0.35, 0.9)
@@ -146,6 +149,26 @@ class MiddleLine:
 def middle_lines(ramps: Ramps) -> list[MiddleLine]:
     """The middle lines of the complete loops of ramps."""
     return [MiddleLine.of(loop) for loop in ramps.loops if loop.complete]
+
+
+def mean_line(ramps: Ramps) -> MiddleLine:
+    """The mean of the middle lines of ramps: at 0 rad, there is no load.
+
+    If no loop is complete, each counts with one half and the image of that.
+    """
+    lines = [
+        replace(line, angle=line.angle - line.angle_at(0.0))
+        for line in middle_lines(ramps) or [MiddleLine.of(loop.completed) for loop in ramps.loops]
+    ]
+    low, high = max(line.angle[0] for line in lines), min(line.angle[-1] for line in lines)
+    angle = np.concatenate(
+        [np.linspace(low, 0.0, _POINTS, endpoint=False), np.linspace(0.0, high, _POINTS + 1)]
+    )
+    load, friction = (
+        np.mean([np.interp(angle, line.angle, getattr(line, name)) for line in lines], axis=0)
+        for name in ('load', 'friction')
+    )
+    return MiddleLine(angle, np.where(angle, load, 0.0), friction)
 
 
 def stiffness_of(lines: Sequence[MiddleLine], ramps: Ramps) -> float:

@@ -12,6 +12,7 @@ Friction stops the output within a step if it can, and slows it down by all of i
 """
 
 import math
+from dataclasses import replace
 
 from gear_kinematics.kinematics import Mechanism, MechanismError
 from gear_kinematics.twin.gear import TwinGear
@@ -53,9 +54,9 @@ class FastModel:
             fault = f'rotor and output would oscillate at {frequency:.0f} rad/s; the fast model '
             fault += f'follows {_FASTEST:.0f} rad/s: give them more inertia or less stiffness'
             raise MechanismError([fault])
-        self._branches = [*zip(gear.dead_bands, springs, strict=True)]
+        self._in_series = replace(gear, stiffness=tuple(springs), shaft_stiffness=math.inf)
         self._gear = gear
-        self.branch_torques = self._torques(self.rotor_angle, self.output_angle)
+        self.branch_torques, self._friction = self._loads(self.rotor_angle, self.output_angle)
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Let time pass; see `Model`."""
@@ -64,34 +65,29 @@ class FastModel:
         rotor_gain = 0.0 if self.rotor_locked else h / self._rotor_inertia
         output_gain = 0.0 if self.output_locked else h / self._output_inertia
         damped = 1.0 + rotor_gain * self._gear.rotor_damping
-        ratio, slowed = self._ratio, output_gain * self._gear.friction
-        rotor, output = self.rotor_angle, self.output_angle
+        ratio, rotor, output = self._ratio, self.rotor_angle, self.output_angle
         rotor_velocity = 0.0 if self.rotor_locked else self.rotor_velocity
         output_velocity = 0.0 if self.output_locked else self.output_velocity
-        torques = self.branch_torques
+        torques, friction = self.branch_torques, self._friction
         for _ in range(steps):
             torque = sum(torques)
             rotor_velocity += rotor_gain * (rotor_torque - torque / ratio)
             rotor_velocity /= damped
             output_velocity += output_gain * (load_torque + torque)
+            slowed = output_gain * friction
             output_velocity -= max(-slowed, min(output_velocity, slowed))
             rotor += h * rotor_velocity
             output += h * output_velocity
-            torques = self._torques(rotor, output)
+            torques, friction = self._loads(rotor, output)
         self.rotor_angle, self.rotor_velocity = rotor, rotor_velocity
         self.output_angle, self.output_velocity = output, output_velocity
-        self.branch_torques = torques
+        self.branch_torques, self._friction = torques, friction
 
-    def _torques(self, rotor: float, output: float) -> tuple[float, ...]:
-        """T_k, N·m, of all branches."""
+    def _loads(self, rotor: float, output: float) -> tuple[tuple[float, ...], float]:
         wind_up = rotor / self._ratio - output
         if self._gear.errors:
             wind_up += self._gear.error(rotor)
-        torques = []
-        for (low, high), stiffness in self._branches:
-            beyond = wind_up - high if wind_up > high else min(wind_up - low, 0.0)
-            torques.append(stiffness * beyond)
-        return tuple(torques)
+        return self._in_series.loads((wind_up,) * len(self._in_series.stiffness))
 
 
 def inertias(gear: TwinGear) -> tuple[float, float]:

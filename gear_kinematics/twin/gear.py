@@ -9,6 +9,10 @@ with ψ_k the angle of its arm, and gives the arm the torque T_k: none within it
 play of its flanks, whose place is the preload, and that of its spring beyond it. The output shaft
 is the arm of the last branch. Friction acts between the output shaft and the stator.
 
+Real springs bend, and friction grows with the load. A gear without preload may have a curve that
+was measured at its output: each branch gives its share of the torque, and the shaft is rigid, as
+its twist is in the curve.
+
 Two branches are braced by an interference, by which branch A, the shaft and branch B are twisted
 together. Without load, the output stands at φ2/i: x_B = 0, and x_A = -T0/ks by the shaft, so that
 
@@ -18,9 +22,14 @@ All signs are the opposite if branch A pushes the output in the negative directi
 """
 
 import math
+from bisect import bisect, bisect_left
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, Self
+
+import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
@@ -29,6 +38,36 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.parameters import NODE, PARAMETERS, own_values
 
 _BRACED = 2  # branches, which have a shaft between their arms
+
+
+@dataclass(frozen=True, slots=True)
+class LoadingCurve:
+    """Torque and friction of a gear by its wind-up: straight lines through points, and beyond."""
+
+    wind_up: tuple[float, ...]
+    """rad, ascending, with 0."""
+    torque: tuple[float, ...]
+    """N·m, non-decreasing; 0 at 0 rad."""
+    friction: tuple[float, ...]
+    """N·m."""
+
+    def at(self, wind_up: float) -> tuple[float, float]:
+        """Torque and friction, N·m, at a wind-up, rad; beyond its ends, friction stays."""
+        right = min(max(bisect(self.wind_up, wind_up), 1), len(self.wind_up) - 1)
+        left = right - 1
+        share = (wind_up - self.wind_up[left]) / (self.wind_up[right] - self.wind_up[left])
+        within = max(0.0, min(share, 1.0))
+        torque, friction = self.torque, self.friction
+        return (
+            torque[left] + share * (torque[right] - torque[left]),
+            max(0.0, friction[left] + within * (friction[right] - friction[left])),
+        )
+
+    @property
+    def stiffness(self) -> tuple[float, ...]:
+        """N·m/rad, between the points."""
+        ways = zip(pairwise(self.torque), pairwise(self.wind_up), strict=True)
+        return tuple((t1 - t0) / (x1 - x0) for (t0, t1), (x0, x1) in ways)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +81,7 @@ class TwinGear:
     parameters: NodeParameters
     """Of its mechanism, bodies and encoders."""
     stiffness: tuple[float, ...]
-    """N·m/rad, of each branch from its flanks on."""
+    """N·m/rad, of each branch from its flanks on; the greatest of a curve."""
     shaft_stiffness: float
     """N·m/rad, between both arms; infinite: rigid."""
     interference: float
@@ -50,7 +89,9 @@ class TwinGear:
     play: float
     """rad: between the flanks of a branch, at least the play that is left."""
     friction: float = 0.0
-    """N·m."""
+    """N·m; the mean of a curve."""
+    curve: LoadingCurve | None = None
+    """Of all branches from their flanks on; only without shaft and preload."""
     errors: tuple[Order, ...] = ()
     """Of the output angle, by the rotor angle."""
     rotor_damping: float = 0.0
@@ -132,10 +173,39 @@ class TwinGear:
         """By how much arm A leads the output without load, rad."""
         return self.preload / self.shaft_stiffness
 
-    def branch_torque(self, branch: int, angle: float) -> float:
-        """T_k, N·m, of a branch wound up by the angle x_k, rad."""
-        low, high = self.dead_bands[branch]
-        return self.stiffness[branch] * (max(angle - high, 0.0) + min(angle - low, 0.0))
+    def loads(self, wind_ups: Sequence[float]) -> tuple[tuple[float, ...], float]:
+        """T_k of all branches wound up by the angles x_k, rad, and the friction, N·m."""
+        torques, friction = [], self.friction
+        for x, (low, high), stiffness in zip(
+            wind_ups, self.dead_bands, self.stiffness, strict=True
+        ):
+            beyond = x - high if x > high else min(x - low, 0.0)
+            torque = stiffness * beyond
+            if self.curve:
+                torque, friction = self.curve.at(beyond)
+                torque /= len(self.stiffness)
+            torques.append(torque)
+        return tuple(torques), friction
+
+    def springs(self, branch: int) -> list[tuple[float, float, float]]:
+        """Springs of a branch which touch one after another.
+
+        Returns:
+            For each, the wind-ups between which it is slack, rad, and its stiffness, N·m/rad.
+        """
+        (low, high), curve = self.dead_bands[branch], self.curve
+        if not curve:
+            return [(low, high, self.stiffness[branch])]
+        slopes = np.array(curve.stiffness) / len(self.stiffness)
+        middle = bisect_left(curve.wind_up, 0.0)
+        right = zip(curve.wind_up[middle:], np.diff(slopes[middle:], prepend=0.0), strict=False)
+        left = zip(
+            curve.wind_up[middle::-1], np.diff(slopes[:middle][::-1], prepend=0.0), strict=False
+        )
+        return [
+            *((-math.inf, high + offset, float(more)) for offset, more in right),
+            *((low + offset, math.inf, float(more)) for offset, more in left),
+        ]
 
     def preloaded(self, torque: float) -> Self:
         """The same gear with a preload of this magnitude, N·m; as it is if that is 0."""

@@ -1,8 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The figures of a real gear for a simulated one, from reports of gearkin as JSON.
 
-A loop at the output shows the sum of the branches, which have the same stiffness. Of two of them,
-branch A acts through the shaft: a stiffness K at the output is that of k in both where
+A loop at the output shows all branches together. Its middle line is the curve of a gear without
+preload. Of a preloaded one, which has two branches of the same stiffness k, branch A acts through
+the shaft: near no load, where both are in mesh, the output has the stiffness
 
     K = k + k ks/(k + ks)
 """
@@ -14,9 +15,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from gear_kinematics.kinematics import MechanismError
 from gear_kinematics.kinematics.preload import braced
-from gear_kinematics.twin.gear import TwinGear
+from gear_kinematics.twin.gear import LoadingCurve, TwinGear
 
 Report = Mapping[str, Any]
 
@@ -47,7 +50,7 @@ def measured(gear: TwinGear, reports: Iterable[Path]) -> tuple[TwinGear, list[st
             raise ValueError(f'{path}: {error.strerror}') from error
         except MechanismError as error:
             raise ValueError(f'{path}: {error}') from error
-        except (LookupError, RecursionError, TypeError, ValueError) as error:
+        except (ArithmeticError, LookupError, RecursionError, TypeError, ValueError) as error:
             wanted = 'torque ramps of one recording by gearkin lost-motion, or of gearkin preload'
             raise ValueError(f'{path}: must be the JSON of {wanted}') from error
     return gear, notes
@@ -68,36 +71,38 @@ def _set(gear: TwinGear, data: Report) -> TwinGear:
         parameters=replace(gear.parameters, preload=math.copysign(torque, turn)),
         stiffness=(branch_a, branch_b),
         shaft_stiffness=shaft,
+        curve=None,
         play=max(gear.play, pins['play']),
         interference=-pins['play'],
     ).preloaded(torque)
 
 
 def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
-    """Take friction, play and stiffness from torque ramps, and note what they leave open."""
-    friction, backlash = data['friction']['value'], data['backlash']
+    """Take the curve, or friction and stiffness at no load; note what the ramps leave open."""
+    line, count = data['middle_line'], len(gear.stiffness)
+    friction = data['friction']['value']
     if friction is None:
-        friction = gear.friction
-        notes.append(f'friction: {friction:.4g} N·m, as configured')
-    play, low, high = backlash['value'], backlash['low'], backlash['high']
-    if gear.preload or high is None:
-        play = gear.play
-        notes.append(f'play of the flanks: {play:.4g} rad, as configured')
-    elif play is None:
-        play = 0.5 * (low + high)
-        notes.append(f'play: {play:.4g} rad, the middle of {low:.4g} to {high:.4g} rad')
-    first, *others = data['stiffness']
-    if play and others and not (gear.preload or first['low']):
-        first = others[0]  # the play is in the other
+        friction = float(np.mean(line['friction']))
+    if not gear.preload:
+        # A load winds up the locked gear by its rotor, or turns the output back.
+        way = -1 if data['measured'] else 1
+        rows = zip(line['angle'], line['load'], line['friction'], strict=True)
+        points = sorted((way * angle, way * load, held) for angle, load, held in rows)
+        curve = LoadingCurve(*zip(*points, strict=True))
+        return replace(
+            gear,
+            stiffness=(max(curve.stiffness) / count,) * count,
+            shaft_stiffness=math.inf,
+            play=0.0,
+            interference=0.0,
+            friction=friction,
+            curve=curve,
+        )
+    notes.append(f'play of the flanks: {gear.play:.4g} rad, as configured')
+    first = data['stiffness'][0]
     notes.append(f'stiffness beyond {first["high"]:.4g} N·m: as below')  # a branch may be alone
-    total, shaft = first['value'], gear.shaft_stiffness
-    own = total / len(gear.stiffness)
+    own, shaft = first['value'] / count, gear.shaft_stiffness
     if gear.has_shaft:
-        own = 0.5 * (total - 2.0 * shaft + math.hypot(total, 2.0 * shaft))
-    return replace(
-        gear,
-        stiffness=(own,) * len(gear.stiffness),
-        play=play,
-        interference=-play,
-        friction=friction,
-    ).preloaded(abs(gear.preload))
+        own = own - shaft + math.hypot(own, shaft)
+    changed = replace(gear, stiffness=(own,) * count, friction=friction)
+    return changed.preloaded(abs(gear.preload))

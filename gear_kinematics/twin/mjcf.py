@@ -26,6 +26,7 @@ from gear_kinematics.wire import topics
 _MILLISECOND = 1e-3  # s
 _LONGEST_STEP = 1e-4  # s
 _PHASE = 0.7  # rad by which the fastest oscillation may advance in a step; beyond 2, it grows
+_FAR = 1e6  # rad, beyond all wind-ups
 _ARM_DAMPING = 0.05  # of critical: the arm comes to rest in ms, slower motions hardly notice
 
 
@@ -66,7 +67,8 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
       rotor angle / gear ratio - angle of its arm,
 
   and its springlength the play of the flanks. Positive torques push the output forwards. In the
-  sensors of the branches, the third value is the torque on the output. MuJoCo has no kinematic
+  sensors of the branches, the third value is the torque on the output. A spring that bends is
+  several tendons. Of friction that depends on the load, the mean is given. MuJoCo has no kinematic
   errors: a program has to subtract them from springlength of all branches at each step. Numbers of
   its orders, if any, are cycles per turn of the rotor, and their cos and sin, rad.
   {comment}
@@ -189,8 +191,9 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
         parts['on_shaft'] += slot
     # The arm turns with the satellite, whose joint is on the rotor.
     joints = {'rotor': 1.0 / gear.ratio - 1.0, f'satellite_{name}': -1.0}
-    spring = gear.stiffness[number], joints, gear.dead_bands[number]
-    parts['tendon'] += _spring(f'branch_{name}', *spring)
+    for stage, (low, high, stiffness) in enumerate(gear.springs(number)):
+        tendon = f'branch_{name}.{stage}' if stage else f'branch_{name}'
+        parts['tendon'] += _spring(tendon, stiffness, joints, (max(low, -_FAR), min(high, _FAR)))
     parts['equality'] += f"""
 <weld name="oldham_{name}" body1="oldham_{name}" body2="slot_arm_{name}" torquescale="200"/>"""
     parts['sensor'] += f"""

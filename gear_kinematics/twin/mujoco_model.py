@@ -55,7 +55,8 @@ class MujocoModel:
         self.model = mujoco.MjModel.from_xml_string(mjcf(gear, shown=False))
         self.data = mujoco.MjData(self.model)
         branches = gear.parameters.branches
-        self._tendons = [self.model.tendon(f'branch_{each.name}').id for each in branches]
+        tendons = range(self.model.ntendon)
+        self._tendons = [each for each in tendons if self.model.tendon(each).name != 'shaft']
         self._springs = self.model.tendon_lengthspring[self._tendons]
         # Each joint has one coordinate.
         self._rotor, self._output, *self._satellites = (
@@ -81,9 +82,9 @@ class MujocoModel:
         self.output_angle = float(angles[self._output])
         self.output_velocity = float(velocities[self._output])
         ideal = (1.0 / gear.ratio - 1.0) * rotor + gear.error(rotor)
-        self.branch_torques = tuple(
-            gear.branch_torque(branch, ideal - float(angles[joint]))
-            for branch, joint in enumerate(self._satellites)
+        # It changes slowly, as the output moves on a spring.
+        self.branch_torques, self.model.dof_frictionloss[self._output] = gear.loads(
+            [ideal - float(angles[joint]) for joint in self._satellites]
         )
 
 

@@ -40,8 +40,8 @@ def test_other_files_are_kept(tmp_path):
 def test_figures_are_taken_and_what_is_open_is_said(tmp_path):
     ranges = [{'low': 0.0, 'high': 1.0, 'value': 4000.0}]
     figures = {
-        'friction': {'value': None},
-        'backlash': {'value': None, 'low': 0.0, 'high': None},
+        'friction': {'value': 0.2},
+        'middle_line': {'angle': [-1e-3, 1e-3], 'load': [-4.0, 4.0], 'friction': [0.2, 0.2]},
         'stiffness': ranges,
     }
     report = tmp_path / 'ramps.json'
@@ -52,10 +52,10 @@ def test_figures_are_taken_and_what_is_open_is_said(tmp_path):
     done = gearkin_here('mjcf', '--measured', report, '--calibration', calibrated)
     assert done.returncode == 0
     assert done.stderr == (
-        'gearkin: not in the reports: friction: 0.1 N·m, as configured; play of the flanks: '
-        '0.00029 rad, as configured; stiffness beyond 1 N·m: as below\n'
+        'gearkin: not in the reports: play of the flanks: 0.00029 rad, as configured; '
+        'stiffness beyond 1 N·m: as below\n'
     )
-    assert 'Not measured: friction: 0.1 N·m, as configured.' in done.stdout
+    assert 'Not measured: play of the flanks: 0.00029 rad, as configured.' in done.stdout
     orders = model(done.stdout).findall('custom/numeric')
     assert [order.get('name') for order in orders][:2] == ['rotor × 1', 'rotor × 2']
     assert orders[1].get('data') == '2.0 0.0 0.0002'

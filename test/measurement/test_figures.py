@@ -65,6 +65,24 @@ def recorded(angle, noise: float, seed: int):
     return torque, quantised(angle + generator.uniform(0.0, STEP), STEP)
 
 
+@pytest.mark.parametrize('name', GEARS)
+def test_the_middle_line_is_the_spring(angles, name):
+    """Of the largest ramps, with the friction beside it."""
+    gear, noisy = GEARS[name], recorded(angles[name], 0.02, seed=1)
+    line = measured(*noisy).middle_line
+    assert np.ptp(line.load) > 1.95 * (LARGE - gear.friction)
+    # At its ends, noise decides which half of a loop turned back first.
+    angle, load, friction = (values[2:-2] for values in (line.angle, line.load, line.friction))
+    assert friction == pytest.approx(gear.friction, abs=0.15)
+    left, right = (angle[side] - load[side] / gear.stiffness for side in (load < -1.0, load > 1.0))
+    for side in (left, right):
+        assert side == pytest.approx(side.mean(), abs=2e-4)
+    assert right.mean() - left.mean() == pytest.approx(gear.play, abs=2e-4)
+    # There is no load at 0 rad.
+    assert left.mean() - 1e-4 <= 0.0 <= right.mean() + 1e-4
+    assert line.load[line.angle == 0.0] == [0.0]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize('name', GEARS)
 def test_figures_of_an_ideal_recording_are_those_of_the_gear(angles, name):

@@ -39,6 +39,22 @@ def test_the_loop_at_the_end_of_a_recording_is_not_complete():
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
+def test_a_recording_of_one_loop_is_completed_by_an_image(sign):
+    """It ends at no torque; the missing side is that of a loop which goes on."""
+    torque = sign * ramps((5.0, 300), (5.0, 300))
+    angle = 0.3 + sign * creep(GEAR, sign * torque)
+    half = len(torque) // 2 + 2
+    [ramps_of] = find_ramps(torque, angle)
+    [alone] = find_ramps(torque[:half], angle[:half])
+    [part] = alone.loops
+    assert not part.complete
+    assert part.completed.complete
+    at = np.linspace(-4.9, 4.9, 30)
+    for way, other in zip(part.completed, ramps_of.loops[0], strict=True):
+        np.testing.assert_allclose(way.angle_at(at), other.angle_at(at), rtol=0, atol=1e-4)
+
+
+@pytest.mark.parametrize('sign', [1.0, -1.0])
 def test_first_side_does_not_matter(sign):
     torque = sign * ramps((5.0, 200), (5.0, 200))
     (found,) = find_ramps(torque, sign * creep(GEAR, sign * torque))

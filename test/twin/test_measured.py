@@ -8,7 +8,6 @@ from dataclasses import replace
 import pytest
 from blocked_bags import gearkin_here
 
-from gear_kinematics.kinematics import Branch
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.twin.gear import TwinGear
 from gear_kinematics.twin.measured import measured
@@ -27,17 +26,32 @@ def loose(gear) -> TwinGear:
     return replace(gear, parameters=parameters, interference=-gear.play)
 
 
+LINE = {
+    'angle': [-2e-3, -1e-3, 0.0, 1e-3, 3e-3],
+    'load': [-3.0, -0.5, 0.0, 1.0, 7.0],
+    'friction': [0.6, 0.4, 0.2, 0.3, 0.5],
+}
+
+LEVEL = {
+    'friction': {'value': 0.1},
+    'measured': False,
+    'middle_line': {'angle': [0.0, 0.0], 'load': [0.0, 1.0], 'friction': [0.1, 0.1]},
+}
+"""Angles of a report which do not grow."""
+
+
 @pytest.fixture
 def ramps(tmp_path):
     """Write the report on torque ramps."""
 
-    def write(stiffness, *, friction=None, backlash=None, low=0.0, high=None):
-        play = {'value': backlash, 'low': low, 'high': high}
-        ranges = [
-            {'low': begin, 'high': end, 'value': value, 'unit': 'N·m/rad'}
-            for begin, end, value in stiffness
-        ]
-        figures = {'friction': {'value': friction}, 'backlash': play, 'stiffness': ranges}
+    def write(stiffness=(), *, friction=None, line=LINE, measured=False):
+        ranges = [{'low': low, 'high': high, 'value': value} for low, high, value in stiffness]
+        figures = {
+            'friction': {'value': friction},
+            'middle_line': line,
+            'stiffness': ranges,
+            'measured': measured,
+        }
         path = tmp_path / 'ramps.json'
         data = {'made_by': 'gearkin lost-motion', 'recordings': [figures]}
         path.write_text(json.dumps(data), 'utf-8')
@@ -59,61 +73,52 @@ def pins(tmp_path):
     return write
 
 
-def test_one_branch_has_the_stiffness_of_the_output(loose, ramps):
-    alone = replace(loose.parameters, branches=(Branch('a'),))
-    gear = replace(loose, parameters=alone, stiffness=loose.stiffness[:1], play=0.0)
-    report = ramps([(0.0, 2.0, 1000.0), (2.0, 5.0, 2000.0)], friction=0.5, high=None)
-    found, notes = measured(gear, [report])
-    assert found.stiffness == (1000.0,)
-    assert found.friction == 0.5
-    assert found.play == 0.0
-    assert notes == [
-        'play of the flanks: 0 rad, as configured',
-        'stiffness beyond 2 N·m: as below',
-    ]
+@pytest.mark.parametrize('count', [1, 2])
+def test_branches_share_the_middle_line(loose, ramps, count):
+    """By hand, at its points, between them and beyond; the shaft is in it."""
+    alone = replace(loose.parameters, branches=loose.parameters.branches[:count])
+    gear = replace(loose, parameters=alone, stiffness=loose.stiffness[:count])
+    found, notes = measured(gear, [ramps()])
+    assert notes == []
+    assert found.stiffness == (pytest.approx(3000.0 / count),) * count
+    assert found.friction == 0.4
+    for wind_up, load, friction in (
+        (0.0, 0.0, 0.2),
+        (1e-3, 1.0, 0.3),
+        (2e-3, 4.0, 0.4),
+        (5e-3, 13.0, 0.5),
+        (-1.5e-3, -1.75, 0.5),
+        (-4e-3, -8.0, 0.6),
+    ):
+        torques, held = found.loads((wind_up,) * count)
+        assert torques == pytest.approx((load / count,) * count, rel=1e-12)
+        assert held == pytest.approx(friction, rel=1e-12)
 
 
-def test_two_branches_share_the_stiffness_of_the_output(loose, ramps):
-    """With ks of 1000, k of 3000 is 3000 + 750 at the output, below the load of one alone."""
-    report = ramps([(0.0, 3.0, 3750.0), (3.0, 9.0, 1500.0)], friction=0.0, backlash=0.0, high=0.0)
-    found, notes = measured(replace(loose, shaft_stiffness=1000.0), [report])
-    assert found.stiffness == pytest.approx((3000.0, 3000.0))
-    assert found.friction == 0.0
-    assert found.play == 0.0
-    assert notes == ['stiffness beyond 3 N·m: as below']
-    rigid, _ = measured(replace(loose, shaft_stiffness=math.inf), [report])
-    assert rigid.stiffness == (1875.0, 1875.0)
+def test_a_load_on_the_output_winds_it_up_backwards(loose, ramps):
+    """Where an encoder measured the output; else it was locked, and the rotor turned."""
+    found, _ = measured(loose, [ramps(measured=True)])
+    torques, friction = found.loads((-2e-3, -2e-3))
+    assert sum(torques) == pytest.approx(-4.0)
+    assert friction == pytest.approx(0.4)
 
 
-def test_play_is_not_in_the_stiffness_and_its_interval_is_noted(loose, ramps):
-    ranges = [(0.0, 1.0, 300.0), (1.0, 4.0, 3000.0)]
-    found, notes = measured(
-        loose, [ramps(ranges, friction=0.1, backlash=2e-3, low=1e-3, high=3e-3)]
-    )
-    assert found.play == -found.interference == 2e-3
-    [own] = {*found.stiffness}
-    assert own + 1.0 / (1.0 / own + 1.0 / 1069.0) == pytest.approx(3000.0)
-    assert notes == ['stiffness beyond 4 N·m: as below']
-    found, notes = measured(loose, [ramps(ranges, low=1e-3, high=4e-3)])
-    assert found.play == 2.5e-3
-    assert found.friction == loose.friction
-    assert notes == [
-        'friction: 0.1 N·m, as configured',
-        'play: 0.0025 rad, the middle of 0.001 to 0.004 rad',
-        'stiffness beyond 4 N·m: as below',
-    ]
-
-
-def test_a_preload_is_kept_and_its_play_is_not_measured(gear, ramps):
-    report = ramps([(0.0, 1.0, 3750.0), (1.0, 4.0, 800.0)], friction=0.2, backlash=0.0, high=0.0)
+def test_a_loop_tells_a_preloaded_gear_friction_and_stiffness_at_no_load(gear, ramps):
+    """With ks of 1000, k of 3000 is 3000 + 750 at the output, while both are in mesh."""
+    report = ramps([(0.0, 1.0, 3750.0), (1.0, 4.0, 800.0)], friction=0.2)
     found, notes = measured(replace(gear, shaft_stiffness=1000.0).preloaded(2.0), [report])
     assert found.preload == pytest.approx(2.0)
     assert found.stiffness == pytest.approx((3000.0, 3000.0))
     assert found.play == gear.play
+    assert found.friction == 0.2
     assert notes == [
         'play of the flanks: 0.00029 rad, as configured',
         'stiffness beyond 1 N·m: as below',
     ]
+    rigid, _ = measured(replace(gear, shaft_stiffness=math.inf).preloaded(2.0), [report])
+    assert rigid.stiffness == (1875.0, 1875.0)
+    unknown, _ = measured(gear, [ramps([(0.0, 1.0, 3750.0)])])
+    assert unknown.friction == 0.4
 
 
 @pytest.mark.parametrize('sign', [1.0, -1.0])
@@ -138,17 +143,18 @@ def test_play_at_the_pins_is_left(gear, pins):
     assert found.play == -found.interference == pytest.approx(play['play'])
 
 
-def test_a_later_report_replaces_figures_of_an_earlier_one(gear, ramps, pins):
-    loop = ramps([(0.0, 1.0, 3000.0)], friction=0.3, backlash=0.0, high=0.0)
+def test_a_later_report_replaces_figures_of_an_earlier_one(loose, ramps, pins):
+    loop = ramps([(0.0, 1.0, 3000.0)], friction=0.3)
     preload = pins('--wanted-preload', 1.0, '--branch-stiffness', 10, '--shaft-stiffness', 1000)
-    found, _ = measured(gear, [preload, loop])
+    found, _ = measured(loose, [preload, loop])
     assert found.preload == pytest.approx(1.0, abs=0.02)
     assert found.friction == 0.3
     assert found.stiffness[0] > 1000.0
-    found, _ = measured(gear, [loop, preload])
+    found, _ = measured(loose, [loop, preload])
     assert found.preload == pytest.approx(1.0, abs=0.02)
     assert found.friction == 0.3
     assert found.stiffness == (10.0, 10.0)
+    assert found.curve is None
 
 
 @pytest.mark.parametrize(
@@ -160,6 +166,7 @@ def test_a_later_report_replaces_figures_of_an_earlier_one(gear, ramps, pins):
         ('{"made_by": "gearkin loads", "recordings": [{}]}', 'must be the JSON'),
         ('{"recordings": [{}, {}]}', 'one recording'),
         ('{"recordings": [{"friction": {"value": null}}]}', 'must be the JSON'),
+        (json.dumps({'recordings': [LEVEL]}), 'must be the JSON'),
     ],
 )
 def test_what_is_no_report_is_named(gear, tmp_path, content, fault):

@@ -13,7 +13,7 @@ from gear_kinematics.kinematics import solve
 from gear_kinematics.kinematics.loads import solve as solve_loads
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.twin.fast_model import FastModel
-from gear_kinematics.twin.gear import TwinGear
+from gear_kinematics.twin.gear import LoadingCurve, TwinGear
 from gear_kinematics.twin.parameters import default_config
 
 mujoco = pytest.importorskip('mujoco')
@@ -22,6 +22,11 @@ from gear_kinematics.twin.mujoco_model import MujocoModel, check  # noqa: E402
 STIFFNESS = Stiffness(3000.0, 3000.0, 1069.0)
 PRELOAD = Preload.from_torque(STIFFNESS, 2.0)
 """That of the default gear. A leaves mesh at 9.6 N·m, B at -2.5 N·m."""
+
+BENT = LoadingCurve(
+    (-2e-3, -1e-3, 0.0, 1e-3, 3e-3), (-7.0, -1.0, 0.0, 2.0, 5.0), (0.6, 0.5, 0.2, 0.3, 0.4)
+)
+"""Harder backwards, softer forwards; friction grows with the load."""
 
 
 @pytest.fixture(scope='module')
@@ -147,8 +152,9 @@ def test_energy_is_kept(gear):
         {'friction': 0.4},
         {'interference': -1e-3, 'play': 1e-3},
         {'shaft_stiffness': math.inf},
+        {'shaft_stiffness': math.inf, 'interference': -1e-3, 'play': 1e-3, 'curve': BENT},
     ],
-    ids=['braced', 'friction', 'play', 'rigid shaft'],
+    ids=['braced', 'friction', 'play', 'rigid shaft', 'a measured curve, worn'],
 )
 def test_a_ramp_is_that_of_the_fast_model(gear, values):
     """Within 1 % of its greatest turn, with the rotor locked."""

@@ -1,0 +1,119 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""Loops of real gears, and those of their twins, whose figures `gearkin lost-motion` measured.
+
+The real gears had their output locked, and were loaded by their motors. The twin has its rotor
+locked, as its friction acts on the output. Wind-ups are compared at equal torques of the gear. The
+zero of an encoder is arbitrary: the mean of each difference is taken out.
+"""
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import combinations, pairwise
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from blocked_bags import gearkin_here
+
+from gear_kinematics.measurement.csv_files import Sources
+from gear_kinematics.measurement.loops import Loop, Ramps, find_ramps
+from gear_kinematics.measurement.reading import read
+from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.twin.fast_model import FastModel
+from gear_kinematics.twin.gear import TwinGear
+from gear_kinematics.twin.measured import measured
+from gear_kinematics.twin.model import Model
+
+PRINTED = 'dual_encoders/transmission_stiffness_sspg.csv'
+READ_PRINTED = ('--ratio', '36/5', '--on-rotor')
+_INNER = 0.97  # of the amplitude: what all loops reach
+_STEPS = 800  # of 5 ms, from peak to peak
+
+
+class Loops(NamedTuple):
+    """Wind-ups, rad, at torques that rise and then fall."""
+
+    torque: np.ndarray
+    """(2 n,), N·m."""
+    recorded: np.ndarray
+    """(loops, 2 n); NaN where not recorded."""
+    simulated: np.ndarray
+    """(2 n,)."""
+
+    @property
+    def image(self) -> np.ndarray:
+        """The first recorded loop, turned about its centre."""
+        return -np.roll(self.recorded[0], len(self.torque) // 2)
+
+    @property
+    def scatter(self) -> float:
+        """rad, rms: one loop less another; of a single one, less its image."""
+        loops = self.recorded if len(self.recorded) > 1 else (*self.recorded, self.image)
+        return _rms([one - other for one, other in combinations(loops, 2)])
+
+    @property
+    def off(self) -> float:
+        """rad, rms: the simulated loop less the recorded ones."""
+        return _rms(self.simulated - self.recorded)
+
+
+def _rms(differences: Sequence[np.ndarray]) -> float:
+    return float(np.sqrt(np.mean(np.nanvar(differences, axis=1))))
+
+
+def real_gear(recording: Path, report: Path, *options: str) -> tuple[TwinGear, tuple[Ramps, ...]]:
+    """Make the twin of a recorded gear, by a report of its own, and find its recorded ramps."""
+    done = gearkin_here('lost-motion', recording, *options, '--json', report)
+    assert done.returncode == 0, done.stderr
+    ratio = json.loads(report.read_bytes())['recordings'][0]['gear_ratio']
+    config = replace(NodeParameters.load(), gear_ratio=ratio)
+    read_as = Sources(on_rotor='--on-rotor' in options)
+    loading = read(recording, config, read_as).loading(config.gear.gear_ratio)
+    gear = TwinGear.of(
+        NodeParameters.of({'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}),
+        {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 1e-3},
+    )
+    gear, notes = measured(gear, [report])
+    assert notes == []
+    return gear, find_ramps(loading.torque, loading.angle)
+
+
+def loops(gear: TwinGear, ramps: Ramps) -> Loops:
+    """Simulate recorded ramps."""
+    torque = _INNER * ramps.amplitude * np.linspace(-1.0, 1.0, _STEPS + 1)
+    falls, rises = zip(*ramps.loops, strict=True)
+    high, low = (float(np.mean([half.start for half in ways])) for ways in (falls, rises))
+    fall, rise = ramped(FastModel(gear), high, low)
+    return Loops(
+        np.concatenate([torque, torque[::-1]]),
+        np.array([_wind_ups(loop, torque) for loop in ramps.loops]),
+        np.concatenate([np.interp(torque, *rise), np.interp(torque[::-1], *fall[:, ::-1])]),
+    )
+
+
+def ramped(model: Model, high: float, low: float) -> tuple[np.ndarray, np.ndarray]:
+    """Torque of the gear and its wind-up, (2, n), from peak to peak and back."""
+    model.rotor_locked = True
+    ways = []
+    for begin, end in pairwise((0.0, high, low, high)):
+        torques = np.linspace(begin, end, _STEPS + 1)
+        wind_ups = []
+        for torque in torques.tolist():
+            model.advance(5e-3, 0.0, -torque)
+            wind_ups.append(-model.output_angle)
+        ways.append(np.array([torques, wind_ups]))
+    _, fall, rise = ways
+    return fall, rise
+
+
+def _wind_ups(loop: Loop, torque: np.ndarray) -> np.ndarray:
+    """Of both ways, (2 n,), from the middle of the fall."""
+    centre = 0.5 * (loop.fall.angle[0] + loop.fall.angle[-1])
+    ways = (loop.rise, torque), (loop.fall, torque[::-1])
+    return np.concatenate(
+        [
+            np.where([*map(half.reaches, torques)], half.angle_at(torques) - centre, np.nan)
+            for half, torques in ways
+        ]
+    )

@@ -1,0 +1,40 @@
+# Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
+"""The twins of real gears, whose loops are recorded, and what the page says of them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip('scipy', reason='scipy is not installed')
+from real_twins import PRINTED, READ_PRINTED, loops, real_gear
+
+PAGE = Path(__file__).parents[2] / 'docs' / 'twin.md'
+
+
+def test_the_loop_of_the_printed_gear_is_reproduced_within_its_own_scatter(shared_path, tmp_path):
+    gear, [ramps] = real_gear(shared_path(f'data/{PRINTED}'), tmp_path / 'r.json', *READ_PRINTED)
+    found = loops(gear, ramps)
+    assert 0.0 < found.off < found.scatter
+    figures = f'{1e3 * found.off:.1f} mrad (rms), the image by {1e3 * found.scatter:.1f} mrad'
+    assert figures in PAGE.read_text('utf-8')
+
+
+@pytest.mark.slow
+def test_no_loop_is_further_from_its_twin_than_from_its_repeats(shared_path, tmp_path):
+    """Of all that are recorded; ramps to a tenth of the torque show what a twin cannot do."""
+    folders = shared_path('data/torque_ramps'), shared_path('data/torque_ramps_more')
+    recordings = [path for folder in folders for path in sorted(folder.glob('*.csv'))]
+    off, beside = [], []
+    for recording in recordings:
+        gear, [small, *_, large] = real_gear(recording, tmp_path / f'{recording.stem}.json')
+        found = loops(gear, large)
+        assert len(found.recorded) > 1
+        assert found.off < found.scatter, recording.name
+        off.append(found.off / found.scatter)
+        lesser = loops(gear, small)
+        beside.append(lesser.off / np.nanmean(np.ptp(lesser.recorded, axis=1)))
+    page = PAGE.read_text('utf-8')
+    assert f'all {len(recordings)} recordings' in page
+    assert f'by {min(off):.2f} to {max(off):.2f} times' in page
+    assert f'{100.0 * np.median(beside):.0f} % of the angle' in page
