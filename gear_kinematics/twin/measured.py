@@ -80,9 +80,7 @@ def _set(gear: TwinGear, data: Report) -> TwinGear:
 def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     """Take the curve, or friction and stiffness at no load; note what the ramps leave open."""
     line, count = data['middle_line'], len(gear.stiffness)
-    friction = data['friction']['value']
-    if friction is None:
-        friction = float(np.mean(line['friction']))
+    mean_friction = float(np.mean(line['friction']))
     if not gear.preload:
         # A load winds up the locked gear by its rotor, or turns the output back.
         way = -1 if data['measured'] else 1
@@ -95,7 +93,7 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
             shaft_stiffness=math.inf,
             play=0.0,
             interference=0.0,
-            friction=friction,
+            friction=mean_friction,
             curve=curve,
         )
     notes.append(f'play of the flanks: {gear.play:.4g} rad, as configured')
@@ -103,6 +101,7 @@ def _loaded(gear: TwinGear, data: Report, notes: list[str]) -> TwinGear:
     notes.append(f'stiffness beyond {first["high"]:.4g} N·m: as below')  # a branch may be alone
     own, shaft = first['value'] / count, gear.shaft_stiffness
     if gear.has_shaft:
-        own = own - shaft + math.hypot(own, shaft)
+        own += math.hypot(own, shaft) - shaft
+    friction = data['friction']['value'] or mean_friction
     changed = replace(gear, stiffness=(own,) * count, friction=friction)
     return changed.preloaded(abs(gear.preload))
