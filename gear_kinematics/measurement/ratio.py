@@ -38,6 +38,9 @@ _TO_STANDARD = math.sqrt(-2.0 * math.log(0.05))
 """Amplitude that 95 % do not exceed, over the standard deviation of its sine and cosine."""
 _PLAY, _DELAY = 0.1, 0.05
 """Standard deviations, rad and s, that hardly bind play and delay; 1 rad those of the travel."""
+_LAG = 6e-5
+"""Standard deviation, s², of the lag by the acceleration: inertia over stiffness of the output, or
+1/ω² of one that oscillates at 20 Hz on the springs of its gear, as arms of robots do."""
 _SETTLED, _MOST_PLAY = 0.05, math.radians(2.0)
 """After a reversal, left out, as play is crossed: share of the whole travel, and at most, rad."""
 _LEAST_NOISE = 1e-9
@@ -117,8 +120,9 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
     The output angle is slope · rotor angle + offset + play by direction + delay · speed + errors
     that repeat with each turn of output or rotor: for k cycles a turn, their amplitude is at most
     `ENCODER_ERROR`/k, with a probability of 95 %. What less than a turn leaves open of them is in
-    the uncertainty; over more, they are fitted. All else is in the scatter of the estimates with
-    one block of successive samples left out.
+    the uncertainty; over more, they are fitted. So is by how much the ratio changes if a lag by
+    the acceleration is fitted, as of an inertia on springs. All else is in the scatter of the
+    estimates with one block of successive samples left out.
 
     Args:
         rotor: (n,), rad, counting turns, in the order of time.
@@ -145,17 +149,22 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         if len(kept) < _SAMPLES[0]:
             few = f'{len(kept)} samples in motion are too few'
             raise RecordingError(f'{few}; turn the output until there are {_SAMPLES[0]}')
-        around = [times[kept] - late + step for step in (-_STEP, 0.0, _STEP)]
-        early, at, after = (np.interp(when, times, rotor) for when in around)
+        around = (times[kept] - late + k * _STEP for k in (-2, -1, 0, 1, 2))
+        first, early, at, after, last = (np.interp(when, times, rotor) for when in around)
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
         columns = _columns(at, slope, way[kept], slope * (after - early))
-        terms, spread, scatter = _fitted(columns, output[kept] - slope * at)
+        rest = output[kept] - slope * at
+        terms, spread, scatter = _fitted(columns, rest)
+        # Nor its error: the reading of the rotor is not in its acceleration.
+        acceleration = slope * (first - early - after + last) / (3.0 * _STEP**2)
+        lagging, *_ = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
         travel = float(np.ptp(at))
         slope, late = slope + terms[0] / travel, late - _DELAY * terms[3]
     parts = (
         Component(spread / travel),
         Component(scatter / travel, _BLOCKS - 1),
         Component(_ACCURACY / travel),
+        Component((lagging[0] - terms[0]) / travel / math.sqrt(3.0)),
     )
     measured = Estimate(slope, *combined(parts), _BLOCKS)
     if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):

@@ -123,6 +123,21 @@ def test_real_joints_are_left_open_with_the_true_ratio_in_the_interval(
     assert 'counts backwards' in wrong_ratio(both, -ratio)
 
 
+def test_what_inertia_winds_up_is_in_the_interval():
+    """Of an output that oscillates at 25 Hz on its springs, and goes there and back."""
+    time = np.arange(40_000) * 1e-3
+    share = 1.0 - np.abs(1.0 - np.mod(time / 2.0, 2.0))
+    ideal = 9.0 * (10.0 - 15.0 * share + 6.0 * share**2) * share**3  # least jerk
+    lag = np.gradient(np.gradient(ideal, time), time) / (2.0 * math.pi * 25.0) ** 2
+    rotor, output = (
+        TURN / 2.0**bits * np.round(angle * 2.0**bits / TURN)
+        for angle, bits in ((19.0 * ideal, 14), (ideal - lag, 17))
+    )
+    found = estimate_ratio(rotor, output, time)
+    assert abs(found.measured.value - 19.0) < found.measured.uncertainty
+    assert found.taken == 19
+
+
 def test_a_ratio_that_is_no_simple_fraction_is_not_taken():
     found = estimate_ratio(*angles(-math.pi * math.e, 5.0))
     assert found.taken is None
