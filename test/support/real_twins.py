@@ -28,7 +28,7 @@ from gear_kinematics.twin.model import Model
 PRINTED = 'dual_encoders/transmission_stiffness_sspg.csv'
 READ_PRINTED = ('--ratio', '36/5', '--on-rotor')
 _INNER = 0.97  # of the amplitude: what all loops reach
-_STEPS = 800  # of 5 ms, from peak to peak
+_STEPS = 400  # of 5 ms, from peak to peak
 
 
 class Loops(NamedTuple):
