@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gear_kinematics.kinematics import RotorSample
-from gear_kinematics.kinematics.loads import AT_REST, BranchLoads, LoadEquations
-from gear_kinematics.kinematics.motion import closed_form
+from gear_kinematics.kinematics.loads import AT_REST, BranchLoads, Inertia, LoadEquations
+from gear_kinematics.kinematics.motion import BranchPosition, closed_form
 from gear_kinematics.kinematics.preload import Pair
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.diagnostics import OK, WARN, Report
@@ -39,7 +39,15 @@ class SampleLoads(NamedTuple):
     """N·m, of the branches; see `TorqueSharing`."""
     stand_offs: Sequence[Any]
     """rad, of the branches."""
-    branches: Sequence[BranchLoads]
+    equations: LoadEquations
+    """With the bodies' positions and inertias, of the forces."""
+    positions: Sequence[BranchPosition]
+    inertias: Sequence[Inertia]
+
+    @property
+    def branches(self) -> Sequence[BranchLoads]:
+        """The forces and couples, which BRANCH_LOADS and the margin do without."""
+        return self.equations.branches(self.positions, self.torques, self.inertias)
 
 
 class Loads:
@@ -119,8 +127,7 @@ class Loads:
             idle = equations.rotor_torque((share for *_, share in inertias), acceleration)
             torque = self._torque_ratio * (effort - idle)
         torques, stand_offs = self.sharing.branches(torque)
-        branches = equations.branches(positions, torques, inertias)
-        return SampleLoads(torque, torques, stand_offs, branches)
+        return SampleLoads(torque, torques, stand_offs, equations, positions, inertias)
 
     def encode(
         self, stamp: int, loads: SampleLoads, topics: Iterable[str] = LOAD_TOPICS
@@ -130,6 +137,7 @@ class Loads:
             for topic in topics:
                 yield topic, self.templates[topic].encode(stamp, NUMBERS[topic](loads))
 
+    @np.errstate(invalid='ignore', over='ignore')
     def encode_batch(self, stamps: Array, loads: SampleLoads) -> dict[str, list[bytes]]:
         """Encode all LOAD_TOPICS at n samples, b'' where the loads are unknown."""
         known = np.isfinite(loads.torque).tolist()
@@ -188,17 +196,17 @@ class PreloadMonitor:
     def __init__(self, parameters: NodeParameters) -> None:
         """Start for a mechanism with a preload."""
         self._loads, self._preload = Loads(parameters), abs(parameters.preload)
-        self._samples: list[tuple[RotorSample, int]] = []
+        self._rows: list[tuple[Any, ...]] = []
 
     def follow(self, sample: RotorSample, segment: int) -> None:
         """Take the next sample and the number of its segment, for the report alone."""
-        self._samples.append((sample, segment))
+        stamp, position, velocity, effort = sample
+        self._rows.append((stamp, *position, velocity, effort, 0, 0, segment))
 
     def report(self) -> Report:
         """Report on the time since the last report."""
-        rows = [(s.stamp, *s.position, s.velocity, s.effort, 0, 0, k) for s, k in self._samples]
-        self._samples.clear()
-        samples = RotorSamples.of(rows, np.zeros(0, np.int64))
+        samples = RotorSamples.of(self._rows, np.zeros(0, np.int64))
+        self._rows.clear()
         torques = self._loads.follow_batch(samples).torque
         known = np.isfinite(torques)
         if not known.any():
