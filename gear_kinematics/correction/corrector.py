@@ -2,20 +2,21 @@
 """The calibrated deviation of the real from the ideal output angle, with its 95 % interval."""
 
 import math
-from itertools import pairwise
 from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gear_kinematics.correction.calibration_file import Calibration
-from gear_kinematics.correction.stops import Array, StopOperators
-from gear_kinematics.kinematics import RotorPosition, RotorSample
+from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.wire.cdr import SECOND
 
+Array = NDArray[Any]
+
 MAX_GAP = SECOND
-"""ns between samples beyond which the plays are unknown again, as motion was missed."""
+"""ns between samples beyond which the hysteresis is unknown again, as motion was missed."""
 _SAMPLING = SECOND // 10
 """ns between samples beyond which the motion is not followed, whatever their usual period is; not
 beyond three periods either, since then messages were lost."""
@@ -38,15 +39,19 @@ class Correction(NamedTuple):
 class Corrector:
     """Computes the correction sample by sample, or for many at once with the same result.
 
+    Along the ideal output angle x = φ2/i, the state d of a stop operator of radius r follows
+    d ← clip(d + Δx, -r, r) (Prandtl and Ishlinskii). An unknown state is the interval of all
+    possible ones; both its ends follow the same rule, and meet after a travel of 2 r in one
+    direction. In a gap, the states move as far as a reversal could have driven them.
+
     The half width is that of the file, or its `outside_half_width` where speed, torque or output
     angle are outside of what was calibrated; a speed that is not known does not count. It grows by
-    what the unknown can contribute: plays before a long enough travel, orders of the output while
-    the rotor's turns are unknown, and wind-up without an effort. In a gap, plays move as far as a
-    reversal could have driven them.
+    what the unknown can contribute: states before a long enough travel, orders of the output while
+    the rotor's turns are unknown, and wind-up without an effort.
     """
 
     def __init__(self, calibration: Calibration, max_acceleration: float = math.inf) -> None:
-        """Begin with unknown plays; `max_acceleration` of the rotor, rad/s², bounds reversals."""
+        """Begin with unknown states; `max_acceleration` of the rotor, rad/s², bounds reversals."""
         self.max_acceleration = max_acceleration
         self._calibration = calibration
         self._ratio = float(calibration.gear_ratio)
@@ -61,14 +66,18 @@ class Corrector:
         ]
         self._within_turn = [order for order in self._orders if order[1] == 1]
         self._beyond_turn = sum(math.hypot(*order[4:]) for order in self._orders if order[1] > 1)
-        self._stops = StopOperators(calibration.hysteresis, self._per_rotor)
         self._segment, self._referenced = 0, True
         self._stamps = 4 * (-SECOND,)  # of the last samples
-        self._last = RotorPosition(0, 0.0)
+        self._last = 0.0, 0.0
+        self.reset()
 
     def reset(self) -> None:
-        """Forget the motion so far, as after homing: the plays are unknown."""
-        self._stops.reset()
+        """Forget the motion so far, as after homing: the states are unknown."""
+        # Of each operator radius, coefficient, and the least and the greatest possible state.
+        self._stops = [
+            (stop.radius, stop.coefficient, [-math.inf, math.inf])
+            for stop in self._calibration.hysteresis
+        ]
 
     def correct(
         self, sample: RotorSample, *, segment: int = 0, referenced: bool = True
@@ -77,21 +86,11 @@ class Corrector:
 
         Args:
             sample: of the rotor.
-            segment: as in `RotorSamples`; the plays are unknown after it has changed.
-            referenced: whether the rotor's turns are known; the plays are unknown after homing.
+            segment: as in `RotorSamples`; the states are unknown after it has changed.
+            referenced: whether the rotor's turns are known; the states are unknown after homing.
         """
         stamp, (turns, angle), velocity, effort = sample
-        first, second, third, last = self._stamps
-        gap = stamp - last
-        homed = referenced != self._referenced
-        if homed or segment != self._segment or not 0 <= gap <= MAX_GAP:
-            self.reset()
-            self._segment, self._referenced = segment, referenced
-        elif gap > _SAMPLING or gap > last - first:
-            self._widen(gap, turns, angle)
-        self._stamps = second, third, last, stamp
-        self._last = sample.position
-        hysteresis = self._stops.follow(turns, angle)
+        hysteresis = self._follow(stamp, turns, angle, segment, referenced)
         velocity = math.nan if velocity is None else velocity
         torque = math.nan if effort is None else self._ratio * effort
         return self._correction(math, turns, angle, velocity, torque, hysteresis, referenced)
@@ -115,36 +114,66 @@ class Corrector:
             angle: rad.
             velocity: rad/s; NaN where there is none.
             effort: N·m; NaN where there is none.
-            segment: the plays are unknown after it has changed.
+            segment: the states are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
-        stamps = np.append(self._stamps, stamp)
-        gap, usual = np.diff(stamps[3:]), np.minimum(stamps[3:-1] - stamps[:-4], _SAMPLING)
-        anew = (gap < 0) | (gap > MAX_GAP) | (np.diff(segment, prepend=self._segment) != 0)
-        missed = np.flatnonzero(anew | (gap > usual)).tolist()
-        hysteresis = np.empty((3, len(stamp)))
-        for first, end in pairwise(sorted({0, *missed, len(stamp)})):
-            if anew[first]:
-                self.reset()
-            elif gap[first] > usual[first]:
-                self._widen(int(gap[first]), float(turns[first]), float(angle[first]))
-            hysteresis[:, first:end] = self._stops.follow_all(turns[first:end], angle[first:end])
-            self._last = RotorPosition(turns[end - 1].item(), angle[end - 1].item())
-            self._segment = int(segment[end - 1])
-        self._stamps, self._referenced = tuple(stamps[-4:].tolist()), referenced
-        torque = self._ratio * effort
+        rows = zip(stamp.tolist(), turns.tolist(), angle.tolist(), segment.tolist(), strict=True)
+        followed = [self._follow(*row, referenced) for row in rows]
+        hysteresis, torque = np.array(followed).reshape(-1, 3).T, self._ratio * effort
         return self._correction(np, turns, angle, velocity, torque, hysteresis, referenced)
 
-    def _widen(self, gap: int, turns: float, angle: float) -> None:
-        """Let the plays have moved wherever the rotor could have turned within a gap, ns.
+    def _follow(
+        self,
+        stamp: int,
+        turns: float,
+        angle: float,
+        segment: int,
+        referenced: bool,  # noqa: FBT001, without names it is called faster
+    ) -> tuple[float, float, float]:
+        """Follow the stop operators to the next sample.
+
+        Returns:
+            What they add to the deviation, rad, halfway between its extremes over all possible
+            histories; its slope; and half the distance of the extremes, rad.
+        """
+        first, second, third, last = self._stamps
+        gap, (turns_before, angle_before) = stamp - last, self._last
+        step = ((turns - turns_before) * TURN + angle - angle_before) * self._per_rotor
+        if referenced != self._referenced or segment != self._segment or not 0 <= gap <= MAX_GAP:
+            self.reset()
+            self._segment, self._referenced = segment, referenced
+        elif gap > _SAMPLING or gap > last - first:
+            self._widen(gap, step)
+        self._stamps, self._last = (second, third, last, stamp), (turns, angle)
+        deviation = slope = unknown = 0.0
+        for radius, coefficient, states in self._stops:
+            part = coefficient / len(states)
+            for k, state in enumerate(states):
+                state += step  # noqa: PLW2901
+                if state < -radius:
+                    state = -radius  # noqa: PLW2901
+                elif state > radius:
+                    state = radius  # noqa: PLW2901
+                else:
+                    slope += part
+                states[k] = state
+                deviation += part * state
+            if states[0] == states[-1]:
+                del states[1:]
+            else:
+                unknown += abs(part) * (states[1] - states[0])
+        return deviation, slope, unknown
+
+    def _widen(self, gap: int, step: float) -> None:
+        """Let the output have moved unseen in a gap, ns, before a step, rad.
 
         Its acceleration takes it from the straight way between both samples by a t²/8 at most.
         """
-        turns_before, angle_before = self._last
-        travel = (turns - turns_before) * TURN + angle - angle_before
-        beyond = self.max_acceleration * (gap / SECOND) ** 2 / 8.0
-        least, most = min(travel, 0.0) - beyond, max(travel, 0.0) + beyond
-        self._stops.widen(turns_before, angle_before, least, most)
+        most = self.max_acceleration * abs(self._per_rotor)
+        beyond = most * (gap / SECOND) ** 2 / 8.0
+        back, ahead = min(step, 0.0) - beyond, max(step, 0.0) + beyond
+        for radius, _, states in self._stops:
+            states[:] = min(states[0], radius - ahead), max(states[-1], -radius - back)
 
     def _correction(
         self,
@@ -164,7 +193,7 @@ class Corrector:
             angle: rad.
             velocity: of the rotor, rad/s; NaN where it is unknown.
             torque: at the output, N·m; NaN where it is unknown.
-            hysteresis: what `StopOperators` return.
+            hysteresis: what `_follow` returns.
             referenced: whether the rotor's turns are known.
         """
         file, where = self._calibration, _choose if xp is math else np.where

@@ -13,7 +13,6 @@ import numpy as np
 
 from gear_kinematics.correction.calibration_file import Compliance, Order, Stop
 from gear_kinematics.correction.corrector import MAX_GAP
-from gear_kinematics.correction.stops import play_bounds
 from gear_kinematics.kinematics import Mechanism
 from gear_kinematics.kinematics.rotor_turns import TURN
 from gear_kinematics.measurement.recording import Array, Encoders, Recording
@@ -39,6 +38,7 @@ _CYCLES = 2.0  # cycles of an order that a recording must contain
 _RADII = 2.0 ** (np.arange(-28, 9) / 4.0)
 """Radii of stop operators as shares of the width of the error: 1/128 to 4, 19 % apart."""
 _KNOWN = 0.8  # share of the samples at which the state of a stop operator must be known
+_CHUNK = 4096  # points, so that their arrays fit into the processor's cache
 _LARGEST_DENOMINATOR = 2**16  # of an order; a ratio that was fitted may have a longer one
 
 
@@ -94,9 +94,8 @@ class Samples:
             same.
         """
         if radius not in self._stops:
-            unknown = np.array([[[-np.inf]], [[np.inf]]])
-            parts = [play_bounds(points, np.array([radius]), unknown) for points in self._motions]
-            plays = np.concatenate(parts, axis=1)[:, self._last_point, 0]
+            parts = [_play_bounds(points, radius) for points in self._motions]
+            plays = np.concatenate(parts, axis=1)[:, self._last_point]
             least, most = np.clip(plays, self._travel - radius, self._travel + radius)
             states = self._travel - 0.5 * (least + most)
             self._stops[radius] = states, most - least <= _SAME * radius
@@ -106,6 +105,29 @@ class Samples:
         """Columns of the recording's own unknowns at some samples: zero and delay."""
         speed = self.speed[at] if self.tells_delay else np.zeros(len(at))
         return np.column_stack([np.ones(len(at)), -speed])
+
+
+def _play_bounds(x: Array, radius: float) -> Array:
+    """Follow a play operator along x, (n,), rad, before which its play is unknown.
+
+    Clipping to one interval and then to another is clipping to one interval again, so that all
+    steps are composed in log2 n passes, without rounding.
+
+    Returns:
+        The least and the greatest possible plays, (2, n).
+    """
+    parts, before = [], np.array([[-np.inf], [np.inf]])
+    for start in range(0, len(x), _CHUNK):
+        part = x[start : start + _CHUNK]
+        low, high = part - radius, part + radius
+        step = 1
+        while step < len(part):
+            bounds = low[step:].copy(), high[step:].copy()
+            low[step:], high[step:] = np.clip(low[:-step], *bounds), np.clip(high[:-step], *bounds)
+            step *= 2
+        parts.append(np.clip(before, low, high))
+        before = parts[-1][:, -1:]
+    return np.concatenate(parts, axis=1)
 
 
 class Term(NamedTuple):
