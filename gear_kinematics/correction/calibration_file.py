@@ -2,26 +2,24 @@
 """The file of a calibration: what corrects the output of one gear, and what it was made from."""
 
 import math
-import re
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, is_dataclass
 from fractions import Fraction
 from pathlib import Path
-from types import NoneType, UnionType
+from types import UnionType
 from typing import Any, Self, get_args, get_origin, get_type_hints
 
 import yaml
 
-from gear_kinematics.kinematics import Gear, Mechanism
+from gear_kinematics.kinematics import Gear, GearRatio, Mechanism
 from gear_kinematics.parameters.yaml_file import Dumper, read_yaml
 
 SCHEMA = 'gear_kinematics/calibration/1'
 """Identifies the files and their version."""
 UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
-_RATIO = re.compile(r'-?[0-9]{1,9}(/(?P<denominator>[0-9]{1,9}))?', re.ASCII)
 _GREATEST = 1e30  # no number of a real gear is near it
-_STEEPEST = 1e6  # the products with the greatest velocities of the rotor are finite
 _LONGEST_CAUSE = 1000  # characters; a value in it may be as long as the file
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
 
@@ -153,7 +151,25 @@ class Calibration:
 
     def __post_init__(self) -> None:
         """Check the numbers beyond their types."""
-        if faults := [fault for fault, holds in self._bounds().items() if not holds]:
+        spans = self.spans.speed, self.spans.torque, self.spans.angle
+        bounds = {
+            f'the orders must repeat within {_LONGEST_PERIOD} rotor turns': (
+                self.period <= _LONGEST_PERIOD
+            ),
+            'a radius of the hysteresis must be greater than 0': all(
+                stop.radius > 0.0 for stop in self.hysteresis
+            ),
+            'a compliance needs the span of the torque': (
+                self.compliance is None or self.spans.torque is not None
+            ),
+            'a span must not end before it begins': all(
+                span[0] <= span[1] for span in spans if span is not None
+            ),
+            'half_width must be greater than 0 and at most outside_half_width': (
+                0.0 < self.half_width <= self.outside_half_width
+            ),
+        }
+        if faults := [fault for fault, holds in bounds.items() if not holds]:
             raise CalibrationError('; '.join(faults))
 
     @classmethod
@@ -175,7 +191,7 @@ class Calibration:
                 raise CalibrationError(f'`units` must be {UNITS}')
             calibration: Self = _read(cls, document, '')
             if gear is not None:
-                calibration.check(gear)
+                calibration._check(gear)
         except CalibrationError as error:
             raise CalibrationError(f'{path}: {str(error)[:_LONGEST_CAUSE]}') from error
         return calibration
@@ -191,12 +207,8 @@ class Calibration:
             width=math.inf,
         )
 
-    def check(self, gear: Gear) -> None:
-        """Check that this is a calibration of a gear; teeth count where both sides know them.
-
-        Raises:
-            CalibrationError: if it is of another one, naming both.
-        """
+    def _check(self, gear: Gear) -> None:
+        """Check that this is a calibration of a gear; teeth count where both sides know them."""
         known = gear if isinstance(gear, Mechanism) else None
         its = (known.ring_teeth, known.satellite_teeth) if known else (None, None)
         own = self.ring_teeth, self.satellite_teeth
@@ -209,51 +221,6 @@ class Calibration:
     def period(self) -> int:
         """Rotor turns after which all orders repeat."""
         return math.lcm(*(order.cycles.denominator for order in self.orders))
-
-    def _bounds(self) -> dict[str, bool]:
-        """Whether each bound of the numbers holds, by the fault where it does not."""
-        reach, slope = self._extremes()
-        spans = {name: getattr(self.spans, name) for name in ('speed', 'torque', 'angle')}
-        size = 2 * len(self.orders) + len(self.hysteresis) + (self.compliance is not None)
-        return {
-            'gear_ratio must not be 0': bool(self.gear_ratio),
-            f'the orders repeat only after {self.period} rotor turns': (
-                self.period <= _LONGEST_PERIOD
-            ),
-            'a radius of the hysteresis must be greater than 0': all(
-                stop.radius > 0.0 for stop in self.hysteresis
-            ),
-            'a compliance needs the span of the torque': (
-                self.compliance is None or self.spans.torque is not None
-            ),
-            f"an error of the output of {reach:g} rad, beyond ±π, is no gear's": reach <= math.pi,
-            f"an error of the output with a slope of {slope:g} is no gear's": slope <= _STEEPEST,
-            'half_width must be greater than 0 and at most outside_half_width': (
-                0.0 < self.half_width <= self.outside_half_width
-            ),
-            **{
-                f'the span of the {name} must not end before it begins': span[0] <= span[1]
-                for name, span in spans.items()
-                if span is not None
-            },
-            f'covariance must have {size} rows of {size} numbers': (
-                [len(row) for row in self.covariance] == size * [size]
-            ),
-        }
-
-    def _extremes(self) -> tuple[float, float]:
-        """Bounds of the deviation, rad, and of its derivative along the ideal output angle."""
-        ratio, twist = abs(float(self.gear_ratio)), 0.0
-        if self.compliance and self.spans.torque:
-            least, most = self.spans.torque
-            twist = 0.5 * abs(self.compliance.coefficient) * (most - least)
-        orders = [
-            (math.hypot(of.cos, of.sin), abs(float(of.cycles)) * ratio) for of in self.orders
-        ]
-        stops = [(stop.radius, abs(stop.coefficient)) for stop in self.hysteresis]
-        reach = sum(size for size, _ in orders) + sum(radius * slope for radius, slope in stops)
-        slope = sum(size * rate for size, rate in orders) + sum(slope for _, slope in stops)
-        return abs(self.constant) + twist + reach, slope
 
 
 def _described(ratio: Fraction, ring: int | None, satellite: int | None) -> str:
@@ -270,19 +237,24 @@ _Dumper.add_multi_representer(Fraction, lambda dumper, ratio: dumper.represent_s
 
 def _read(kind: Any, value: Any, where: str) -> Any:
     """Convert a value of a document to a type: a dataclass, a tuple, an optional or a scalar."""
-    if isinstance(kind, UnionType):
-        (kind,) = set(get_args(kind)) - {NoneType}
-        return None if value is None else _read(kind, value, where)
+    if isinstance(kind, UnionType):  # with None, which is its last
+        return None if value is None else _read(get_args(kind)[0], value, where)
     if is_dataclass(kind):
         return _read_fields(kind, value, where)
     if get_origin(kind) is tuple:
-        item, *others = get_args(kind)
-        count = None if others == [...] else 1 + len(others)
-        if not isinstance(value, list) or count not in {None, len(value)}:
-            length = f'{count} numbers' if count else 'any length'
-            raise CalibrationError(f'{where} must be a list of {length}, not {value!r}')
+        item, other = get_args(kind)
+        if not isinstance(value, list) or (other is not ... and len(value) != 2):  # noqa: PLR2004
+            length = 'of any length' if other is ... else 'of 2 numbers'
+            raise CalibrationError(f'{where} must be a list {length}, not {value!r}')
         return tuple(_read(item, entry, f'{where}[{k}]') for k, entry in enumerate(value))
-    return _read_scalar(kind, value, where)
+    if kind is float and type(value) in {int, float} and abs(value) <= _GREATEST:
+        return float(value)
+    if kind in {int, str} and type(value) is kind:
+        return value
+    if kind is Fraction and type(value) in {int, str}:
+        with suppress(ValueError):
+            return Fraction(GearRatio.parse(str(value)))
+    raise CalibrationError(f'{where} must be {_KINDS[kind]}, not {value!r}')
 
 
 def _read_fields(kind: Any, value: Any, where: str) -> Any:
@@ -294,18 +266,6 @@ def _read_fields(kind: Any, value: Any, where: str) -> Any:
     if unknown := [f'{place}{name}' for name in value if name not in types]:
         raise CalibrationError(f'unknown: {", ".join(unknown)}')
     return kind(**{name: _read(types[name], value[name], place + name) for name in types})
-
-
-def _read_scalar(kind: type, value: Any, where: str) -> Any:
-    if kind is float and type(value) in {int, float} and abs(value) <= _GREATEST:
-        return float(value)
-    if kind in {int, str} and type(value) is kind:
-        return value
-    if kind is Fraction and type(value) in {int, str}:
-        match = _RATIO.fullmatch(str(value))
-        if match and int(match['denominator'] or 1):
-            return Fraction(match[0])
-    raise CalibrationError(f'{where} must be {_KINDS[kind]}, not {value!r}')
 
 
 _KINDS: Mapping[type, str] = {

@@ -108,17 +108,14 @@ def test_file_says_what_its_numbers_are():
         ({'half_width': 0.0}, 'half_width must be greater than 0'),
         ({'constant': None}, 'constant must be a finite number, not None'),
         ({'gear_ratio': '1/0'}, "gear_ratio must be an exact ratio such as '-19' or '1457/26'"),
-        ({'gear_ratio': '0'}, 'gear_ratio must not be 0'),
+        ({'gear_ratio': '0'}, 'gear_ratio must be an exact ratio'),
         ({'orders': [3]}, 'orders[0] must have named values, not 3'),
-        ({'orders': [order(cycles='1/99999989')]}, 'repeat only after 99999989 rotor turns'),
-        ({'orders': [order(cos=3.0, sin=-1.0)]}, 'an error of the output of 3.16'),
-        ({'hysteresis': [{'radius': 1e-20, 'coefficient': 1e20}]}, 'a slope of 1e+20 is no gear'),
+        ({'orders': [order(cycles='1/99999989')]}, 'must repeat within 67108864 rotor turns'),
         ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),
         (
             {'spans': {'speed': [1.0, -1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
-            'a compliance needs the span of the torque; the span of the speed must not end',
+            'a compliance needs the span of the torque; a span must not end',
         ),
-        ({'covariance': [[1.0]]}, 'covariance must have 11 rows of 11 numbers'),
     ],
 )
 def test_fault_of_a_file_is_named_with_the_file(file, changes, fault):
