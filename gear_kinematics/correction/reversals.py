@@ -12,6 +12,7 @@ which is a straight line over the difference of the signed speeds.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,16 +39,13 @@ class Reversals:
 
     difference: Estimate
     """Mean error of backward minus forward motion, rad: lost motion, and delay times speed."""
-    speed: float
-    """Mean difference of the speeds, forward minus backward, rad/s."""
     lost_motion: Estimate | None
     """rad, at no speed; None where the speed varies too little to tell it from a delay."""
     delay: Estimate | None
     """s by which the stamps of the measured angles are late; None as above."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class Pair:
+class Pair(NamedTuple):
     """A run and the next one back, at angles that both cover, in the order of the angles."""
 
     difference: Array
@@ -89,14 +87,14 @@ def separate(pairs: Sequence[Pair], *others: Component) -> Reversals | None:
         values = pseudo_values(fits) if len(fits) > 1 else fits
         return replace(Estimate.of_mean(values.tolist(), *others), repeats=len(pairs))
 
-    means = estimate(difference, *others), float(centre[1])
+    mean = estimate(difference, *others)
     noise = float(np.mean([_noise(pair) for pair in pairs]))
     # Whether the speed varies, and not only by noise.
     varies = (variance > (_SPREAD * speed) ** 2) & (noise <= _STEADY * variance)
     if len(groups) <= _LEAST or not varies.all():
-        return Reversals(*means, None, None)
+        return Reversals(mean, None, None)
     slope = covariance / variance
-    return Reversals(*means, estimate(difference - slope * speed, *others), estimate(slope))
+    return Reversals(mean, estimate(difference - slope * speed, *others), estimate(slope))
 
 
 def _blocks(pair: Pair) -> Array:

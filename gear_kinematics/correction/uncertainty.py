@@ -85,11 +85,6 @@ class Estimate:
         """Whether the expanded uncertainty, if known, does not exceed the value."""
         return (self.uncertainty or 0.0) <= abs(self.value)
 
-    def times(self, factor: float) -> 'Estimate':
-        """Estimate a multiple of the quantity."""
-        standard = None if self.standard is None else abs(factor) * self.standard
-        return Estimate(factor * self.value, standard, self.degrees_of_freedom, self.repeats)
-
     def inverse(self) -> 'Estimate':
         """Estimate the reciprocal of the quantity."""
         value = 1.0 / self.value
