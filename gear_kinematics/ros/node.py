@@ -12,7 +12,6 @@ from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import PoseArray
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -31,7 +30,7 @@ from gear_kinematics.ros.drivers import DEPTH, DriverInput
 from gear_kinematics.ros.homing import Homing, restored
 from gear_kinematics.ros.missing_publisher import MissingPublisher
 from gear_kinematics.ros.node_parameters import declared, fault_of
-from gear_kinematics.ros.outputs import Outputs
+from gear_kinematics.ros.outputs import Outputs, PublishingNode
 from gear_kinematics.state.diagnostics import EncoderMonitor, InputMonitor
 from gear_kinematics.state.loads import Loads, PreloadMonitor
 from gear_kinematics.state.output_encoder import OutputEncoder
@@ -46,11 +45,10 @@ _MESSAGE_TYPES = {
     topics.POSE_ARRAY: PoseArray,
     topics.WRENCHES: MultiDOFJointState,
 }
-_WARNING_PERIOD = 1.0  # s
 _REPORT_PERIOD = 1.0  # s
 
 
-class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
+class GearStatePublisher(PublishingNode):
     """Publishes the state of the mechanism for every valid message on rotor_state."""
 
     def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
@@ -81,7 +79,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         self._configure()
         self._monitor = InputMonitor(started=time.monotonic())
         self._encoder_monitor = EncoderMonitor()
-        self._next_warning = 0.0
 
         self._outputs = Outputs(self, self._note_subscribers, self._note_unsent)
         for topic in (
@@ -235,15 +232,6 @@ class GearStatePublisher(Node):  # type: ignore[misc]  # rclpy has no types
         if time.monotonic() >= self._next_warning:
             detail = f': {rejection.detail}' if rejection.detail else ''
             self._warn(f'{topic} rejected: {rejection}{detail}')
-
-    def _warn(self, text: str) -> None:
-        if time.monotonic() >= self._next_warning:
-            self.get_logger().warning(text)
-            self._next_warning = time.monotonic() + _WARNING_PERIOD  # after logging, not before
-
-    def wait_for_delivery(self, timeout: float) -> None:
-        """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
-        self._outputs.wait_for_delivery(timeout)
 
     def _report(self) -> None:
         for driver in self._drivers:

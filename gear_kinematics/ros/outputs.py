@@ -1,5 +1,5 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
-"""The outputs of the node: its publishers, by topic."""
+"""The outputs of a node: its publishers, by topic, and its warnings."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -11,6 +11,8 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
+
+_WARNING_PERIOD = 1.0  # s
 
 
 class Outputs:
@@ -75,3 +77,20 @@ class Outputs:
         for publisher in self.publishers.values():
             left = max(0.0, deadline - time.monotonic())
             publisher.wait_for_all_acked(Duration(seconds=left))
+
+
+class PublishingNode(Node):  # type: ignore[misc]  # rclpy has no types
+    """A node whose outputs can be waited for, and which warns at most once a second."""
+
+    _outputs: Outputs
+    _next_warning = 0.0
+    """s of a steady clock. The logger's own throttle takes 0.3 ms for each text that it drops."""
+
+    def wait_for_delivery(self, timeout: float) -> None:
+        """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
+        self._outputs.wait_for_delivery(timeout)
+
+    def _warn(self, text: str) -> None:
+        if time.monotonic() >= self._next_warning:
+            self.get_logger().warning(text)
+            self._next_warning = time.monotonic() + _WARNING_PERIOD  # after logging, not before

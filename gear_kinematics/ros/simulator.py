@@ -11,7 +11,6 @@ from typing import Any
 
 from rcl_interfaces.msg import SetParametersResult
 from rclpy.clock import Clock, ClockType
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -23,7 +22,7 @@ from gear_kinematics.parameters import PARAMETERS, NodeParameters, default_value
 from gear_kinematics.parameters.files import require_any
 from gear_kinematics.ros.drivers import DEPTH
 from gear_kinematics.ros.node_parameters import declared, fault_of
-from gear_kinematics.ros.outputs import Outputs
+from gear_kinematics.ros.outputs import Outputs, PublishingNode
 from gear_kinematics.twin import parameters as twin
 from gear_kinematics.twin.driver import Command, Driver
 from gear_kinematics.twin.fast_model import FastModel
@@ -35,10 +34,9 @@ from gear_kinematics.wire.nearest import among
 
 _MOST_LATE = SECOND // 2  # ns of real time that are made up for
 _ACCURACY = 100_000  # ns, of stamps
-_WARNING_PERIOD = 1.0  # s
 
 
-class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
+class GearSimulator(PublishingNode):
     """Moves a simulated gear, and publishes its encoders as drivers do."""
 
     def __init__(self, *, parameter_files: Collection[Path] = (), **options: Any) -> None:
@@ -71,7 +69,6 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         )
         self._joint, self._load = parameters.rotor_joint, 0.0
         self._period = round(SECOND / values['rate'])
-        self._next_warning = 0.0
         self._outputs = Outputs(self, lambda _: None, self._note_unsent)
         qos = QoSProfile(depth=DEPTH)
         output = parameters.output_encoder_joint or parameters.output_joint
@@ -99,10 +96,6 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
         """When the next state is due, ns of a steady clock."""
         steady = Clock(clock_type=ClockType.STEADY_TIME)
         self.create_timer(self._period / SECOND, self._step, clock=steady)
-
-    def wait_for_delivery(self, timeout: float) -> None:
-        """Wait until reliable subscribers have received all outputs; `timeout` is in s."""
-        self._outputs.wait_for_delivery(timeout)
 
     def _step(self) -> None:
         """Let the time pass that has passed, and publish the states of it."""
@@ -171,11 +164,6 @@ class GearSimulator(Node):  # type: ignore[misc]  # rclpy has no types
 
     def _note_unsent(self, publisher: Publisher, error: Exception) -> None:
         self._warn(f'{publisher.topic_name} not sent: {error}')
-
-    def _warn(self, text: str) -> None:
-        if time.monotonic() >= self._next_warning:
-            self.get_logger().warning(text)
-            self._next_warning = time.monotonic() + _WARNING_PERIOD
 
 
 def _make_model(kind: str, gear: TwinGear) -> Model:
