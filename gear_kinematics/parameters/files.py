@@ -3,6 +3,7 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -64,6 +65,10 @@ def given_parameters(path: Path, node: str) -> dict[str, Any]:
         there = f'{", ".join(patterns)}{nearest(name, patterns)}'
         raise _OtherNodesError(f'{path}: no parameters of {name} in it, only of {there}')
     return {key: value for parameters in applying for key, value in parameters.items()}
+
+
+default_values = cache(given_parameters)
+"""The same, of an installed file, which does not change."""
 
 
 def _full_name(path: Path, node: str, blocks: Iterable[tuple[str, object]]) -> str:

@@ -19,7 +19,7 @@ from gear_kinematics.kinematics import Branch, Gear, GearRatio, Mechanism, Mecha
 from gear_kinematics.kinematics.loads import Bodies, TorqueSharing
 from gear_kinematics.kinematics.preload import Preload, Stiffness
 from gear_kinematics.parameters import meshes
-from gear_kinematics.parameters.files import FILES, ConfigError, given_parameters
+from gear_kinematics.parameters.files import FILES, ConfigError, default_values, given_parameters
 from gear_kinematics.parameters.parameter import Parameter
 from gear_kinematics.parameters.yaml_file import Dumper
 from gear_kinematics.share import share_directory
@@ -304,19 +304,15 @@ BRANCH_PARAMETERS: Mapping[str, Parameter] = {
 }
 
 
+@cache
 def default_config() -> Path:
     """The installed config/actuator.yaml."""
     return share_directory() / 'config' / 'actuator.yaml'
 
 
-@cache
-def _default_values() -> Mapping[str, Any]:
-    return given_parameters(default_config(), NODE)
-
-
 def default_value(name: str) -> Any:
     """A parameter's default, from config/actuator.yaml; 0 for a branch that is not there."""
-    return _default_values().get(name, 0.0)
+    return default_values(default_config(), NODE).get(name, 0.0)
 
 
 def branch_parameters(branches: Iterable[str]) -> dict[str, Parameter]:

@@ -2,13 +2,12 @@
 """The parameters of a simulated actuator beside those of the node, and their file."""
 
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 from gear_kinematics import parameters
 from gear_kinematics.parameters import ConfigError
-from gear_kinematics.parameters.files import given_parameters
+from gear_kinematics.parameters.files import default_values, given_parameters
 from gear_kinematics.parameters.parameter import Parameter
 from gear_kinematics.share import share_directory
 
@@ -59,14 +58,9 @@ def default_config() -> Path:
     return share_directory() / 'config' / 'simulated_actuator.yaml'
 
 
-@cache
-def _default_values() -> Mapping[str, Any]:
-    return given_parameters(default_config(), NODE)
-
-
 def default_value(name: str) -> Any:
     """A default from config/simulated_actuator.yaml, else that of gear_state_publisher."""
-    values = _default_values()
+    values = default_values(default_config(), NODE)
     return values[name] if name in values else parameters.default_value(name)
 
 
