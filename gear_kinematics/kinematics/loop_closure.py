@@ -102,12 +102,6 @@ def mobility_by_rank(mechanism: Mechanism, rotor_angle: float = 0.0) -> int:
     return int(jacobian.shape[-1] - np.linalg.matrix_rank(jacobian))
 
 
-def redundant_constraints(mechanism: Mechanism, rotor_angle: float = 0.0) -> int:
-    """Redundant constraints: rows minus rank. They are what makes a preload possible."""
-    jacobian = constraint_jacobian(mechanism, rotor_angle)
-    return int(jacobian.shape[-2] - np.linalg.matrix_rank(jacobian))
-
-
 def _rotary_joint(rows: Array, rotor: int, satellite: int, centre: Array) -> None:
     """Fix the satellite's centre to the rotor, at `centre` from the rotor's axis."""
     for axis in (0, 1):

@@ -71,11 +71,6 @@ def distinct_positions(ring_teeth: int) -> int:
     return math.lcm(ring_teeth, ring_teeth + 1, ring_teeth + 2)
 
 
-def ring_body_positions(ring_teeth: int) -> int:
-    """(zk + 1)(zk + 2): positions of the ring gear's body, all distinct."""
-    return (ring_teeth + 1) * (ring_teeth + 2)
-
-
 def step(ring_teeth: int) -> float:
     """2π / lcm(zk, zk + 1, zk + 2), rad: from one position to the next."""
     return TURN / distinct_positions(ring_teeth)
@@ -148,16 +143,6 @@ def choices(
         error = TURN * float(Fraction(nearest + steps, lcm) - wanted)
         found.append(Choice(steps, tuple(settings), ring_turn + error, error))
     return found
-
-
-def nearest_setting(ring_teeth: int, angle: float) -> PinSetting:
-    """Find the setting that turns the ring gear's profile nearest to `angle`, rad.
-
-    Raises:
-        ValueError: if `angle` is not finite or `ring_teeth` less than 1.
-    """
-    [nearest] = choices(ring_teeth, angle)
-    return nearest.settings[0]
 
 
 def _settings_at(ring_teeth: int, position: int) -> tuple[PinSetting, ...]:

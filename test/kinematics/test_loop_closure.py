@@ -14,7 +14,6 @@ from gear_kinematics.kinematics.loop_closure import (
     constraint_jacobian,
     mobility_by_counting,
     mobility_by_rank,
-    redundant_constraints,
     residual,
 )
 
@@ -120,7 +119,6 @@ def test_mobility_is_one_at_every_rotor_angle(count, counted, rows, columns, ran
     assert np.max(values[:, rank:], initial=0.0) < 1e-13
     for angle in ANGLES[::20]:
         assert mobility_by_rank(mechanism, angle) == columns - rank == 1
-        assert redundant_constraints(mechanism, angle) == rows - rank == count - 1
 
 
 def test_jacobian_is_the_derivative_of_the_constraints(mechanism):
