@@ -198,9 +198,10 @@ class Calibration:
 
     def text(self) -> str:
         """The content of the file."""
+        fields = asdict(self, dict_factory=_with_ratios_as_texts)
         return yaml.dump(
-            {'schema': SCHEMA, 'units': UNITS} | asdict(self),
-            Dumper=_Dumper,
+            {'schema': SCHEMA, 'units': UNITS} | fields,
+            Dumper=Dumper,
             sort_keys=False,
             allow_unicode=True,
             default_flow_style=None,  # a line for each order, stop and row of the covariance
@@ -223,16 +224,13 @@ class Calibration:
         return math.lcm(*(order.cycles.denominator for order in self.orders))
 
 
+def _with_ratios_as_texts(items: list[tuple[str, Any]]) -> dict[str, Any]:
+    return {name: str(value) if isinstance(value, Fraction) else value for name, value in items}
+
+
 def _described(ratio: Fraction, ring: int | None, satellite: int | None) -> str:
     teeth = '' if ring is None else f' (ring {ring}, satellite {satellite} teeth)'
     return f'gear ratio {ratio}{teeth}'
-
-
-class _Dumper(Dumper):
-    """Writes exact ratios as texts."""
-
-
-_Dumper.add_multi_representer(Fraction, lambda dumper, ratio: dumper.represent_str(str(ratio)))
 
 
 def _read(kind: Any, value: Any, where: str) -> Any:

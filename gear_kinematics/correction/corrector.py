@@ -148,12 +148,12 @@ class Corrector:
         deviation = slope = unknown = 0.0
         for radius, coefficient, states in self._stops:
             part = coefficient / len(states)
-            for k, state in enumerate(states):
-                state += step  # noqa: PLW2901
+            for k, before in enumerate(states):
+                state = before + step
                 if state < -radius:
-                    state = -radius  # noqa: PLW2901
+                    state = -radius
                 elif state > radius:
-                    state = radius  # noqa: PLW2901
+                    state = radius
                 else:
                     slope += part
                 states[k] = state
@@ -169,8 +169,7 @@ class Corrector:
 
         Its acceleration takes it from the straight way between both samples by a t²/8 at most.
         """
-        most = self.max_acceleration * abs(self._per_rotor)
-        beyond = most * (gap / SECOND) ** 2 / 8.0
+        beyond = abs(self.max_acceleration * self._per_rotor) * (gap / SECOND) ** 2 / 8.0
         back, ahead = min(step, 0.0) - beyond, max(step, 0.0) + beyond
         for radius, _, states in self._stops:
             states[:] = min(states[0], radius - ahead), max(states[-1], -radius - back)
@@ -185,16 +184,10 @@ class Corrector:
         hysteresis: Any,
         referenced: bool,  # noqa: FBT001, without names it is called faster
     ) -> Correction:
-        """Evaluate the formula, for floats or arrays (n,).
+        """Evaluate the formula; `xp` is `math` for floats, or numpy for arrays, (n,).
 
-        Args:
-            xp: `math` for floats, else numpy.
-            turns: of the rotor.
-            angle: rad.
-            velocity: of the rotor, rad/s; NaN where it is unknown.
-            torque: at the output, N·m; NaN where it is unknown.
-            hysteresis: what `_follow` returns.
-            referenced: whether the rotor's turns are known.
+        Velocity of the rotor and torque at the output are NaN where they are unknown; `hysteresis`
+        is what `_follow` returns.
         """
         file, where = self._calibration, _choose if xp is math else np.where
         spans, wind_up = file.spans, file.compliance

@@ -139,14 +139,12 @@ def student_t(degrees: int) -> float:
     if degrees >= _MAX_DEGREES:
         return _NORMAL
     low, high = 0.0, 0.5 * math.pi
-    while True:
-        middle = 0.5 * (low + high)
-        if middle in {low, high}:
-            return math.sqrt(degrees) * math.tan(middle)
+    while low < (middle := 0.5 * (low + high)) < high:
         if _share_within(middle, degrees) < COVERAGE:
             low = middle
         else:
             high = middle
+    return math.sqrt(degrees) * math.tan(middle)
 
 
 def _share_within(angle: float, degrees: int) -> float:
