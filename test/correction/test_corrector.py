@@ -105,14 +105,6 @@ def test_batches_give_the_same_as_single_samples(motion, cuts, referenced):
     np.testing.assert_allclose(found / scale, single / scale, rtol=0.0, atol=1e-15)
 
 
-def test_long_batch_in_small_steps_gives_the_same_as_single_samples():
-    made, steps = calibration(), np.random.default_rng(3).normal(0.0, 0.002, 10_000)
-    motion = at_angles(*np.cumsum(steps).tolist())
-    expected = np.array(correct_all(Corrector(made), motion))
-    found = np.transpose(Corrector(made).correct_batch(*columns(motion)))
-    np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-13)
-
-
 def test_slope_is_the_derivative_along_the_output_angle():
     step = 1e-7
     for start in np.linspace(-3.0, 3.0, 25):

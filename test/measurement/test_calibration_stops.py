@@ -51,6 +51,14 @@ def test_states_are_those_of_the_definition(moves, unknown):
     assert np.array_equal(known, high - low < 1e-9)
 
 
+def test_states_are_those_of_the_definition_after_thousands_of_reversals():
+    x = np.cumsum(np.random.default_rng(3).normal(0.0, 0.1, 20_000))
+    low, high = states(x, [0])
+    middle, known = followed(encoders(x, x))
+    assert middle == pytest.approx(0.5 * (low + high), abs=1e-11)
+    assert np.array_equal(known, high - low < 1e-9)
+
+
 def test_state_between_two_samples_of_the_rotor():
     x = np.array([0.0, 1.0, 0.9, 0.5])
     between = replace(
