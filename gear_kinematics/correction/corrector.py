@@ -20,6 +20,7 @@ MAX_GAP = SECOND
 _SAMPLING = SECOND // 10
 """ns between samples beyond which the motion is not followed, whatever their usual period is; not
 beyond three periods either, since then messages were lost."""
+_CHUNK = 4096  # samples of a batch that are lists at a time, which take much memory
 
 
 class Correction(NamedTuple):
@@ -90,7 +91,7 @@ class Corrector:
             referenced: whether the rotor's turns are known; the states are unknown after homing.
         """
         stamp, (turns, angle), velocity, effort = sample
-        hysteresis = self._follow(stamp, turns, angle, segment, referenced)
+        hysteresis = self._follow(referenced, stamp, turns, angle, segment)
         velocity = math.nan if velocity is None else velocity
         torque = math.nan if effort is None else self._ratio * effort
         return self._correction(math, turns, angle, velocity, torque, hysteresis, referenced)
@@ -117,18 +118,22 @@ class Corrector:
             segment: the states are unknown after it has changed.
             referenced: whether the rotor's turns are known.
         """
-        rows = zip(stamp.tolist(), turns.tolist(), angle.tolist(), segment.tolist(), strict=True)
-        followed = [self._follow(*row, referenced) for row in rows]
-        hysteresis, torque = np.array(followed).reshape(-1, 3).T, self._ratio * effort
+        columns: list[Any] = [stamp, turns, angle, segment]
+        hysteresis = np.empty((3, len(stamp)))
+        for start in range(0, len(stamp), _CHUNK):
+            chunk = slice(start, start + _CHUNK)
+            rows = zip(*(column[chunk].tolist() for column in columns), strict=True)
+            hysteresis[:, chunk] = np.array([self._follow(referenced, *row) for row in rows]).T
+        torque = self._ratio * effort
         return self._correction(np, turns, angle, velocity, torque, hysteresis, referenced)
 
     def _follow(
         self,
+        referenced: bool,  # noqa: FBT001, without names it is called faster
         stamp: int,
         turns: float,
         angle: float,
         segment: int,
-        referenced: bool,  # noqa: FBT001, without names it is called faster
     ) -> tuple[float, float, float]:
         """Follow the stop operators to the next sample.
 
