@@ -20,7 +20,6 @@ SCHEMA = 'gear_kinematics/calibration/1'
 UNITS = {'angle': 'rad', 'torque': 'N·m', 'speed': 'rad/s', 'time': 's'}
 """The units of all numbers in a file."""
 _GREATEST = 1e30  # no number of a real gear is near it
-_LONGEST_CAUSE = 1000  # characters; a value in it may be as long as the file
 _LONGEST_PERIOD = 2**26  # rotor turns; products of two such numbers are exact in float64
 
 
@@ -193,7 +192,8 @@ class Calibration:
             if gear is not None:
                 calibration._check(gear)
         except CalibrationError as error:
-            raise CalibrationError(f'{path}: {str(error)[:_LONGEST_CAUSE]}') from error
+            # A value in it may be as long as the file.
+            raise CalibrationError(f'{path}: {error!s:.1000}') from error
         return calibration
 
     def text(self) -> str:
