@@ -56,7 +56,7 @@ class FastModel:
             raise MechanismError([fault])
         self._in_series = replace(gear, stiffness=tuple(springs), shaft_stiffness=math.inf)
         self._gear = gear
-        self.branch_torques, self._friction = self._loads(self.rotor_angle, self.output_angle)
+        self.branch_torques, self._friction = self._torques(self.rotor_angle, self.output_angle)
 
     def advance(self, duration: float, rotor_torque: float, load_torque: float) -> None:
         """Let time pass; see `Model`."""
@@ -78,16 +78,16 @@ class FastModel:
             output_velocity -= max(-slowed, min(output_velocity, slowed))
             rotor += h * rotor_velocity
             output += h * output_velocity
-            torques, friction = self._loads(rotor, output)
+            torques, friction = self._torques(rotor, output)
         self.rotor_angle, self.rotor_velocity = rotor, rotor_velocity
         self.output_angle, self.output_velocity = output, output_velocity
         self.branch_torques, self._friction = torques, friction
 
-    def _loads(self, rotor: float, output: float) -> tuple[tuple[float, ...], float]:
+    def _torques(self, rotor: float, output: float) -> tuple[tuple[float, ...], float]:
         wind_up = rotor / self._ratio - output
         if self._gear.errors:
             wind_up += self._gear.error(rotor)
-        return self._in_series.loads((wind_up,) * len(self._in_series.stiffness))
+        return self._in_series.torques((wind_up,) * len(self._in_series.stiffness))
 
 
 def inertias(gear: TwinGear) -> tuple[float, float]:
@@ -102,5 +102,5 @@ def inertias(gear: TwinGear) -> tuple[float, float]:
     count, e = len(ring.branches), ring.eccentricity
     kappa = 2.0 / gear.ratio - 1.0
     circling = bodies.satellite_mass + 0.25 * (1.0 + kappa**2) * bodies.coupling_mass
-    turning = bodies.satellite_inertia + bodies.coupling_inertia
-    return bodies.rotor_inertia + count * e**2 * circling, gear.output_inertia + count * turning
+    output = gear.output_inertia + count * gear.turning_inertia
+    return bodies.rotor_inertia + count * e**2 * circling, output

@@ -169,11 +169,16 @@ class TwinGear:
         return len(self.stiffness) == _BRACED and math.isfinite(self.shaft_stiffness)
 
     @property
+    def turning_inertia(self) -> float:
+        """J3 + J4, kg·m²: of what turns with each arm."""
+        return self.parameters.loads.satellite_inertia + self.parameters.loads.coupling_inertia
+
+    @property
     def shaft_twist(self) -> float:
         """By how much arm A leads the output without load, rad."""
         return self.preload / self.shaft_stiffness
 
-    def loads(self, wind_ups: Sequence[float]) -> tuple[tuple[float, ...], float]:
+    def torques(self, wind_ups: Sequence[float]) -> tuple[tuple[float, ...], float]:
         """T_k of all branches wound up by the angles x_k, rad, and the friction, N·m."""
         torques, friction = [], self.friction
         for x, (low, high), stiffness in zip(

@@ -128,17 +128,12 @@ def _time_step(gear: TwinGear) -> float:
     """The time step, s: a whole number of them is a millisecond."""
     stiffness = sum(gear.stiffness)
     reflected = stiffness / gear.ratio**2 / gear.parameters.loads.rotor_inertia
-    lightest = _turning_inertia(gear) + gear.output_inertia
+    lightest = gear.turning_inertia + gear.output_inertia
     if gear.has_shaft:
         stiffness += gear.shaft_stiffness
-        lightest = _turning_inertia(gear)
+        lightest = gear.turning_inertia
     longest = min(_LONGEST_STEP, _PHASE / math.sqrt(reflected + stiffness / lightest))
     return _MILLISECOND / math.ceil(_MILLISECOND / longest - 1e-9)
-
-
-def _turning_inertia(gear: TwinGear) -> float:
-    """J3 + J4, kg·m²: of what turns with each arm."""
-    return gear.parameters.loads.satellite_inertia + gear.parameters.loads.coupling_inertia
 
 
 def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
@@ -159,7 +154,7 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
     parts['on_rotor'] += f"""
 <site name="mesh_{name}" pos="{reach * x!r} {reach * y!r} {z!r}"/>
 <body name="satellite_{name}" pos="{x!r} {y!r} {z!r}" euler="0 0 {turn!r}">
-  {_inertial(0.5 * _turning_inertia(gear), loads.satellite_mass)}
+  {_inertial(0.5 * gear.turning_inertia, loads.satellite_mass)}
   <joint name="satellite_{name}" ref="{turn!r}"/>
   <site name="cam_{name}"/>
   <body name="oldham_{name}" pos="{across!r} 0 0">
@@ -172,7 +167,7 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
 </body>"""
     slot = f"""
 <body name="slot_arm_{name}" pos="0 {along!r} {z!r}">
-  {_inertial(0.5 * _turning_inertia(gear), 0.5 * loads.coupling_mass)}
+  {_inertial(0.5 * gear.turning_inertia, 0.5 * loads.coupling_mass)}
   <joint name="slot_arm_{name}" type="slide" axis="0 1 0" ref="{along!r}"/>
   <site name="slot_arm_{name}" euler="{math.pi!r} 0 0"/>
 </body>"""
@@ -184,7 +179,7 @@ def _add_branch(gear: TwinGear, number: int, parts: dict[str, str]) -> None:
   {slot}
 </body>"""
         stiffness = gear.stiffness[0] + gear.shaft_stiffness
-        damping = 2.0 * _ARM_DAMPING * math.sqrt(stiffness * _turning_inertia(gear))
+        damping = 2.0 * _ARM_DAMPING * math.sqrt(stiffness * gear.turning_inertia)
         joints = {f'arm_{name}': 1.0, 'output_shaft': -1.0}
         parts['tendon'] += _spring('shaft', gear.shaft_stiffness, joints, damping=damping)
     else:

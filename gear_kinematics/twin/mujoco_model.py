@@ -83,7 +83,7 @@ class MujocoModel:
         self.output_velocity = float(velocities[self._output])
         ideal = (1.0 / gear.ratio - 1.0) * rotor + gear.error(rotor)
         # It changes slowly, as the output moves on a spring.
-        self.branch_torques, self.model.dof_frictionloss[self._output] = gear.loads(
+        self.branch_torques, self.model.dof_frictionloss[self._output] = gear.torques(
             [ideal - float(angles[joint]) for joint in self._satellites]
         )
 

@@ -75,7 +75,7 @@ def test_branches_that_are_not_braced_have_their_play_around_no_load(braced, cou
     gear = with_branches(braced, count)
     assert gear.dead_bands == ((-5e-4, 5e-4),) * count
     ends = 4.9e-4, -4.9e-4, 1.5e-3, -1.5e-3
-    torques = [gear.loads((end,) * count)[0][0] for end in ends]
+    torques = [gear.torques((end,) * count)[0][0] for end in ends]
     assert torques == pytest.approx([0.0, 0.0, 3.0, -3.0])
     assert gear.preload == 0.0
     assert not gear.has_shaft
@@ -102,10 +102,10 @@ def test_statics_are_those_of_the_audited_preload(braced, sign, interference):
     for output in np.linspace(-6e-3, 6e-3, 41):
 
         def excess(arm, output=output):
-            return gear.loads((-arm, 0.0))[0][0] - ks * (arm - output)
+            return gear.torques((-arm, 0.0))[0][0] - ks * (arm - output)
 
         arm = brentq(excess, -0.1, 0.1, xtol=1e-16)
-        torques, _ = gear.loads((-arm, -output))
+        torques, _ = gear.torques((-arm, -output))
         load = -sum(torques)
         shared, _ = sharing.branches(-load)
         assert torques == pytest.approx(shared, abs=1e-10)

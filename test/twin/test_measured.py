@@ -90,7 +90,7 @@ def test_branches_share_the_middle_line(loose, ramps, count):
         (-1.5e-3, -1.75, 0.5),
         (-4e-3, -8.0, 0.6),
     ):
-        torques, held = found.loads((wind_up,) * count)
+        torques, held = found.torques((wind_up,) * count)
         assert torques == pytest.approx((load / count,) * count, rel=1e-12)
         assert held == pytest.approx(friction, rel=1e-12)
 
@@ -98,7 +98,7 @@ def test_branches_share_the_middle_line(loose, ramps, count):
 def test_a_load_on_the_output_winds_it_up_backwards(loose, ramps):
     """Where an encoder measured the output; else it was locked, and the rotor turned."""
     found, _ = measured(loose, [ramps(measured=True)])
-    torques, friction = found.loads((-2e-3, -2e-3))
+    torques, friction = found.torques((-2e-3, -2e-3))
     assert sum(torques) == pytest.approx(-4.0)
     assert friction == pytest.approx(0.4)
 
