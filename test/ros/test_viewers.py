@@ -192,3 +192,10 @@ def test_viewers_show_the_node_of_their_namespace(launched, side):
     assert (frequency, type(frequency)) == (100.0, float)  # it refuses an integer
     assert fixed_frame(launched, rviz) == f'{side}_stator'
     assert not rviz.condition.evaluate(launched)
+
+
+def test_simulator_has_the_joint_of_the_node_beside_it(launched):
+    launched.launch_configurations['rotor_joint'] = '1'
+    [simulator] = described(launched, 'simulated_actuator.launch.py', 'start_simulator')
+    _, given = parameters_of(launched, simulator)
+    assert given == {'rotor_joint': '1'}
