@@ -116,12 +116,12 @@ def values_of(gear: GearNode) -> Iterator[Entry]:
         ratio, angle = parameters.gear.gear_ratio, output.position
         tone = _freshness(output, parameters)
         rotor = ratio.rotor_angle(angle)
-        yield Entry('output angle', _degrees(angle), f'{angle:.5f} rad', tone)
-        yield Entry('rotor angle', _degrees(rotor), f'{rotor / TURN:.3f} turns', tone)
+        yield Entry('output angle', _degrees(angle), f'{angle:z.5f} rad', tone)
+        yield Entry('rotor angle', _degrees(rotor), f'{rotor / TURN:z.3f} turns', tone)
         if output.velocity is not None:
             speed = _RPM * output.velocity
-            detail = f'rotor {ratio.rotor_angle(speed):.1f} rpm'
-            yield Entry('output speed', f'{speed:.2f} rpm', detail, tone)
+            detail = f'rotor {ratio.rotor_angle(speed):z.1f} rpm'
+            yield Entry('output speed', f'{speed:z.2f} rpm', detail, tone)
         yield Entry('output rate', f'{output.rate:.0f} Hz')
     zero, homed = parameters.rotor_zero, gear.homed_zero
     kept = _told(gear, 'rotor input', 'home file')

@@ -116,6 +116,14 @@ def test_values_are_those_of_the_topics():
     assert list(values_of(gear_node(parameters=None))) == []
 
 
+def test_a_gear_at_rest_has_no_negative_zero():
+    joints = {topics.OUTPUT_STATE: Joint(-1e-9, -1e-9, 0.001, 1000.0)}
+    angle, rotor, speed, *_ = values_of(gear_node(joint=joints.get))
+    assert angle == Entry('output angle', '0.000°', '0.00000 rad')
+    assert rotor == Entry('rotor angle', '0.000°', '0.000 turns')
+    assert speed == Entry('output speed', '0.00 rpm', 'rotor 0.0 rpm')
+
+
 @pytest.mark.parametrize(('margin', 'tone'), [('0.75', ''), ('-0.3', 'bad')])
 def test_margin_of_the_preload_is_a_value_and_a_bar(margin, tone):
     values = {
