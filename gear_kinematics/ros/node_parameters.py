@@ -22,16 +22,17 @@ def declared(
     node: Node,
     others: Mapping[str, Declaration] = MappingProxyType({}),
     default: Callable[[str], Any] = default_value,
+    shared: Mapping[str, Declaration] = PARAMETERS,
 ) -> dict[str, Any]:
     """Declare the parameters of a node, and `others`; returns the values by name.
 
-    `default` gives a default value by name.
+    `default` gives a default value by name, and `shared` declares those of gear_state_publisher.
 
     Raises:
         ParameterException: if a value has a wrong type, or is refused.
         ValueError: if a parameter that the node does not have was given.
     """
-    _declare(node, PARAMETERS, default)
+    _declare(node, shared, default)
     branches = node.get_parameter('branches').value
     _declare(node, branch_parameters(branches), default)
     _declare(node, others, default)

@@ -4,6 +4,7 @@
 import math
 import time
 from collections.abc import Collection
+from dataclasses import replace
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -34,6 +35,7 @@ from gear_kinematics.wire.nearest import among
 
 _MOST_LATE = SECOND // 2  # ns of real time that are made up for
 _ACCURACY = 100_000  # ns, of stamps
+_GREATEST_LOAD = 1e6  # N·m
 
 
 class GearSimulator(PublishingNode):
@@ -56,6 +58,7 @@ class GearSimulator(PublishingNode):
             self,
             twin.PARAMETERS,
             lambda name: (twin.default_value if name in twin.PARAMETERS else shared)(name),
+            {name: replace(each, read_only=True) for name, each in PARAMETERS.items()},
         )
         parameters = NodeParameters.of(values)
         gear = TwinGear.of(parameters, values, files.get(parameters.calibration))
@@ -140,10 +143,13 @@ class GearSimulator(PublishingNode):
             self._warn(f'{topics.ROTOR_COMMAND} rejected: no value in it is finite')
 
     def _on_load(self, message: Float64) -> None:
-        if math.isfinite(message.data):
+        if abs(message.data) <= _GREATEST_LOAD:  # NaN is not
             self._load = message.data
         else:
-            self._warn(f'{topics.LOAD_TORQUE} rejected: {message.data} is not finite')
+            self._warn(
+                f'{topics.LOAD_TORQUE} rejected: {message.data:g} N·m is not within '
+                f'±{_GREATEST_LOAD:g} N·m'
+            )
 
     def _lock(self, shaft: str, request: SetBool.Request, response: Any) -> Any:
         setattr(self._model, f'{shaft}_locked', request.data)
