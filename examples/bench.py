@@ -17,7 +17,8 @@ node, output = rclpy.create_node('bench'), [JointState(effort=[math.nan])]
 
 def call(name: str, kind: type = Trigger, **values: bool) -> None:
     client = node.create_client(kind, f'/gear_simulator/{name}')
-    client.wait_for_service()
+    if not client.wait_for_service(10.0):
+        sys.exit('no gear_simulator is running')
     answer = client.call_async(kind.Request(**values))
     rclpy.spin_until_future_complete(node, answer)
     print(answer.result().message)
@@ -28,8 +29,7 @@ if sys.argv[1] in {'wear', 'power_cycle'}:
 call('lock_rotor', SetBool, data=True)
 loads = node.create_publisher(Float64, '/load_torque', 10)
 node.create_subscription(JointState, '/output_encoder', output.append, 10)
-rows = ['angle,torque']
-ramps = [(0.4, 60)] * 5 + [(4.0, 200)] * 3  # N·m, steps there and back
+rows, ramps = ['angle,torque'], [(0.4, 60)] * 5 + [(4.0, 200)] * 3  # N·m, steps there and back
 for amplitude, phase in [(most, step / count) for most, count in ramps for step in range(count)]:
     torque = amplitude * 2.0 / math.pi * math.asin(math.sin(math.tau * phase))
     loads.publish(Float64(data=torque))

@@ -122,7 +122,7 @@ def test_what_make_runs_is_what_the_page_says():
 
 @pytest.mark.usefixtures('nodes')
 def test_every_command_with_pip_alone_does_what_the_page_says(folder):
-    looked_at = 'pip', 'make', 'gear_simulator', 'gear_state_publisher', 'ros2'
+    looked_at = 'make', '.', 'pip', 'gear_simulator', 'gear_state_publisher', 'ros2'
     with contextlib.ExitStack() as motion:
         for command in COMMANDS:
             first, *words = shlex.split(command, comments=True)
