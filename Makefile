@@ -34,12 +34,12 @@ help: ## Show this list
 demo: $(VENV)/demo.stamp ## Play the shipped bag through the live node and validate it
 	$(BIN)/gearkin demo
 
-# Ctrl-C ends both.
+# Ctrl-C ends both, and so does SIGTERM, of which make tells the shell alone.
 simulator: $(VENV)/demo.stamp ## Run a simulated actuator, and the node beside it
-	@config=config/simulated_actuator.yaml; \
+	@trap : INT TERM; config=config/simulated_actuator.yaml; \
 	$(BIN)/gear_simulator --ros-args --params-file $$config & simulator=$$!; \
-	$(BIN)/gear_state_publisher --ros-args --params-file $$config; \
-	kill $$simulator 2> /dev/null; wait
+	$(BIN)/gear_state_publisher --ros-args --params-file $$config & node=$$!; \
+	wait $$node; kill $$simulator $$node 2> /dev/null; wait
 
 quick: lint ## Check style, and run the tests that need neither a live node nor much time
 	$(BIN)/python $(PYTEST) --hypothesis-profile quick -m 'not live and not slow'

@@ -120,6 +120,25 @@ def test_what_make_runs_is_what_the_page_says():
     assert all(f'$(BIN)/{command}' in recipe for command in started)
 
 
+@pytest.mark.parametrize(
+    ('send', 'number'), [(os.killpg, signal.SIGINT), (os.kill, signal.SIGTERM)]
+)
+def test_what_ends_make_ends_both_nodes(tmp_path, send, number):
+    """Ctrl-C reaches all processes, and SIGTERM make alone."""
+    (tmp_path / 'bin').mkdir()
+    (tmp_path / 'demo.stamp').touch()
+    for name in ('gear_simulator', 'gear_state_publisher'):
+        (tmp_path / 'bin' / name).write_text('#!/bin/sh\necho runs; exec sleep 60\n')
+        (tmp_path / 'bin' / name).chmod(0o755)
+    command = ['make', 'simulator', f'VENV={tmp_path}']
+    with subprocess.Popen(
+        command, cwd=ROOT, stdout=subprocess.PIPE, start_new_session=True
+    ) as make:
+        assert [make.stdout.readline(), make.stdout.readline()] == [b'runs\n'] * 2
+        send(make.pid, number)
+        assert make.stdout.read() == b''  # once all that has it open has ended
+
+
 @pytest.mark.usefixtures('nodes')
 def test_every_command_with_pip_alone_does_what_the_page_says(folder):
     looked_at = 'make', '.', 'pip', 'gear_simulator', 'gear_state_publisher', 'ros2'
