@@ -20,7 +20,7 @@ from gear_kinematics.ros.workarounds.shared_memory import SharedMemoryError, che
 _INTERRUPTED = 130
 """Exit code, as in shells."""
 _UNUSABLE = 2
-"""Exit code: the program lacks a package or memory."""
+"""Exit code: the program lacks a package or memory, or does not know its arguments."""
 _NODE_HELP = """\
 usage: {program} [--help] [--version] [--ros-args ...]
 
@@ -87,6 +87,10 @@ def _run_node(program: str, purpose: str, module: str, name: str) -> int:
             from gear_kinematics.share import version  # noqa: PLC0415, imports pathlib
 
             return lambda: _answer(f'{program} {version()}\n')
+        if own:  # such as --params-file, which ROS would ignore
+            fault = f'unknown arguments {own}: those of ROS follow --ros-args'
+            print(f'{program}: {fault}', file=sys.stderr)
+            return lambda: _UNUSABLE
         if warning := check_shared_memory():
             print(f'{program}: {warning}', file=sys.stderr)
         from gear_kinematics.ros.process import main  # noqa: PLC0415, slow

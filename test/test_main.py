@@ -49,6 +49,12 @@ def test_the_node_answers_without_ros(option, tmp_path):
     assert done.stdout.startswith(first)
 
 
+def test_a_node_refuses_arguments_that_ros_would_ignore():
+    done = finished([*NODE, '--params-file', 'actuator.yaml', '--ros-args'])
+    said = "unknown arguments ['--params-file', 'actuator.yaml']: those of ROS follow --ros-args"
+    assert (done.returncode, done.stderr) == (2, f'gear_state_publisher: {said}\n')
+
+
 def test_what_follows_ros_args_is_for_ros(tmp_path):
     done = finished(
         [*NODE, '--ros-args', '--help'], env=os.environ | {'ROS_LOG_DIR': str(tmp_path)}
