@@ -113,7 +113,8 @@ def remarks(report: LostMotion) -> Iterator[str]:
     yield from report.remarks
     if found := report.figures:
         yield (
-            'Output and rotor were both measured: the wind-up is that of the gear.'
+            'Measured at the output: the wind-up is that of the gear, if the rotor was measured, '
+            'too, or locked.'
             if report.measured
             else 'Inferred, not measured: the angle is that of the motor encoder, with the output '
             'taken to be locked. The figures include the compliance of motor, bench and clamping.'

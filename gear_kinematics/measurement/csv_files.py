@@ -24,7 +24,7 @@ from gear_kinematics.measurement.recording import (
     Recording,
     RecordingError,
     RotorMotion,
-    locked_output,
+    locked_shaft,
 )
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.nearest import among
@@ -108,6 +108,8 @@ class Column(NamedTuple):
     unit: str
     """For the report; empty where nothing is known."""
     on_rotor: bool
+    on_output: bool
+    """Whether its name says so."""
 
 
 def find_columns(header: Sequence[str], given: Sources) -> dict[str, Column]:
@@ -160,8 +162,8 @@ def _column(role: str, name: str, given: Sources, common: str) -> Column:
             raise ValueError(f'{name} has counts: give those per turn with --{encoder}-counts')
         scale = TURN / counts if counts else 1.0
         unit = f'{counts} counts a turn' if counts else 'counts'
-    on_rotor = given.on_rotor and plain.partition('_')[0] not in _OUTPUT
-    return Column(name, scale, unit, on_rotor)
+    on_output = plain.partition('_')[0] in _OUTPUT
+    return Column(name, scale, unit, given.on_rotor and not on_output, on_output)
 
 
 def _split(name: str) -> tuple[str, str]:
@@ -222,9 +224,14 @@ def read_csv(path: Path, sources: Sources, ratio: Fraction) -> Recording:
     if 'rotor' in data:
         encoders = _encoders(data, sources, ratio)
     else:
-        at_output = ratio if found['angle'].on_rotor else Fraction(1)
-        step = step_of(sources.rotor_counts, data['angle'])
-        locked = locked_output(data['torque'], data['angle'], step, at_output)
+        angle = found['angle']
+        locked = locked_shaft(
+            data['torque'],
+            data['angle'],
+            step_of(sources.rotor_counts, data['angle']),
+            ratio if angle.on_rotor else Fraction(1),
+            measured=angle.on_output,
+        )
     return Recording(
         path, path.name, tuple(_described(found)), len(usable), encoders, locked,
         tuple(remarks),

@@ -25,7 +25,7 @@ from gear_kinematics.measurement.recording import (
     RecordingError,
     RotorMotion,
     in_order,
-    locked_output,
+    locked_shaft,
     match,
 )
 from gear_kinematics.parameters import NodeParameters
@@ -169,7 +169,7 @@ class States:
             ratio, known = parameters.gear.gear_ratio, np.isfinite(effort)
             step = step_of(sources.rotor_counts, motion.turned)
             torque, turned = float(ratio) * effort[known], motion.turned[known]
-            locked = locked_output(torque, turned, step, ratio)
+            locked = locked_shaft(torque, turned, step, ratio, measured=False)
         if has_effort:
             described.append(f'torque: effort of {rotor} times the ratio, N·m')
         return Recording(

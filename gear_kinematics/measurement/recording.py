@@ -64,16 +64,17 @@ class Loading:
     angle_step: Step
     """rad at the output, between readings of the angle."""
     measured: bool
-    """Whether an encoder measured the output; if not, it is taken to be locked."""
+    """Whether an encoder measured the output; a shaft that was not is taken to be locked."""
 
 
-def locked_output(torque: Array, angle: Array, step: Step, ratio: Fraction) -> Loading:
-    """Angles of a rotor with an encoder of a step, under a torque at the output, N·m.
+def locked_shaft(
+    torque: Array, angle: Array, step: Step, ratio: Fraction, *, measured: bool
+) -> Loading:
+    """Angles of one shaft with an encoder of a step, under a torque at the output, N·m.
 
-    The output is taken to be locked; the ratio is 1 where the angles are those at the output.
+    The other one is taken to be locked; the ratio is 1 where the angles are those at the output.
     """
-    step = step.scaled(float(1 / ratio))
-    return Loading(torque, angle / float(ratio), step, measured=False)
+    return Loading(torque, angle / float(ratio), step.scaled(float(1 / ratio)), measured)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

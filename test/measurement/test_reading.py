@@ -48,6 +48,7 @@ def measured(config):
          {'angle': 'a', 'torque': 'b', 'unit': 'rev'}),
         ('angle_urad', 'torque', 1e3, [], {'angle': 'angle_urad', 'unit': 'mrad'}),
         ('angle', 'output_torque', -19.0, [], {'on_rotor': True}),
+        ('Output angle (rad)', 'torque', 1.0, [], {}),
     ],
 )  # fmt: skip
 def test_columns_and_units(
@@ -59,7 +60,7 @@ def test_columns_and_units(
     expected = GEAR.play + 2.0 * GEAR.friction / GEAR.stiffness
     assert measured(recording).hysteresis.value == pytest.approx(expected, abs=1e-5)
     assert recording.rows == len(angle)
-    assert not recording.locked.measured
+    assert recording.locked.measured == angle_name.startswith('Output')
 
 
 def test_real_recordings_need_no_renaming(shared_path, config):
