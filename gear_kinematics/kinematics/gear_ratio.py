@@ -5,6 +5,7 @@ import math
 import re
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import lru_cache
 from types import ModuleType
 from typing import Any, Self
 
@@ -46,6 +47,7 @@ class GearRatio(Fraction):
         return self
 
     @classmethod
+    @lru_cache
     def parse(cls, text: str) -> Self:
         """Read a ratio such as `-19`, `1457/26` or `28.8`.
 
