@@ -121,9 +121,12 @@ class Mcap(Storage):
     def _walk(self, records: bytes, piece: list[Message]) -> None:
         """Append the wanted messages among records, up to the first damage."""
         wanted, unpack = self._wanted_channels.get, _MESSAGE_START.unpack_from
-        end, size, padded = 0, len(records), records + _PADDING
+        end, size = 0, len(records)
+        whole = size - _MESSAGE_START.size
         while end < size:
-            opcode, length, channel, received = unpack(padded, end)
+            opcode, length, channel, received = (
+                unpack(records, end) if end <= whole else unpack(records[end:] + _PADDING)
+            )
             start = end + _RECORD.size
             end = start + length
             if end > size:
