@@ -253,5 +253,6 @@ def _mean_rows(torque: Array, noise: float) -> int:
 
 
 def _line(values: Array) -> Array:
-    rows = np.arange(len(values))
-    return np.polynomial.Polynomial.fit(rows, values, 1)(rows)
+    rows = np.arange(len(values)) - 0.5 * (len(values) - 1)
+    fitted: Array = np.mean(values) + rows @ values / (rows @ rows) * rows
+    return fitted

@@ -181,9 +181,11 @@ def _columns(rotor: Array, slope: float, way: Array, step: Array) -> Array:
     columns = [x, np.ones(len(x)), _PLAY * way, _DELAY / (2.0 * _STEP) * step]
     amplitudes = ENCODER_ERROR, (abs(slope) + _ROTOR_SHARE) * ENCODER_ERROR
     for angle, amplitude, most in zip((slope * rotor, rotor), amplitudes, _ORDERS, strict=True):
+        power = once = np.exp(1j * angle)  # cos + j sin of k times the angle
         for k in range(1, most + 1):
             size = amplitude / (_TO_STANDARD * k)
-            columns += [size * np.cos(k * angle), size * np.sin(k * angle)]
+            columns += [size * power.real, size * power.imag]
+            power = power * once
     return np.stack(columns, axis=1)
 
 
@@ -197,20 +199,22 @@ def _fitted(columns: Array, rest: Array) -> tuple[list[float], float, float]:
     blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
     sums = np.array([block.T @ block for block in blocks])
     whole = sums.sum(axis=0)
+    squares, products = whole[:-1, :-1], whole[:-1, -1]
+    eigen = np.linalg.eigh(squares)
     for _ in range(5):  # with the noise that the one before left; with 3, ± is 50 % off
         noise = max(_noise(left), _LEAST_NOISE**2)
-        fitted, spread = _solve(whole, noise)
+        fitted, spread = _solve(*eigen, products, noise)
         left = rest - columns @ fitted
-    without = (_solve(whole - block, noise)[0][0] for block in sums)
+    each = *np.linalg.eigh(squares - sums[:, :-1, :-1]), products - sums[:, :-1, -1]
+    without = (_solve(*one, noise)[0][0] for one in zip(*each, strict=True))
     values = pseudo_values([fitted[0], *without])
     return fitted.tolist(), spread, float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
 
 
-def _solve(sums: Array, noise: float) -> tuple[Array, float]:
+def _solve(values: Array, vectors: Array, products: Array, noise: float) -> tuple[Array, float]:
     """The coefficients, and the standard uncertainty of the first."""
-    values, vectors = np.linalg.eigh(sums[:-1, :-1])
     known, left = values > 1e-14 * values[-1], noise / (np.abs(values) + noise)
-    fitted: Array = vectors @ (np.where(known, left / noise, 0.0) * (vectors.T @ sums[:-1, -1]))
+    fitted: Array = vectors @ (np.where(known, left / noise, 0.0) * (vectors.T @ products))
     return fitted, math.sqrt(float(vectors[0] ** 2 @ np.where(known, left, 1.0)))
 
 
