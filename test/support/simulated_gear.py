@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from scipy.signal import lfilter
 
 RATE = 1000.0  # Hz
 
@@ -229,6 +230,4 @@ def _coloured(shape: tuple[int, int], time: float, random: np.random.Generator) 
     keep = np.exp(-1.0 / (time * RATE))
     values = random.standard_normal(shape)
     values[1:] *= np.sqrt(1.0 - keep * keep)
-    for k in range(1, len(values)):
-        values[k] += keep * values[k - 1]
-    return values
+    return lfilter([1.0], [1.0, -keep], values, axis=0)

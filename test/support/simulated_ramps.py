@@ -236,20 +236,23 @@ def _motion(
     built = np.zeros(shape)  # N·m, friction that has built up, with its sign
     late = np.zeros((len(s.creeps), *shape))
     creeps = [(share, -np.expm1(-INTERVAL / constant)) for share, constant in s.creeps]
-    builds_up = np.any(s.bristle)
+    builds_up, grows, slips = map(np.any, (s.bristle, s.load_friction, s.slip))
     for k, applied in enumerate(torque):
-        held = strength[loop[k]] + s.load_friction * np.abs(load)
+        fresh = strength[loop[k]]
+        held = fresh + s.load_friction * np.abs(load) if grows else fresh
         if builds_up:
             load, built = _bristles(applied, load, built, held, s.bristle)
-        else:
+        elif grows or slips:
             net = applied - load
             moves = np.abs(net) > held
             sliding = held * (1.0 - s.slip)
             # A load that grows makes its own friction grow.
             towards = np.sign(net)
             growing = towards * np.sign(applied - towards * sliding) * s.load_friction
-            fresh = strength[loop[k]] * (1.0 - s.slip)
+            fresh = fresh * (1.0 - s.slip)
             load = np.where(moves, (applied - towards * fresh) / (1.0 + growing), load)
+        else:
+            load = np.minimum(np.maximum(load, applied - held), applied + held)
         twist = s.twist(load)
         for j, (share, gain) in enumerate(creeps):
             late[j] += (share * twist - late[j]) * gain
