@@ -39,6 +39,7 @@ _JOINT = 'rotor'
 _JOINTS = _JOINT, '', '1'
 _POSES = 4
 _NOW = 1_700_000_000 * SECOND  # the clock, for messages without a stamp
+_SETTINGS = replace(NodeParameters.load(), rotor_joint=_JOINT, rotor_direction=-1, rotor_zero=0.5)
 _NOWHERE = os.open(os.devnull, os.O_WRONLY)
 _STATES = StateMessages(
     Mechanism(80, 76, 0.0011, (Branch('a'), Branch('b', cam_phase=math.pi))),
@@ -228,13 +229,7 @@ def _check_pose_batch(messages: Sequence[bytes], arrays: Sequence[PoseArray | No
 
 def _check_rotor_input(messages: Sequence[bytes], encoder: str) -> None:
     """Take messages one by one and at once, with the same outcome; what is taken has a state."""
-    settings = replace(
-        NodeParameters.load(),
-        rotor_joint=_JOINT,
-        rotor_direction=-1,
-        rotor_zero=0.5,
-        rotor_encoder=encoder,
-    )
+    settings = replace(_SETTINGS, rotor_encoder=encoder)
     one_by_one, at_once = RotorInput(settings), RotorInput(settings)
     samples = []
     for message in messages:
