@@ -261,8 +261,14 @@ def size_of(path: Path) -> int:
     return sum(file.stat().st_size for file in files)
 
 
-@pytest.mark.parametrize('command', ['validate', 'compute'])
-@pytest.mark.parametrize('name', BAGS)
+WRITTEN = 'chunks of 32 MiB', '65 535 topics', 'messages of 1 GiB'
+"""Of which `compute`, which writes, may take more than `validate`, or refuses them by itself."""
+
+
+@pytest.mark.parametrize(
+    ('name', 'command'),
+    [*((name, 'validate') for name in BAGS), *((name, 'compute') for name in WRITTEN)],
+)
 def test_a_crafted_bag_is_refused_before_it_takes_much(crafted, measure, name, command, tmp_path):
     bag, cause = crafted(name), BAGS[name][0]
     out = [tmp_path / 'out'] if command == 'compute' else []
