@@ -2,6 +2,7 @@
 """Recordings of gears that are known, simulated without anything of the code under test."""
 
 import csv
+import math
 import sqlite3
 from collections.abc import Iterable, Sequence
 from contextlib import closing
@@ -25,23 +26,18 @@ class Gear(NamedTuple):
     stiffness: float  # N·m/rad
     friction: float  # N·m
 
-    def torque(self, angle: float) -> float:
-        """What the gear holds against an angle, N·m."""
-        if abs(angle) <= 0.5 * self.play:
-            return 0.0
-        return self.stiffness * (
-            angle - 0.5 * self.play if angle > 0.0 else angle + 0.5 * self.play
-        )
+    def angle(self, torque: float) -> float:
+        """The least angle, rad, at which the gear holds a torque, N·m."""
+        return torque / self.stiffness + math.copysign(0.5 * self.play, torque or -1.0)
 
 
 def creep(gear: Gear, torques: Sequence[float], angle: float = 0.0) -> np.ndarray:
     """Angles under torques that change slowly: it creeps as long as friction does not hold it."""
     step, angles = 2e-6, []
     for torque in torques:
-        while torque - gear.torque(angle) > gear.friction:
-            angle += step
-        while torque - gear.torque(angle) < -gear.friction:
-            angle -= step
+        for way in (1.0, -1.0):
+            short = gear.angle(way * torque - gear.friction) - way * angle
+            angle += way * step * max(0, math.ceil(short / step))
         angles.append(angle)
     return np.array(angles)
 

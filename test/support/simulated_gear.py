@@ -13,7 +13,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.signal import lfilter
 
 RATE = 1000.0  # Hz
 
@@ -227,6 +226,8 @@ def _late(values: np.ndarray, time: float) -> np.ndarray:
 
 def _coloured(shape: tuple[int, int], time: float, random: np.random.Generator) -> np.ndarray:
     """Noise of first order with standard deviation 1."""
+    from scipy.signal import lfilter  # noqa: PLC0415, takes long
+
     keep = np.exp(-1.0 / (time * RATE))
     values = random.standard_normal(shape)
     values[1:] *= np.sqrt(1.0 - keep * keep)
