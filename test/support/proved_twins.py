@@ -80,8 +80,8 @@ def answer(proofs: Sequence[Proof]) -> str:
         f'lies within the interval of the backlash in {held} of {GEARS}. Ratios and directions '
         f'come back exactly, errors of the gear within {error:.2f}″, zeros within {zero:.2f}″. '
         f'{count} moments without mesh begin and end within {late} ms of the true ones, and '
-        f'forces agree within {100 * forces:.2f} %. The twin of a real, printed gear is less '
-        'exact: [see below](#a-printed-gear).'
+        f'forces agree within {100 * forces:.2f} %. Twins of real gears follow the recorded loops '
+        '[as closely as the loops repeat](#real-gears).'
     )
 
 
