@@ -130,7 +130,7 @@ def test_what_ends_make_ends_both_nodes(tmp_path, send, number):
     for name in ('gear_simulator', 'gear_state_publisher'):
         (tmp_path / 'bin' / name).write_text('#!/bin/sh\necho runs; exec sleep 60\n')
         (tmp_path / 'bin' / name).chmod(0o755)
-    command = ['make', 'simulator', f'VENV={tmp_path}']
+    command = ['make', '--no-print-directory', 'simulator', f'VENV={tmp_path}']
     with subprocess.Popen(
         command, cwd=ROOT, stdout=subprocess.PIPE, start_new_session=True
     ) as make:
