@@ -127,7 +127,7 @@ def draw_printed_gear(target: Path) -> None:
     """Draw the recorded loop of COMPAct's printed gear, its image, and that of its twin."""
     with TemporaryDirectory() as folder:
         report = Path(folder) / 'report.json'
-        gear, [ramps] = real_gear(SHARED / PRINTED, report, *READ_PRINTED)
+        gear, [ramps] = real_gear(SHARED / PRINTED, report, **READ_PRINTED)
     found = loops(gear, ramps)
     figure = Figure(figsize=(8.0, 4.5), layout='constrained')
     axes = figure.add_subplot(xlabel='wind-up [mrad]', ylabel='torque [N·m]')

@@ -155,11 +155,11 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         columns = _columns(at, slope, way[kept], slope * (after - early))
         rest = output[kept] - slope * at
         terms, spread, scatter = _fitted(columns, rest)
-        # Nor its error: the reading of the rotor is not in its acceleration.
-        acceleration = slope * (first - early - after + last) / (3.0 * _STEP**2)
-        lagging, *_ = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
         travel = float(np.ptp(at))
         slope, late = slope + terms[0] / travel, late - _DELAY * terms[3]
+    # Nor must its error: the reading of the rotor is not in its acceleration.
+    acceleration = slope * (first - early - after + last) / (3.0 * _STEP**2)
+    lagging, *_ = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
     parts = (
         Component(spread / travel),
         Component(scatter / travel, _BLOCKS - 1),

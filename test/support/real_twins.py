@@ -14,10 +14,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from blocked_bags import gearkin_here
 
+from gear_kinematics.measurement.answer import Limits
 from gear_kinematics.measurement.csv_files import Sources
-from gear_kinematics.measurement.loops import Loop, Ramps, find_ramps
+from gear_kinematics.measurement.document import document
+from gear_kinematics.measurement.loops import Loop, Ramps
+from gear_kinematics.measurement.lost_motion import measure
 from gear_kinematics.measurement.reading import read
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.fast_model import FastModel
@@ -26,7 +28,7 @@ from gear_kinematics.twin.measured import measured
 from gear_kinematics.twin.model import Model
 
 PRINTED = 'dual_encoders/transmission_stiffness_sspg.csv'
-READ_PRINTED = ('--ratio', '36/5', '--on-rotor')
+READ_PRINTED = {'ratio': '36/5', 'on_rotor': True}
 _INNER = 0.97  # of the amplitude: what all loops reach
 _STEPS = 400  # of 5 ms, from peak to peak
 
@@ -62,21 +64,20 @@ def _rms(differences: Sequence[np.ndarray]) -> float:
     return float(np.sqrt(np.mean(np.nanvar(differences, axis=1))))
 
 
-def real_gear(recording: Path, report: Path, *options: str) -> tuple[TwinGear, tuple[Ramps, ...]]:
+def real_gear(
+    recording: Path, report: Path, ratio: str = '-19', *, on_rotor: bool = False
+) -> tuple[TwinGear, tuple[Ramps, ...]]:
     """Make the twin of a recorded gear, by a report of its own, and find its recorded ramps."""
-    done = gearkin_here('lost-motion', recording, *options, '--json', report)
-    assert done.returncode == 0, done.stderr
-    ratio = json.loads(report.read_bytes())['recordings'][0]['gear_ratio']
     config = replace(NodeParameters.load(), gear_ratio=ratio)
-    read_as = Sources(on_rotor='--on-rotor' in options)
-    loading = read(recording, config, read_as).loading(config.gear.gear_ratio)
+    found = measure(read(recording, config, Sources(on_rotor=on_rotor)), config)
+    report.write_text(json.dumps(document([found], None, Limits()).data), 'utf-8')
     gear = TwinGear.of(
         NodeParameters.of({'loads.rotor_inertia': 1e-5, 'branch_stiffness': [1e3]}),
         {'play': 0.0, 'friction': 0.0, 'rotor_damping': 0.0, 'output_inertia': 1e-3},
     )
     gear, notes = measured(gear, [report])
     assert notes == []
-    return gear, find_ramps(loading.torque, loading.angle)
+    return gear, found.figures.ramps
 
 
 def loops(gear: TwinGear, ramps: Ramps) -> Loops:

@@ -13,7 +13,7 @@ PAGE = Path(__file__).parents[2] / 'docs' / 'twin.md'
 
 
 def test_the_loop_of_the_printed_gear_is_reproduced_within_its_own_scatter(shared_path, tmp_path):
-    gear, [ramps] = real_gear(shared_path(f'data/{PRINTED}'), tmp_path / 'r.json', *READ_PRINTED)
+    gear, [ramps] = real_gear(shared_path(f'data/{PRINTED}'), tmp_path / 'r.json', **READ_PRINTED)
     found = loops(gear, ramps)
     assert 0.0 < found.off < found.scatter
     figures = f'{1e3 * found.off:.1f} mrad (rms), the image by {1e3 * found.scatter:.1f} mrad'
