@@ -1,9 +1,9 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """Record both encoders and what the node says of them, until what moves the rotor ends."""
 
-import math
 import sys
 import time
+from contextlib import suppress
 
 import rclpy
 from geometry_msgs.msg import PoseArray
@@ -16,11 +16,11 @@ CONNECTING = 5.0  # s: nodes announce themselves every 3 s, and DDS can lose mes
 AFTERWARDS = 3.0  # s, of which the recording goes on after the last command
 RECORDED = ('/rotor_state', '/output_encoder', '/output_state', '/body_poses')
 rclpy.init()
-node, commanded = rclpy.create_node('recorder'), [math.inf]  # s
+node, commanded = rclpy.create_node('recorder'), [float('inf')]  # s
 begin = time.monotonic() + CONNECTING
 executor = make_executor()  # that of rclpy is too slow for four topics at 1 kHz
 executor.add_node(node)
-with BagWriter(sys.argv[1]) as bag:
+with BagWriter(sys.argv[1]) as bag, suppress(KeyboardInterrupt):  # Ctrl-C ends it, too
     for topic in RECORDED:
 
         def keep(data: bytes, topic: str = topic) -> None:

@@ -61,7 +61,7 @@ def mjcf(gear: TwinGear, remarks: Sequence[str] = (), *, shown: bool = True) -> 
     return _indented(f"""
 <mujoco model="gear_kinematics">
 <!--
-  A gear of gear_kinematics for MuJoCo 3: SI units; bodies and frames are those of the URDF.
+  A gear of gear_kinematics for MuJoCo, in SI units; bodies and frames are those of the URDF.
   The length of the tendon branch_NAME is the wind-up of the branch,
 
       rotor angle / gear ratio - angle of its arm,
