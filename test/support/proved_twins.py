@@ -139,7 +139,11 @@ def _encoders(proofs: Sequence[Proof]) -> Iterator[str]:
 def _table(
     first: Sequence[str], second: Sequence[str], rows: Iterable[Sequence[str]]
 ) -> Iterator[str]:
-    for row in ((*first, *second), ['---'] * len((*first, *second)), *rows):
+    head = *first, *second
+    # A value is not torn from its ±; what was put in may have a line of its own.
+    kept = ([c.replace(' ', '\N{NO-BREAK SPACE}') for c in row] for row in rows)
+    body = ([c.replace(':\N{NO-BREAK SPACE}', ': ') for c in row] for row in kept)
+    for row in (head, ['---'] * len(head), *body):
         yield f'| {" | ".join(row)} |'
 
 
