@@ -1,10 +1,14 @@
 # Copyright 2026 gear_kinematics contributors. SPDX-License-Identifier: Apache-2.0
 """The twins of real gears, whose loops are recorded, and what the page says of them."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
+from blocked_bags import gearkin_here
+
+from gear_kinematics.twin.parameters import default_config
 
 pytest.importorskip('scipy', reason='scipy is not installed')
 from real_twins import PRINTED, READ_PRINTED, loops, real_gear
@@ -18,6 +22,31 @@ def test_the_loop_of_the_printed_gear_is_reproduced_within_its_own_scatter(share
     assert 0.0 < found.off < found.scatter
     figures = f'{1e3 * found.off:.1f} mrad (rms), the image by {1e3 * found.scatter:.1f} mrad'
     assert figures in PAGE.read_text('utf-8')
+
+
+def test_springs_of_its_xml_are_the_middle_line(shared_path, tmp_path):
+    """From one command to the other, as their user goes."""
+    mujoco = pytest.importorskip('mujoco')
+    recording, report = shared_path(f'data/{PRINTED}'), tmp_path / 'report.json'
+    config, model = tmp_path / 'loose.yaml', tmp_path / 'loose.xml'
+    text = default_config().read_text('utf-8')
+    config.write_text(text.replace('preload: 2.0', 'preload: 0.0'), 'utf-8')
+    read_as = '--ratio', '36/5', '--on-rotor'
+    for command in (
+        ('lost-motion', recording, *read_as, '--json', report),
+        ('mjcf', '--config', config, '--measured', report, '--output', model),
+    ):
+        done = gearkin_here(*command)
+        assert (done.returncode, done.stderr) == (0, '')
+    line = json.loads(report.read_bytes())['recordings'][0]['middle_line']
+    loaded = mujoco.MjModel.from_xml_path(str(model))
+    low, high = loaded.tendon_lengthspring.T
+    for wind_up in (-0.09, -0.033, 0.0, 0.012, 0.05):
+        beyond = np.maximum(wind_up - high, 0.0) + np.minimum(wind_up - low, 0.0)
+        expected = np.interp(wind_up, line['angle'], line['load'])
+        assert loaded.tendon_stiffness @ beyond == pytest.approx(expected, abs=1e-9)
+    friction = loaded.joint('output_shaft').frictionloss
+    assert friction == pytest.approx(np.mean(line['friction']))
 
 
 @pytest.mark.slow
