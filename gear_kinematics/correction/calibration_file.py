@@ -151,7 +151,10 @@ class Calibration:
     def __post_init__(self) -> None:
         """Check the numbers beyond their types."""
         spans = self.spans.speed, self.spans.torque, self.spans.angle
+        reach = abs(self.constant) + sum(math.hypot(each.cos, each.sin) for each in self.orders)
+        reach += sum(stop.radius * abs(stop.coefficient) for stop in self.hysteresis)
         bounds = {
+            f"an error of {reach:.3g} rad is no gear's; are its numbers in rad?": reach <= math.pi,
             f'the orders must repeat within {_LONGEST_PERIOD} rotor turns': (
                 self.period <= _LONGEST_PERIOD
             ),

@@ -111,6 +111,7 @@ def test_file_says_what_its_numbers_are():
         ({'gear_ratio': '0'}, 'gear_ratio must be an exact ratio'),
         ({'orders': [3]}, 'orders[0] must have named values, not 3'),
         ({'orders': [order(cycles='1/99999989')]}, 'must repeat within 67108864 rotor turns'),
+        ({'orders': [order(cos=3.0, sin=-1.0)]}, "an error of 3.16 rad is no gear's"),
         ({'hysteresis': [{'radius': 0.0, 'coefficient': 1.0}]}, 'a radius of the hysteresis must'),
         (
             {'spans': {'speed': [1.0, -1.0], 'torque': None, 'angle': [0.0, 1.0], 'time': 1.0}},
