@@ -120,7 +120,7 @@ def gear_figures(
         tuple(ramps),
         widths[0],
         _friction(lines[0], small, angle_step),
-        mean_line(large),
+        mean_line(lines[-1], large),
         reconciled(rooms),
         _lost_motion(large.loops, rated, angle_step),
         _stiffness(large, rated, angle_step),

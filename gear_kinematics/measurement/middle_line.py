@@ -151,14 +151,14 @@ def middle_lines(ramps: Ramps) -> list[MiddleLine]:
     return [MiddleLine.of(loop) for loop in ramps.loops if loop.complete]
 
 
-def mean_line(ramps: Ramps) -> MiddleLine:
+def mean_line(lines: Sequence[MiddleLine], ramps: Ramps) -> MiddleLine:
     """The mean of the middle lines of ramps: at 0 rad, there is no load.
 
-    If no loop is complete, each counts with one half and the image of that.
+    If no loop is complete, so that there are none, each counts with one half and its image.
     """
     lines = [
         replace(line, angle=line.angle - line.angle_at(0.0))
-        for line in middle_lines(ramps) or [MiddleLine.of(loop.completed) for loop in ramps.loops]
+        for line in lines or [MiddleLine.of(loop.completed) for loop in ramps.loops]
     ]
     low, high = max(line.angle[0] for line in lines), min(line.angle[-1] for line in lines)
     angle = np.concatenate(

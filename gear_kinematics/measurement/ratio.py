@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import count, islice
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -154,17 +155,17 @@ def estimate_ratio(rotor: Array, output: Array, time: Array | None = None) -> Ra
         # The measured angle must not explain itself: errors are periodic in that of the rotor.
         columns = _columns(at, slope, way[kept], slope * (after - early))
         rest = output[kept] - slope * at
-        terms, spread, scatter = _fitted(columns, rest)
+        fit = _fitted(columns, rest)
         travel = float(np.ptp(at))
-        slope, late = slope + terms[0] / travel, late - _DELAY * terms[3]
+        slope, late = slope + fit.terms[0] / travel, late - _DELAY * fit.terms[3]
     # Nor must its error: the reading of the rotor is not in its acceleration.
     acceleration = slope * (first - early - after + last) / (3.0 * _STEP**2)
-    lagging, *_ = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
+    lagging = _fitted(np.column_stack([columns, _LAG * acceleration]), rest)
     parts = (
-        Component(spread / travel),
-        Component(scatter / travel, _BLOCKS - 1),
+        Component(fit.spread / travel),
+        Component(_scatter(fit) / travel, _BLOCKS - 1),
         Component(_ACCURACY / travel),
-        Component((lagging[0] - terms[0]) / travel / math.sqrt(3.0)),
+        Component((lagging.terms[0] - fit.terms[0]) / travel / math.sqrt(3.0)),
     )
     measured = Estimate(slope, *combined(parts), _BLOCKS)
     if not _MAX_DISTANCE * (measured.uncertainty or 0.0) < abs(slope):
@@ -189,26 +190,42 @@ def _columns(rotor: Array, slope: float, way: Array, step: Array) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _fitted(columns: Array, rest: Array) -> tuple[list[float], float, float]:
-    """Fit terms by least squares, each expected to be about as large as it may be.
+class _Fit(NamedTuple):
+    """Terms by least squares, each expected to be about as large as it may be."""
 
-    The standard uncertainty of the first is that by noise and what terms leave open, and that by
-    the scatter between blocks.
-    """
+    terms: list[float]
+    spread: float
+    """Standard uncertainty of the first term by noise, and by what terms leave open."""
+    sums: Array
+    """(blocks, terms + 1, terms + 1): of products of columns and of what they are fitted to."""
+    noise: float
+    """Variance of a sample."""
+
+
+def _fitted(columns: Array, rest: Array) -> _Fit:
     rest = left = rest - np.mean(rest)
     blocks = np.array_split(np.column_stack([columns, rest]), _BLOCKS)
     sums = np.array([block.T @ block for block in blocks])
-    whole = sums.sum(axis=0)
-    squares, products = whole[:-1, :-1], whole[:-1, -1]
+    squares, products = _parts(sums.sum(axis=0))
     eigen = np.linalg.eigh(squares)
     for _ in range(5):  # with the noise that the one before left; with 3, ± is 50 % off
         noise = max(_noise(left), _LEAST_NOISE**2)
         fitted, spread = _solve(*eigen, products, noise)
         left = rest - columns @ fitted
-    each = *np.linalg.eigh(squares - sums[:, :-1, :-1]), products - sums[:, :-1, -1]
-    without = (_solve(*one, noise)[0][0] for one in zip(*each, strict=True))
-    values = pseudo_values([fitted[0], *without])
-    return fitted.tolist(), spread, float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
+    return _Fit(fitted.tolist(), spread, sums, noise)
+
+
+def _scatter(fit: _Fit) -> float:
+    """Standard uncertainty of the first term by the scatter between blocks."""
+    squares, products = _parts(fit.sums.sum(axis=0) - fit.sums)
+    each = zip(*np.linalg.eigh(squares), products, strict=True)
+    values = pseudo_values([fit.terms[0], *(_solve(*one, fit.noise)[0][0] for one in each)])
+    return float(np.std(values, ddof=1)) / math.sqrt(_BLOCKS)
+
+
+def _parts(sums: Array) -> tuple[Array, Array]:
+    """Products among the columns, and with what they are fitted to."""
+    return sums[..., :-1, :-1], sums[..., :-1, -1]
 
 
 def _solve(values: Array, vectors: Array, products: Array, noise: float) -> tuple[Array, float]:
