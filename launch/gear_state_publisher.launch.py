@@ -13,7 +13,11 @@ from gear_kinematics.ros.launch_arguments import node_arguments
 
 
 def start_node(context: LaunchContext) -> list[Node]:
-    """Describe the node; what is not given as an argument is as in the parameter file."""
+    """Describe the node; what is not given as an argument is as in the parameter file.
+
+    Another node that takes the same arguments is named as `executable` where this is included.
+    """
+    name = context.launch_configurations.get('executable', NODE)
     config, _, given = node_arguments(context.launch_configurations)
     # The type is stated, or a prefix like 1 would arrive as a number.
     texts = {name: ParameterValue(value, value_type=str) for name, value in given.items()}
@@ -21,10 +25,10 @@ def start_node(context: LaunchContext) -> list[Node]:
     return [
         Node(
             package='gear_kinematics',
-            executable='gear_state_publisher',
+            executable=name,
             # With a name, launch writes the prefix to the node's own block of parameters. In /**
             # it would be overridden by a block of the file for this node.
-            name=NODE,
+            name=name,
             namespace=LaunchConfiguration('namespace'),
             parameters=parameters,
             remappings=[('rotor_state', LaunchConfiguration('rotor_state'))],

@@ -195,7 +195,7 @@ def test_viewers_show_the_node_of_their_namespace(launched, side):
 
 
 def test_simulator_has_the_joint_of_the_node_beside_it(launched):
-    launched.launch_configurations['rotor_joint'] = '1'
-    [simulator] = described(launched, 'simulated_actuator.launch.py', 'start_simulator')
+    launched.launch_configurations.update(rotor_joint='1', executable='gear_simulator')
+    [simulator] = described(launched, 'gear_state_publisher.launch.py', 'start_node')
     _, given = parameters_of(launched, simulator)
     assert given == {'rotor_joint': '1'}
