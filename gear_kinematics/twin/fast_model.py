@@ -44,7 +44,7 @@ class FastModel:
     def gear(self, gear: TwinGear) -> None:
         springs = [*gear.stiffness]
         if gear.has_shaft:
-            springs[0] = 1.0 / (1.0 / springs[0] + 1.0 / gear.shaft_stiffness)
+            springs[0] = gear.loop.branch_a_alone
         self._ratio = gear.ratio
         self._rotor_inertia, self._output_inertia = inertias(gear)
         reduced = self._ratio**2 * self._rotor_inertia

@@ -33,7 +33,7 @@ import numpy as np
 
 from gear_kinematics.correction.calibration_file import Calibration, Order
 from gear_kinematics.kinematics import Mechanism, MechanismError
-from gear_kinematics.kinematics.preload import braced
+from gear_kinematics.kinematics.preload import Preload, Stiffness, braced
 from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.twin.parameters import NODE, PARAMETERS, own_values
 
@@ -116,7 +116,7 @@ class TwinGear:
             raise MechanismError(faults)
         torque, bands = 0.0, ((-0.5 * self.play, 0.5 * self.play),) * len(self.stiffness)
         if len(self.stiffness) == _BRACED:
-            torque = max(self.interference, 0.0) / self._compliance
+            torque = Preload(self.loop, self.interference).torque
             bands = self._braced_bands(torque)
         object.__setattr__(self, 'ratio', float(self.parameters.gear.gear_ratio))
         object.__setattr__(self, 'preload', math.copysign(torque, self.parameters.preload))
@@ -162,6 +162,12 @@ class TwinGear:
         if preload:
             braced(parameters.mechanism)
         return made.preloaded(abs(preload))
+
+    @property
+    def loop(self) -> Stiffness:
+        """Of two branches and the shaft between their arms, which a preload twists."""
+        branch_a, branch_b = self.stiffness
+        return Stiffness(branch_a, branch_b, self.shaft_stiffness)
 
     @property
     def has_shaft(self) -> bool:
@@ -214,7 +220,9 @@ class TwinGear:
 
     def preloaded(self, torque: float) -> Self:
         """The same gear with a preload of this magnitude, N·m; as it is if that is 0."""
-        return replace(self, interference=torque * self._compliance) if torque else self
+        if not torque:
+            return self
+        return replace(self, interference=Preload.from_torque(self.loop, torque).interference)
 
     def worn(self, angle: float) -> Self:
         """The same gear with flanks that wore off by an angle of the output, rad, together."""
@@ -227,11 +235,6 @@ class TwinGear:
             phase = float(order.cycles) * rotor_angle
             deviation += order.cos * math.cos(phase) + order.sin * math.sin(phase)
         return deviation
-
-    @property
-    def _compliance(self) -> float:
-        """The twist of branches and shaft by a torque, rad/(N·m)."""
-        return sum(1.0 / each for each in (*self.stiffness, self.shaft_stiffness))
 
     def _braced_bands(self, torque: float) -> tuple[tuple[float, float], ...]:
         low_b = torque / self.stiffness[1] + min(0.5 * self.interference, 0.0)
