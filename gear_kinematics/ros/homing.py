@@ -30,7 +30,7 @@ def restored(node: Node, path: Path, parameters: NodeParameters) -> NodeParamete
     Raises:
         ConfigError: if the file cannot be used.
     """
-    if not (home := read_home(path, parameters)):
+    if not (home := read_home(path, parameters, node.get_fully_qualified_name())):
         return parameters
     zero, homed = home
     node.set_parameters([Parameter('rotor_zero', value=zero)])
@@ -77,7 +77,7 @@ class Homing:
         if not self._path:
             return
         try:
-            write_home(self._path, self._input.parameters)
+            write_home(self._path, self._input.parameters, self._node.get_fully_qualified_name())
             self._monitor.zero_kept = f'kept in {self._path}'
         except OSError as error:  # the zero holds until the node ends
             self._monitor.zero_kept = f'not kept: {self._path}: {error.strerror}'

@@ -16,6 +16,7 @@ from gear_kinematics.parameters import NodeParameters
 from gear_kinematics.state.output_encoder import OutputEncoder
 from gear_kinematics.state.rotor_input import RotorInput
 from gear_kinematics.state.turn_reference import SAMPLES, TurnReference
+from gear_kinematics.wire.cdr import SECOND
 
 OK, WARN, ERROR = 0, 1, 2
 """Levels of diagnostic_msgs/DiagnosticStatus."""
@@ -26,6 +27,7 @@ _UNEXPLAINED = 'Check gear_ratio, the directions and zeros of both encoders, and
 _AMBIGUOUS = 'Stop the output; or calibrate the gear, or lower transmission_error_limit.'
 _DISAGREES = 'Check whether an encoder has slipped; then call ~/home, or restart the node.'
 _NOT_COMPARED = 'Check that both drivers run and send often, and that their clocks agree.'
+_SLIPPED = 'Check the couplings and the zeros of both encoders; then call ~/home.'
 _TOO_LARGE = 'Check the gear and its encoders, or raise transmission_error_limit.'
 
 
@@ -84,9 +86,13 @@ class DriverMonitor:
         return faults
 
     def _report(
-        self, errors: Sequence[Fault], warnings: Sequence[Fault], values: dict[str, str]
+        self,
+        errors: Sequence[Fault],
+        warnings: Sequence[Fault],
+        values: dict[str, str],
+        notes: Sequence[str] = (),
     ) -> Report:
-        """Report on faults, or that there are none."""
+        """Report on faults, or that there are none; notes do not raise the level."""
         level = ERROR if errors else WARN if warnings else OK
         if faults := (*errors, *warnings):
             values['advice'] = ' '.join(dict.fromkeys(fault.advice for fault in faults))
@@ -94,6 +100,7 @@ class DriverMonitor:
         if not self.losses_known:
             messages.append('losses unknown')
             values['lost messages'] = 'unknown'
+        messages += notes
         return Report(level, '; '.join(messages) or 'ok', values)
 
 
@@ -131,8 +138,8 @@ class InputMonitor(DriverMonitor):
             errors.append(Fault(f'no input for {age:.1f} s', _NO_INPUT))
         if not rotor_input.referenced:
             errors.append(_not_referenced(reference))
-        elif reference and reference.decision and reference.decision.disagreement:
-            errors.append(Fault(reference.decision.disagreement, _DISAGREES))
+        elif reference and reference.disagreement:
+            errors.append(Fault(reference.disagreement, _DISAGREES))
         errors += self.graph.errors
         warnings = self._new_faults(rotor_input.rejected)
         if newly_unsent:
@@ -159,9 +166,14 @@ class InputMonitor(DriverMonitor):
             'home file': self.zero_kept,
             'loop-closure residual (m)': _residual(rotor_input),
         }
+        notes: list[str] = []
         if reference:
             values['reference'] = rotor_input.origin if rotor_input.referenced else 'none'
-        return self._report(errors, warnings, values)
+            values['reference checked'] = 'yes' if reference.checked else 'no'
+            unchecked = rotor_input.referenced and reference.decision and not reference.checked
+            if unchecked and not reference.disagreement:
+                notes.append('reference not checked')
+        return self._report(errors, warnings, values, notes)
 
 
 @dataclass(slots=True, kw_only=True)
@@ -197,6 +209,10 @@ class EncoderMonitor(DriverMonitor):
             and error.peak_to_peak > parameters.transmission_error_limit
         ):
             warnings.append(Fault(f'peak to peak {error.peak_to_peak:.3g} rad', _TOO_LARGE))
+        if slip := encoder.slip_watch.slip:
+            moved, when = math.degrees(slip.angle), slip.stamp / SECOND
+            text = f'the output has slipped by {moved:.2f}° against the rotor, at {when:.3f} s'
+            warnings.append(Fault(text, _SLIPPED))
         values = {
             'received': str(encoder.received),
             'compared': str(matched),

@@ -11,6 +11,7 @@ from gear_kinematics.correction.error_window import ErrorWindow
 from gear_kinematics.correction.transmission_error import ErrorSample, TransmissionError
 from gear_kinematics.kinematics import RotorSample
 from gear_kinematics.parameters import NodeParameters
+from gear_kinematics.state.slip import SlipWatch
 from gear_kinematics.state.turn_reference import TurnReference
 from gear_kinematics.wire.cdr import SECOND
 from gear_kinematics.wire.joint_reader import JointReader, RejectedInputError
@@ -39,6 +40,7 @@ class OutputEncoder:
             travel=parameters.transmission_error_travel,
         )
         """Counts the measured angles that were compared, and those that were not by cause."""
+        self.slip_watch = SlipWatch(parameters)
         self.reference = reference if parameters.absolute else None
         self._segment: int | None = None
 
@@ -79,6 +81,7 @@ class OutputEncoder:
             samples = self.reference.follow(samples)
         for sample in samples:
             self.window.add(sample)
+            self.slip_watch.add(sample)
         return samples
 
     def _compare_one_segment(self) -> None:
@@ -87,4 +90,5 @@ class OutputEncoder:
             self._segment = self.reference.rotor.segment
             self.comparison.reset()
             self.window.clear()
+            self.slip_watch.restart()
             self.reference.restart()

@@ -136,6 +136,14 @@ class TurnReference:
         self._block = ErrorBlock()
         self.decision: Decision | None = None
         """The latest on the present count."""
+        self.disagreement = ''
+        """How the encoder contradicts the present count; it stays until a block that can tell the
+        turns apart agrees, as one in fast motion may agree with anything."""
+
+    @property
+    def checked(self) -> bool:
+        """Whether the latest block could tell whether the count is right."""
+        return self.decision is not None and self.decision.budget < self.decision.margin
 
     def follow(self, samples: Sequence[ErrorSample]) -> Sequence[ErrorSample]:
         """Take the next errors of the present count; returns those of known turns.
@@ -146,6 +154,8 @@ class TurnReference:
         for sample in samples:
             if decision := self._block.add(sample, self.rotor.parameters):
                 self.decision = decision
+                if decision.disagreement or decision.budget < decision.margin:
+                    self.disagreement = decision.disagreement
                 if not referenced and decision.unambiguous:
                     self._refer(decision)
                     return ()

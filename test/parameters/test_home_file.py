@@ -14,6 +14,7 @@ from gear_kinematics.parameters.atomic_file import replace_file
 from gear_kinematics.parameters.files import ConfigError
 from gear_kinematics.parameters.home_file import read_home, write_home
 
+NODE = '/gear_state_publisher'
 HOMED = replace(NodeParameters.load(), rotor_zero=28.969, rotor_joint='0x1: é')
 OLD = """\
 schema: gear_kinematics/home/1
@@ -33,12 +34,12 @@ def path(tmp_path):
 
 
 def test_what_is_read_is_what_was_written(path):
-    assert read_home(path, HOMED) is None
-    write_home(path, HOMED)
-    zero, homed = read_home(path, HOMED)
+    assert read_home(path, HOMED, NODE) is None
+    write_home(path, HOMED, NODE)
+    zero, homed = read_home(path, HOMED, NODE)
     assert (zero, homed[-4:]) == (28.969, ' UTC')
     path.write_text(OLD, 'utf-8')
-    assert read_home(path, NodeParameters.load()) == (28.969, '2026-03-01 12:00 UTC')
+    assert read_home(path, NodeParameters.load(), NODE) == (28.969, '2026-03-01 12:00 UTC')
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,7 @@ def test_what_is_read_is_what_was_written(path):
 def test_other_gear_or_odd_value_is_refused_in_a_line(path, entries, cause):
     path.write_text(yaml.safe_dump(yaml.safe_load(OLD) | entries), 'utf-8')
     with pytest.raises(ConfigError) as refusal:
-        read_home(path, NodeParameters.load())
+        read_home(path, NodeParameters.load(), NODE)
     text = str(refusal.value)
     assert text.startswith(f'{path}: ')
     assert cause in text
@@ -64,13 +65,42 @@ def test_other_gear_or_odd_value_is_refused_in_a_line(path, entries, cause):
     assert '\n' not in text
 
 
-def test_link_remains_and_leads_to_the_new_content(path, tmp_path):
-    path.symlink_to('elsewhere.yaml')
-    assert read_home(path, HOMED) is None  # it leads nowhere yet
-    for zero in (1.0, 2.0):
-        write_home(path, replace(HOMED, rotor_zero=zero))
-        assert path.is_symlink()
-        assert read_home(tmp_path / 'elsewhere.yaml', HOMED)[0] == zero
+@pytest.mark.parametrize('target', ['elsewhere.yaml', 'nothing.yaml'])
+def test_link_is_neither_read_nor_written_through(path, tmp_path, target):
+    (tmp_path / 'elsewhere.yaml').write_text(OLD, 'utf-8')
+    path.symlink_to(target)
+    with pytest.raises(ConfigError, match='must not be a link'):
+        read_home(path, HOMED, NODE)
+    with pytest.raises(OSError, match='it is a link'):
+        write_home(path, HOMED, NODE)
+    assert path.is_symlink()
+    assert (tmp_path / 'elsewhere.yaml').read_text('utf-8') == OLD
+    assert not (tmp_path / 'nothing.yaml').exists()
+
+
+def test_zero_of_another_node_is_refused(path):
+    write_home(path, HOMED, '/left/gear_state_publisher')
+    with pytest.raises(ConfigError, match="its node is '/left/gear_state_publisher', not '/gear_"):
+        read_home(path, HOMED, NODE)
+
+
+def test_old_zero_is_removed_where_the_new_one_cannot_be_written(path, monkeypatch):
+    write_home(path, HOMED, NODE)
+
+    def full(*_, **_options):
+        raise OSError(28, 'No space left on device')
+
+    monkeypatch.setattr('gear_kinematics.parameters.atomic_file.os.fsync', full)
+    with pytest.raises(OSError, match='No space left'):
+        write_home(path, replace(HOMED, rotor_zero=1.0), NODE)
+    monkeypatch.undo()
+    assert read_home(path, HOMED, NODE) is None
+    write_home(path, HOMED, NODE)
+    # Root may write to a folder that is read-only, so both operations are made to fail.
+    monkeypatch.setattr('gear_kinematics.parameters.atomic_file.os.fsync', full)
+    monkeypatch.setattr('pathlib.Path.unlink', full)
+    with pytest.raises(OSError, match='its zero is out of date'):
+        write_home(path, replace(HOMED, rotor_zero=1.0), NODE)
 
 
 @pytest.mark.parametrize('moment', ['os.fsync', 'pathlib.Path.replace'])

@@ -152,7 +152,7 @@ def test_output_angle_is_the_same_after_the_node_was_killed(tmp_path):
         first.process.kill()
         first.process.wait()
         first.process.returncode = 0  # that is no failure here
-    with live_node(tmp_path, *arguments) as second:
+    with live_node(tmp_path, *arguments, namespace=first.peer.namespace) as second:
         second.peer.connect()
         angles.append(second.peer.answer(rotor_state(second.peer.stamp(), position=[3.3]))[0])
         assert 'restored from' in second.text()

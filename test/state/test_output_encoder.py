@@ -167,3 +167,41 @@ def test_calibration_that_no_longer_fits_is_a_warning(bench, monkeypatch, explai
     assert (report.level, report.message) == expected
     assert report.values['explained by the calibration (%)'] == f'{100 * explained:.1f}'
     assert report.values['outside the interval (%)'] == '25.0'
+
+
+# Slips.
+
+
+def rest(bench, start, count, error, *, speed=0.0):
+    """Send both encoders with a constant error at the output, which turns at a speed, rad/s."""
+    for k in range(start, start + count):
+        angle = 1e-3 * speed * k
+        bench.measure(START + k * MS, angle + error)
+        bench.turn(START + k * MS, -19.0 * angle)
+
+
+@pytest.mark.parametrize('speed', [0.0, 2.0])
+@pytest.mark.parametrize('degrees', [20.0, -20.0, 0.5])
+def test_slip_stays_a_warning_after_the_window_has_passed(degrees, speed):
+    bench = Bench(replace(SETTINGS, transmission_error_window=0.1))
+    rest(bench, 0, 500, 0.0, speed=speed)
+    assert bench.report().message == 'ok'
+    rest(bench, 500, 5000, math.radians(degrees), speed=speed)
+    for more in range(5500, 7500, 500):
+        report = bench.report()
+        when = (START + 500 * MS) / SECOND
+        assert report.level == WARN
+        assert report.message == (
+            f'the output has slipped by {degrees:.2f}° against the rotor, at {when:.3f} s'
+        )
+        rest(bench, more, 500, math.radians(degrees), speed=speed)
+
+
+def test_single_wrong_readings_and_errors_within_the_limit_are_no_slip(bench):
+    for k in range(5000):
+        error = 0.0015 * math.sin(0.01 * k) if k % 50 else 1.0
+        angle = 0.5 * math.sin(0.003 * k)
+        late = 0.5 * math.sin(0.003 * (k - 5.0))  # the encoder is 5 ms late
+        bench.measure(START + k * MS, late + error)
+        bench.turn(START + k * MS, -19.0 * angle)
+    assert bench.encoder.slip_watch.slip is None

@@ -193,14 +193,38 @@ def test_homing_ends_the_search_and_a_disagreement_moves_nothing(settings, searc
     message = 'output_encoder disagrees: 38.39° by the encoder, 57.30° by the rotor'
     for samples, error, found in (
         (SAMPLES, 0.0, 'ok'),
-        (SAMPLES - 1, -0.33, 'ok'),
-        (1, 0.0, 'ok'),
+        (SAMPLES - 1, -0.33, 'reference not checked'),
+        (1, 0.0, 'reference not checked'),
         (2 * SAMPLES, -0.33, message),
+        (SAMPLES // 2, 0.0, message),  # which samples of both kinds do not take back
         (2 * SAMPLES, 0.0, 'ok'),
     ):
         assert bench.rest(1.0, samples, error=error) == pytest.approx(1.0)
         assert bench.report()[0] == found
     assert bench.rotor.segment == segment
+
+
+def test_disagreement_at_rest_is_not_taken_back_in_motion():
+    bench = Bench(replace(SINGLE, transmission_error_max_gap=0.1))
+    bench.rest(0.0, 400)
+    assert bench.report()[0] == 'ok'
+    bench.rest(0.0, 1000, error=math.radians(12.0))
+    message = 'output_encoder disagrees: 12.00° by the encoder, 0.00° by the rotor'
+    assert bench.report()[0] == message
+    speed = math.radians(200.0)  # rad/s, at which a delay of 0.1 s would be 20°
+    angles = [1e-3 * speed * k for k in range(2000)]
+    bench.turn(*angles, error=math.radians(12.0))
+    assert bench.report()[0].startswith(message)
+    bench.rest(angles[-1], 1000)
+    assert bench.report()[0] == 'ok'
+
+
+def test_block_that_cannot_tell_the_turns_apart_is_said_to_check_nothing():
+    bench = Bench(replace(SINGLE, transmission_error_max_gap=0.1))
+    bench.rest(0.0, 400)
+    bench.turn(*(3.5e-3 * k for k in range(1000)))
+    message, _, _ = bench.report()
+    assert message == 'reference not checked'
 
 
 @pytest.mark.slow
